@@ -66,6 +66,8 @@ impl Build {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Renderer;
+    use crate::render_cpu::{CpuOptions, CpuRenderer};
 
     #[test]
     fn a_build_without_git_says_so() {
@@ -76,5 +78,44 @@ mod tests {
     #[test]
     fn a_machine_without_adapters_says_so() {
         assert!(Build { commit: "" }.details(&[]).ends_with("\nadapters      none\n"));
+    }
+
+    #[test]
+    fn the_lines_are_those_of_this_build_and_of_what_renders_on_this_machine() {
+        let text = Build { commit: "0123abc" }.details(&[]);
+        let renderer = CpuRenderer::new(CpuOptions::default()).unwrap().info();
+        let levels: Vec<&str> = Isa::available().into_iter().map(Isa::name).collect();
+        let window = if cfg!(feature = "window") { "yes" } else { "no (built without the feature `window`)" };
+        let expected = [
+            format!("weekender {}", env!("CARGO_PKG_VERSION")),
+            "commit        0123abc".to_owned(),
+            format!("target        {}", current_platform::CURRENT_PLATFORM),
+            format!("window        {window}"),
+            "allocator     the system's".to_owned(),
+            format!("instructions  {}, {} lanes (of {})", renderer.device, renderer.lanes, levels.join(", ")),
+            format!("film files    version {}", checkpoint::VERSION),
+            "adapters      none".to_owned(),
+        ];
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn every_adapter_has_a_line() {
+        let adapter = |name: &str| AdapterInfo {
+            name: name.to_owned(),
+            kind: "discrete GPU",
+            backend: "Vulkan".to_owned(),
+            driver: "driver 1.2".to_owned(),
+            is_software: false,
+            storage_binding_limit: 1 << 30,
+            buffer_limit: 1 << 30,
+            has_timestamps: true,
+            subgroup_size: 32,
+            lacks: None,
+        };
+        let text = Build { commit: "" }.details(&["One", "Other"].map(adapter));
+        let told = "adapters      One (discrete GPU, Vulkan, driver 1.2)\n              \
+                    Other (discrete GPU, Vulkan, driver 1.2)\n";
+        assert!(text.ends_with(told), "{text}");
     }
 }

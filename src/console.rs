@@ -29,6 +29,11 @@ pub fn note(text: &str) {
     say(&said);
 }
 
+/// As [`note`], for commands and other texts to copy: nothing is left out of them.
+pub fn note_whole(text: &str) {
+    say(&(text.split('\n').map(harmless).collect::<Vec<_>>().join("\n") + "\n"));
+}
+
 /// As [`note`], for a text of any length that may contain the program's own colours: see [`print_painted`].
 pub fn note_painted(text: &str) {
     say(&painted(text));
@@ -94,10 +99,13 @@ pub fn printable_json(text: &str) -> String {
 /// A line, with or without its end, that cannot control a terminal and is not too long to read.
 fn presentable(line: &str) -> String {
     let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
+    harmless(&shortened(line.trim_end_matches('\r'))) + end
+}
+
+/// A line that cannot control a terminal.
+fn harmless(line: &str) -> String {
     let escape = |c: char| if is_steering(c) { c.escape_default().to_string() } else { c.to_string() };
-    let mut shown: String = shortened(line.trim_end_matches('\r')).chars().map(escape).collect();
-    shown.push_str(end);
-    shown
+    line.chars().map(escape).collect()
 }
 
 /// The line without its middle if it is too long.

@@ -7,8 +7,7 @@ use crate::render::BackendInfo;
 use crate::scene::Camera;
 use crate::stages::Stage;
 
-/// The program and its version, as descriptions name them.
-pub const SOFTWARE: &str = concat!("Weekender ", env!("CARGO_PKG_VERSION"));
+pub use crate::film::SOFTWARE;
 
 /// The description of a film rendered from `recipe`. `seconds_before` is the time that the film's earlier samples
 /// took, if known.

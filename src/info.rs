@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::files::ShownPath;
 use crate::film::{CheckpointError, ErrorEstimate, FilmHead, checkpoint, key};
 use crate::memory;
+use crate::output::{FrameRate, animation_in};
 use crate::plan::{AnyPlan, Frames, Plan, Samples, Work};
 use crate::recipe::{Recipe, file};
 use crate::saved::Saved;
@@ -57,10 +58,14 @@ struct Info {
     film_version: Option<u32>,
     sample_version: Option<u32>,
     frames: Option<String>,
+    frames_per_second: Option<f64>,
     parts: Option<usize>,
     command: Option<String>,
     #[serde(skip)]
     error_words: Option<String>,
+    /// The number of frames of an animated PNG.
+    #[serde(skip)]
+    frame_count: Option<u32>,
 }
 
 impl Info {
@@ -88,6 +93,11 @@ impl Info {
             command: text(key::COMMAND),
             ..Info::new("picture", path, &recipe)
         };
+        if let Some((count, rate)) = animation_in(path) {
+            (info.kind, info.frame_count) = ("animation", Some(count));
+            info.frames = Some(format!("0..{count}"));
+            info.frames_per_second = rate.map(FrameRate::per_second);
+        }
         match checkpoint::read_head(path) {
             Ok(head) => info.add_film(path, &head).map_err(Failure::input)?,
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => {}
@@ -122,9 +132,11 @@ impl Info {
             film_version: None,
             sample_version: None,
             frames: None,
+            frames_per_second: None,
             parts: None,
             command: None,
             error_words: None,
+            frame_count: None,
         }
     }
 
@@ -133,7 +145,7 @@ impl Info {
         Info {
             samples_per_pixel: Some(end - start),
             sample_ranges: Some(format!("{start}..{end}")),
-            halves: Some(if plan.job.settings().estimate_error { 2 } else { 1 }),
+            halves: Some(plan.job.settings().half_count()),
             ..Info::of_plan(plan)
         }
     }
@@ -171,7 +183,8 @@ impl Info {
                 let error: Option<ErrorEstimate> = read.film.error();
                 (self.rmse_estimate, self.rmse_deviation) =
                     (error.map(|error| error.rmse), error.map(|error| error.rmse_deviation));
-                self.error_words = error.map(|error| error.words());
+                let unknown = || format!("not estimated: {}", read.film.why_no_error());
+                self.error_words = Some(error.map_or_else(unknown, |error| error.words()));
             }
             Err(CheckpointError::Memory { reason, .. }) => self.error_words = Some(reason.to_string()),
             Err(error) => return Err(error),
@@ -182,7 +195,7 @@ impl Info {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:<9}{}, {}", self.kind, self.file.shown(), memory::words(self.bytes))?;
+        write!(f, "{:<8} {}, {}", self.kind, self.file.shown(), memory::words(self.bytes))?;
         if let Some(version) = self.film_version {
             write!(f, ", version {version}")?;
         }
@@ -197,8 +210,13 @@ impl fmt::Display for Info {
             if let Some(ranges) = &self.sample_ranges {
                 write!(f, " ({ranges})")?;
             }
-            if let Some(frames) = &self.frames {
-                write!(f, " of the frames {frames}")?;
+            match (&self.frames, self.frame_count) {
+                (_, Some(count)) => write!(f, " of each of {}", counted(u64::from(count), "frame"))?,
+                (Some(frames), None) => write!(f, " of the frames {frames}")?,
+                (None, None) => {}
+            }
+            if let Some(rate) = self.frames_per_second {
+                write!(f, ", {} frames per second", (rate * 1e5).round() / 1e5)?;
             }
             if let Some(parts) = self.parts {
                 write!(f, " in {}", counted(parts as u64, "part"))?;
@@ -212,8 +230,7 @@ impl fmt::Display for Info {
             writeln!(f)?;
         }
         if self.kind == "film" {
-            let words = self.error_words.as_deref().unwrap_or("not estimated: the film has one half");
-            writeln!(f, "error    {words}")?;
+            writeln!(f, "error    {}", self.error_words.as_deref().unwrap_or("not estimated"))?;
         }
         let lines = [
             ("time", self.trace_seconds.map(|time| format!("{} of tracing", seconds(time)))),
@@ -234,7 +251,8 @@ impl fmt::Display for Info {
 mod tests {
     use super::*;
     use crate::animation::Turn;
-    use crate::output::FrameRate;
+    use crate::film::{Description, Film};
+    use crate::output::{write_animation, write_image};
     use crate::plan::{Manifest, divide};
 
     /// What is told of a plan that divides `work` of a small picture with 6 samples per pixel.
@@ -266,6 +284,33 @@ mod tests {
             assert_eq!(info.samples_per_pixel, Some(range.end - range.start));
             assert_eq!(info.halves, Some(if estimate_error { 2 } else { 1 }));
             assert!(text.contains(words) && text.contains("three-spheres, 16x9, "), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_animated_png_has_frames_and_a_rate_and_a_still_has_none() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
+        description.set(key::SAMPLES, 6);
+        let [still, turn] = ["still.png", "turn.png"].map(|name| directory.path().join(name));
+        let mut film = Film::new(4, 3, 1);
+        film.record(0..1, 0).unwrap();
+        write_image(&still, &film, recipe.rules.transfer, &description).unwrap();
+        let info = Info::of(&still).unwrap();
+        assert_eq!((info.kind, info.frames), ("picture", None));
+        for (rate, words) in [
+            (FrameRate { frames: 30, seconds: 1 }, "30 frames per second"),
+            (FrameRate { frames: 30_000, seconds: 1001 }, "29.97003 frames per second"),
+        ] {
+            write_animation(&turn, [4, 3], rate, vec![still.clone(); 5].into_iter(), &description).unwrap();
+            let info = Info::of(&turn).unwrap();
+            assert_eq!((info.kind, info.frames.as_deref()), ("animation", Some("0..5")));
+            assert_eq!(info.frames_per_second, Some(rate.per_second()));
+            let text = info.to_string();
+            assert!(text.starts_with("animation ") && text.contains(" of each of 5 frames"), "{text}");
+            assert!(text.contains(words), "{text}");
         }
     }
 

@@ -1,5 +1,6 @@
 //! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. Another Ctrl-C ends
-//! the program immediately, but never while files are being written. The exit code tells which signal it was.
+//! the program immediately, but never while files are being written. The exit code tells which signal it was. On Linux, a
+//! signal that was ignored when the program started, as SIGHUP by nohup, stays ignored.
 
 use crate::console;
 use crate::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
@@ -31,18 +32,36 @@ struct Arrived {
 }
 
 impl Arrived {
-    /// Has each signal noted, besides what is already done about it.
-    fn watch(&self) -> std::io::Result<()> {
-        #[cfg(unix)]
+    /// Calls `answer` on a thread of its own whenever a signal has arrived and is noted.
+    #[cfg(unix)]
+    fn watch(&self, answer: impl Fn() + Send + 'static) -> Result<()> {
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        use signal_hook::{flag, low_level::pipe};
+        use std::io::Read;
+        let (mut bell, button) = std::os::unix::net::UnixStream::pair()?;
+        let ignored = ignored_signals();
+        for (signal, arrived) in
+            [(SIGINT, &self.interrupt), (SIGTERM, &self.terminate), (SIGHUP, &self.hang_up)]
         {
-            use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-            for (signal, flag) in
-                [(SIGINT, &self.interrupt), (SIGTERM, &self.terminate), (SIGHUP, &self.hang_up)]
-            {
-                signal_hook::flag::register(signal, Arc::clone(flag))?;
+            if ignored & (1 << (signal - 1)) == 0 {
+                // In this order: who hears the bell finds the signal noted.
+                flag::register(signal, Arc::clone(arrived))?;
+                pipe::register(signal, button.try_clone()?)?;
             }
         }
+        let listen = move || {
+            while bell.read_exact(&mut [0]).is_ok() {
+                answer();
+            }
+        };
+        std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
         Ok(())
+    }
+
+    /// The same. The system does not say which signal it was.
+    #[cfg(not(unix))]
+    fn watch(&self, answer: impl Fn() + Send + 'static) -> Result<()> {
+        Ok(ctrlc::set_handler(answer)?)
     }
 
     /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and end a program that takes too long with
@@ -61,6 +80,20 @@ impl Arrived {
             () => INTERRUPTED,
         }
     }
+}
+
+/// The signals that the program ignores, a bit each, the lowest for signal 1. Called before any is handled, they are those
+/// that it was started with. Where `/proc` does not tell, there are none.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
+}
+
+/// The same from the text of `/proc/self/status`.
+#[cfg(unix)]
+fn ignored_in(status: &str) -> u64 {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
 #[derive(Default)]
@@ -115,17 +148,15 @@ impl Interrupt {
     pub fn install_with(wake: impl Fn() + Send + 'static) -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);
-        ctrlc::set_handler(move || match seen.signalled(Instant::now()) {
+        let answer = move || match seen.signalled(Instant::now()) {
             Answer::Nothing => wake(),
             Answer::Say(words) => console::note(&words),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");
                 std::process::exit(i32::from(seen.arrived.exit_code()));
             }
-        })
-        .context("cannot handle Ctrl-C")?;
-        // After the handler: each signal then also reaches the handler that was there before.
-        shared.arrived.watch().context("cannot handle SIGTERM")?;
+        };
+        shared.arrived.watch(answer).context("cannot handle Ctrl-C and other signals")?;
         Ok(Interrupt(shared))
     }
 
@@ -195,6 +226,17 @@ mod tests {
         assert!(shared.is_set.load(Ordering::Relaxed));
         assert_eq!(shared.signalled(now + ECHO / 2), Answer::Nothing, "an echo");
         assert_eq!(shared.signalled(now + ECHO), Answer::Exit);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_status_of_a_process_tells_what_it_ignores() {
+        let status =
+            "Name:\tsh\nSigBlk:\t0000000000000003\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000002\n";
+        assert_eq!(ignored_in(status), 0x1001);
+        for unknown in ["", "SigIgn:\tnone\n", "SigBlk:\t0000000000000001\n"] {
+            assert_eq!(ignored_in(unknown), 0);
+        }
     }
 
     #[test]

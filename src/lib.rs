@@ -56,4 +56,5 @@ pub mod statistics;
 pub mod stress;
 mod suggest;
 pub mod terminal;
+mod threads;
 pub mod web;

@@ -319,7 +319,7 @@ pub trait Renderer: Send {
     /// Begins a film of `job`: builds whatever tracing needs and is not there yet (prepared scene, hierarchy, kernels),
     /// and discards traced samples that were not collected.
     ///
-    /// Checks `cancel` while kernels compile.
+    /// Checks `cancel` while the scene is prepared and while kernels compile.
     ///
     /// # Errors
     /// [`RenderError::Backend`] if the backend cannot render this job; [`RenderError::Cancelled`] if it was cancelled.

@@ -12,6 +12,11 @@ pub fn quoted(word: &str) -> Cow<'_, str> {
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
 
+/// A path that no program takes for a flag: `./` comes before a dash.
+pub fn operand(path: &str) -> Cow<'_, str> {
+    if path.starts_with('-') { Cow::Owned(format!("./{path}")) } else { Cow::Borrowed(path) }
+}
+
 /// A command line of these words.
 pub fn line<W: AsRef<str>>(words: impl IntoIterator<Item = W>) -> String {
     words.into_iter().map(|word| quoted(word.as_ref()).into_owned()).collect::<Vec<_>>().join(" ")
@@ -27,5 +32,12 @@ mod tests {
         let line = line(words);
         assert_eq!(shlex::split(&line).unwrap(), words);
         assert!(line.starts_with("weekender --size=8x4 ") && line.ends_with(" -1,2,3"), "{line}");
+    }
+
+    #[test]
+    fn a_path_is_no_flag() {
+        for (path, word) in [("-d", "./-d"), ("--", "./--"), ("a-b", "a-b"), ("./-d", "./-d"), ("", "")] {
+            assert_eq!(operand(path), word);
+        }
     }
 }

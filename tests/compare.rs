@@ -141,7 +141,7 @@ fn a_backend_repeats_the_samples_of_a_film() {
 }
 
 #[test]
-fn a_clipped_picture_differs_from_a_dark_one_and_is_not_judged_next_to_itself() {
+fn a_clipped_picture_differs_from_a_dark_one_is_equal_to_itself_and_is_not_judged_next_to_another() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, dark) in [("white.png", 0), ("half.png", 32)] {
@@ -154,8 +154,13 @@ fn a_clipped_picture_differs_from_a_dark_one_and_is_not_judged_next_to_itself() 
         assert!(code == 1 && text.contains("darker in the other") && text.contains("different"), "{text}");
     }
     let (code, text, _) = compare(&["white.png", "white.png"], at);
+    assert!(code == 0 && text.contains("verdict     equal to the bit"), "{text}");
+    // White in another format may stand for other values.
+    let deep = image::ImageBuffer::from_pixel(64, 16, image::Rgb([u16::MAX; 3]));
+    deep.save(at.join("deep.png")).unwrap();
+    let (code, text, _) = compare(&["white.png", "deep.png"], at);
     assert!(code == 2 && text.contains("verdict     cannot tell"), "{text}");
-    let (code, found) = json(&["white.png", "white.png"], at);
+    let (code, found) = json(&["white.png", "deep.png"], at);
     assert_eq!((code, &found["is_equal"]), (2, &serde_json::json!(false)));
     assert!(found["unclear"].as_str().unwrap().starts_with("only 0 of 48"), "{found}");
 }

@@ -218,6 +218,25 @@ fn what_cannot_be_compared_is_refused() {
     }
 }
 
+/// The README shows the end of what a command prints. Both of its sides are the same on every processor.
+#[test]
+fn the_readme_shows_what_the_program_prints() {
+    let readme = include_str!("../README.md");
+    let command = readme.lines().find_map(|line| line.strip_prefix("weekender diff --seed")).unwrap();
+    let words = command.split('#').next().unwrap().split_whitespace();
+    let arguments: Vec<&str> = std::iter::once("--seed").chain(words).collect();
+    let block = readme.split("```\n").find(|block| block.starts_with("ray ")).unwrap();
+    let (code, text, errors) = diff(&arguments);
+    assert_eq!(code, 1, "{errors}");
+    assert!(text.ends_with(block), "{text}");
+}
+
+#[test]
+fn rays_are_counted_from_one_as_in_the_window() {
+    let (_, text, errors) = diff(&["--sides", "portable,portable", "--pixel", "5,6", "--size", "16x9"]);
+    assert!(text.contains("\nray 1 from the camera ") && !text.contains("ounce"), "{text}{errors}");
+}
+
 /// Two rays pass a ball of radius 1 whose centre is 4 away: one at 0.999 of its radius, one at 1.002.
 #[test]
 fn a_near_miss_is_told_of_the_side_that_misses() {

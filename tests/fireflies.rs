@@ -34,15 +34,18 @@ fn cage(ball: f64, seed: u32) -> RenderJob {
     RenderJob::new(scene, camera, settings, Rules::default()).unwrap()
 }
 
-/// The error estimates of several films, and whether each is marked as doubtful.
+/// The error estimates of several films, and whether each is marked as doubtful or left out.
 fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
     let mut renderer = CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).unwrap();
     let mut estimate = |seed| {
         let job = cage(ball, seed);
         let mut film = job.new_film();
         renderer.accumulate(&job, 0..16, &mut film, &AtomicBool::new(false)).unwrap();
-        let estimate = film.error().unwrap();
-        (estimate, film.doubt(Some(&estimate), 1.0).is_some())
+        match film.error() {
+            Some(estimate) => (estimate, film.doubt(Some(&estimate), 1.0).is_some()),
+            // No path has found light: nothing is stated.
+            None => (ErrorEstimate { rmse: 0.0, rmse_deviation: 0.0, rel_mse: 0.0 }, true),
+        }
     };
     (0..seeds).map(&mut estimate).collect()
 }

@@ -6,10 +6,10 @@ mod gpu_common;
 
 use glam::DVec3;
 use gpu_common::{cpu, go_on, gpu, job_of, rendered};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use weekender::film::Film;
-use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind};
+use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind, Stats};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
@@ -107,6 +107,28 @@ fn what_an_abandoned_picture_put_aside_is_lost() {
     assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
     let told = used.take_messages();
     assert!(!told.iter().any(|message| message.contains("traced again")), "{told:?}");
+}
+
+/// What a film has already got stays in it; what is still on the device is traced again, and does not count twice.
+#[test]
+fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
+    let Some(mut other) = gpu(GpuOptions::default()) else { return };
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
+    let expected = rendered(&mut other, &job, 8);
+    let mut used = gpu(GpuOptions::default()).unwrap();
+    for _ in 0..2 {
+        let mut film = job.new_film();
+        used.advance(&job, 0..4, &mut film, &go_on()).unwrap();
+        used.advance(&job, 4..8, &mut film, &go_on()).unwrap();
+        let outcome = used.advance(&job, 8..12, &mut film, &AtomicBool::new(true));
+        assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
+        assert_eq!(used.collect(&mut film).unwrap(), Stats::default());
+        let held = film.sample_count();
+        assert!(held < 8, "the last samples cannot have come: {held}");
+        used.accumulate(&job, held..8, &mut film, &go_on()).unwrap();
+        assert!(film == expected);
+    }
 }
 
 /// If a ray needs more iterations for a list than a dispatch allows, the picture is traced ray by ray. A list that no

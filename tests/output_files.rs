@@ -12,7 +12,10 @@ use std::path::Path;
 use weekender::describe::seconds;
 use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
-use weekender::output::{Description, OutputError, OutputFormat, key, read_description, write_image};
+use weekender::output::{
+    Description, OutputError, OutputFormat, RECIPE_LIMIT, key, read_description, recipe_in_picture,
+    write_image,
+};
 use weekender::stages::Transfer;
 
 fn film() -> Film {
@@ -119,6 +122,24 @@ fn a_picture_says_what_was_said_of_it() {
             fs::rename(&path, &renamed).unwrap();
             assert!(read_description(&renamed).unwrap() == *description);
         }
+    }
+}
+
+#[test]
+fn a_picture_holds_its_recipe_up_to_the_limit_and_says_that_a_longer_one_is_missing() {
+    let directory = tempfile::tempdir().unwrap();
+    let longest = format!("{}\n", "x".repeat(63)).repeat(RECIPE_LIMIT / 64);
+    for name in ["a.png", "a.ppm"] {
+        let path = directory.path().join(name);
+        for recipe in [longest.clone(), longest.clone() + "y"] {
+            let mut description = Description::new(&recipe);
+            description.set(key::SAMPLES, 2);
+            write_image(&path, &film(), Transfer::Gamma2, &description).unwrap();
+            let read = read_description(&path).unwrap();
+            assert!(read.recipe() == recipe_in_picture(&recipe), "{name}, {} bytes", recipe.len());
+            assert_eq!(read.get(key::SAMPLES), Some("2"));
+        }
+        assert!(fs::metadata(&path).unwrap().len() < 10_000, "{name}");
     }
 }
 

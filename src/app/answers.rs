@@ -1,8 +1,24 @@
-//! Answers of background threads. Each asker owns the slot in which its answers arrive.
+//! Answers of background threads. Each asker owns the slot in which its answers arrive. Whoever asks with a substitute for
+//! the answer gets one in any case: work that panics, or that no thread can be started for, must not be waited for.
 
+use crate::render::panic_text;
 use eframe::egui::Context;
-use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+
+/// Makes the answer when the work was not done, from the reason in words.
+type Substitute<T> = Box<dyn FnOnce(String) -> T + Send>;
+
+/// Does work that may panic.
+///
+/// # Errors
+/// That it panicked, in words.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work))
+        .map_err(|payload| format!("the program failed ({})", panic_text(payload.as_ref())))
+}
 
 /// The slot in which answers of one kind arrive.
 pub struct Answers<T> {
@@ -18,24 +34,32 @@ impl<T> Default for Answers<T> {
 }
 
 impl<T: Send + 'static> Answers<T> {
-    /// Makes a handle that gives one answer, from any thread.
+    /// Makes a handle that gives one answer, from any thread, or none.
     pub fn answer(&self, context: &Context) -> Answer<T> {
-        Answer { sender: self.sender.clone(), context: context.clone() }
+        Answer { sender: self.sender.clone(), context: context.clone(), substitute: None }
     }
 
-    /// Runs `work` on a thread of the given name. Its result arrives here.
-    ///
-    /// # Errors
-    /// If the system cannot start a thread.
+    /// Makes a handle that gives one answer, from any thread. If it is dropped before, `substitute` makes the answer from
+    /// the reason.
+    pub fn answer_or(
+        &self,
+        context: &Context,
+        substitute: impl FnOnce(String) -> T + Send + 'static,
+    ) -> Answer<T> {
+        let substitute: Substitute<T> = Box::new(substitute);
+        Answer { sender: self.sender.clone(), context: context.clone(), substitute: Some(substitute) }
+    }
+
+    /// Runs `work` on a thread of the given name. Its result arrives here; if there is none, what `substitute` makes of
+    /// the reason.
     pub fn ask(
         &self,
         thread: &str,
         context: &Context,
         work: impl FnOnce() -> T + Send + 'static,
-    ) -> io::Result<()> {
-        let answer = self.answer(context);
-        std::thread::Builder::new().name(thread.to_owned()).spawn(move || answer.give(work()))?;
-        Ok(())
+        substitute: impl FnOnce(String) -> T + Send + 'static,
+    ) {
+        self.answer_or(context, substitute).give_from(thread, work);
     }
 
     /// Waits for an answer that has been asked for.
@@ -53,33 +77,76 @@ impl<T: Send + 'static> Answers<T> {
 pub struct Answer<T> {
     sender: Sender<T>,
     context: Context,
+    substitute: Option<Substitute<T>>,
 }
 
 impl<T> Answer<T> {
     /// Gives the answer.
-    pub fn give(self, value: T) {
-        // If the window was closed, nobody receives it.
-        let _ = self.sender.send(value);
-        self.wake();
+    pub fn give(mut self, value: T) {
+        self.substitute = None;
+        self.give_one(value);
     }
 
     /// Gives one of several answers.
     pub fn give_one(&self, value: T) {
+        // If the window was closed, nobody receives it.
         let _ = self.sender.send(value);
         self.context.request_repaint();
     }
 
     /// Wakes the window without giving an answer.
-    pub fn wake(self) {
+    pub fn wake(mut self) {
+        self.substitute = None;
         self.context.request_repaint();
     }
+
+    /// Gives the substitute, if there is one.
+    fn fail(mut self, reason: String) {
+        if let Some(substitute) = self.substitute.take() {
+            self.give_one(substitute(reason));
+        }
+    }
+}
+
+impl<T: Send + 'static> Answer<T> {
+    /// Gives the result of `work`, which is done on a thread of the given name.
+    pub fn give_from(self, thread: &str, work: impl FnOnce() -> T + Send + 'static) {
+        let answer = Arc::new(Mutex::new(Some(self)));
+        let own = Arc::clone(&answer);
+        let run = move || {
+            let outcome = caught(work);
+            match (taken(&own), outcome) {
+                (Some(answer), Ok(value)) => answer.give(value),
+                (Some(answer), Err(reason)) => answer.fail(reason),
+                (None, _) => {}
+            }
+        };
+        if let Err(error) = thread::Builder::new().name(thread.to_owned()).spawn(run)
+            && let Some(answer) = taken(&answer)
+        {
+            answer.fail(format!("no thread could be started ({error})"));
+        }
+    }
+}
+
+impl<T> Drop for Answer<T> {
+    fn drop(&mut self) {
+        if let Some(substitute) = self.substitute.take() {
+            let reason =
+                if thread::panicking() { "the program failed" } else { "nothing has done it; try again" };
+            self.give_one(substitute(reason.to_owned()));
+        }
+    }
+}
+
+fn taken<T>(answer: &Mutex<Option<T>>) -> Option<T> {
+    answer.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use eframe::egui::RawInput;
-    use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     #[test]
@@ -104,7 +171,33 @@ mod tests {
             assert!(wakes.load(Ordering::Relaxed) > before, "{name}");
         }
         assert_eq!([answers.take(), answers.take(), answers.take()], [Some(1), Some(2), None]);
-        answers.ask("test", &context, || 3).unwrap();
+        answers.ask("test", &context, || 3, |_| 4);
         assert_eq!(answers.wait(), Some(3));
+    }
+
+    #[test]
+    fn work_that_panics_is_answered_with_its_substitute() {
+        let (context, answers) = (Context::default(), Answers::<Result<u32, String>>::default());
+        answers.ask("test", &context, || panic!("on purpose"), Err);
+        assert_eq!(answers.wait(), Some(Err("the program failed (on purpose)".to_owned())));
+    }
+
+    #[test]
+    fn an_answer_that_is_dropped_is_given_by_its_substitute() {
+        let (context, answers) = (Context::default(), Answers::default());
+        let answer = || answers.answer_or(&context, Err::<u32, String>);
+        drop(answer());
+        assert_eq!(answers.take(), Some(Err("nothing has done it; try again".to_owned())));
+        let own = answer();
+        let fallen = caught::<()>(move || {
+            let _own = own;
+            panic!("on purpose")
+        });
+        assert_eq!(fallen, Err("the program failed (on purpose)".to_owned()));
+        assert_eq!(answers.take(), Some(Err("the program failed".to_owned())));
+        answer().give(Ok(1));
+        answer().wake();
+        drop(answers.answer(&context));
+        assert_eq!([answers.take(), answers.take()], [Some(Ok(1)), None], "once, or not at all");
     }
 }

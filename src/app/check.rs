@@ -59,9 +59,10 @@ impl Check {
             });
             Checked { number, path: checked, outcome }
         };
-        if self.answers.ask("check", context, work).is_ok() {
-            self.waiting = Some(path);
-        }
+        let asked = path.clone();
+        let substitute = move |reason: String| Checked { number, path: asked, outcome: Err(reason) };
+        self.answers.ask("check", context, work, substitute);
+        self.waiting = Some(path);
     }
 
     /// Takes findings. Returns the picture that was checked, or why it could not be.

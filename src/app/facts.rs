@@ -5,6 +5,7 @@ use super::model::Model;
 use super::model::device::Device;
 use super::model::document::Document;
 use super::model::further::Further;
+use super::model::origin::Source;
 use super::model::show::Show;
 use super::model::slots::SlotNumber;
 use super::model::view::Mode;
@@ -138,7 +139,10 @@ impl Facts {
             Command::NoExposure if self.model.view.tone.exposure == 0.0 => {
                 no("The picture is already shown as bright as it is saved")
             }
-            Command::NextRay | Command::PreviousRay if !self.has_paths => {
+            Command::Reload if !matches!(document.origin.source, Source::File(_)) => {
+                no("This picture is not from a scene file; open one first")
+            }
+            Command::NextRay | Command::PreviousRay | Command::ClearPaths if !self.has_paths => {
                 no("No paths are listed; point at a pixel and press T first")
             }
             Command::ListPaths if self.model.view.slots.looked().is_some() => {
@@ -246,9 +250,13 @@ impl Facts {
                 Some(format!("Slot {number} is empty; press M to keep the picture in the first free slot"))
             }
             SlotCommand::LookLive if slots.looked().is_none() => no("The live picture is already shown"),
-            SlotCommand::BringBack => {
-                slots.gone().is_none().then(|| "No slot has been deleted or replaced yet".to_owned())
-            }
+            SlotCommand::BringBack => match (slots.gone(), slots.place_back()) {
+                (None, _) => no("No slot has been deleted or replaced yet"),
+                (Some(number), None) => Some(format!(
+                    "Slot {number} is still being read from disk, and no other slot is free; try again in a moment"
+                )),
+                (Some(_), Some(_)) => None,
+            },
             SlotCommand::Keep | SlotCommand::KeepIn(_) | SlotCommand::Look(_) | SlotCommand::LookLive => None,
             _ => match slots.chosen() {
                 None => no("No picture is kept; press M to keep this one"),

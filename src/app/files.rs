@@ -57,7 +57,7 @@ impl Files {
     /// Writes the film on the screen at the next end of a pass.
     pub fn save(&self, context: &Context, subject: &Subject<'_>, (format, path): (OutputFormat, PathBuf)) {
         let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
-        let answer = self.saved.answer(context);
+        let answer = self.saved.answer_or(context, Err);
         subject.inspect(move |film| {
             answer.give(if film.sample_count() == 0 {
                 Err("nothing has been traced yet; try again in a moment".to_owned())
@@ -74,7 +74,7 @@ impl Files {
     /// Writes a part of the picture on the screen as PNG.
     pub fn save_crop(&self, context: &Context, subject: &Subject<'_>, crop: Crop, path: PathBuf) {
         let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
-        let answer = self.saved.answer(context);
+        let answer = self.saved.answer_or(context, Err);
         subject.inspect(move |film| {
             let mut description = describe(film);
             description.set(key::CROP, crop.words());
@@ -122,10 +122,8 @@ impl Files {
             checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
             Ok(path)
         };
-        if let Err(error) = self.saved.ask("files", context, work) {
-            let reason = format!("the scene cannot be written: no thread could be started ({error})");
-            self.saved.answer(context).give(Err(reason));
-        }
+        let substitute = |reason: String| Err(format!("the scene cannot be written: {reason}"));
+        self.saved.ask("files", context, work, substitute);
     }
 
     /// Reads a scene file, picture or film.
@@ -138,10 +136,11 @@ impl Files {
                 path,
             })
         };
-        if let Err(error) = self.opened.ask("files", context, work) {
-            let reason = format!("the file cannot be read: no thread could be started ({error})");
-            self.opened.answer(context).give(Err(NotOpened { path: opened, reason, is_picture: false }));
-        }
+        let substitute = move |reason: String| {
+            let reason = format!("{} cannot be read: {reason}", opened.display());
+            Err(NotOpened { path: opened, reason, is_picture: false })
+        };
+        self.opened.ask("files", context, work, substitute);
     }
 
     /// Reads the film of `job`, which is the job of `document`.
@@ -181,10 +180,7 @@ fn read<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, OpenError> + Send + 'static,
 ) {
     let work = move || work().map_err(|error| error.to_string());
-    if let Err(error) = answers.ask("files", context, work) {
-        let reason = format!("the file cannot be read: no thread could be started ({error})");
-        answers.answer(context).give(Err(reason));
-    }
+    answers.ask("files", context, work, |reason| Err(format!("the file cannot be read: {reason}")));
 }
 
 #[cfg(test)]

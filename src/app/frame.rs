@@ -30,6 +30,7 @@ impl Window {
         self.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
+        self.follow_scene_file(&context);
         self.receive_recovered();
         self.receive_slot_files();
         self.go_on_flying(&context);
@@ -109,6 +110,7 @@ impl Window {
             has_code: remembered.has_code && self.model.has_panels(),
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
             is_cropping: view.crop.is_some(),
+            has_paths: self.paths.len() > 0,
             is_at_slot: view.slots.looked().is_some(),
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
@@ -116,16 +118,19 @@ impl Window {
             has_sight: self.sight.is_some(),
             is_presenting: presentation.is_some(),
         };
-        // Escape closes a finding first.
+        // Escape closes a finding first, or else the card with what other windows left.
         let has_finding = self.slot_actions.verdict.is_open() || self.check.is_open();
-        if has_finding
+        let has_card = has_recovered && presentation.is_none() && !keyboard.has_code;
+        if (has_finding || has_card)
             && !self.had_focus
             && context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape))
         {
             if self.slot_actions.verdict.is_open() {
                 self.slot_actions.verdict.close();
-            } else {
+            } else if has_finding {
                 self.check.close();
+            } else {
+                self.close_recovered();
             }
         }
         let is_at_slot = keyboard.is_at_slot;
@@ -241,7 +246,10 @@ impl Window {
             self.slot_actions.picture.follow(context, kept, &view.of_film(self.second.film()));
         }
         let is_live_moving = is_moving && !subject.is_kept();
-        self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
+        let layer = view.show().layer();
+        if let Some(reason) = self.layers.follow(context, layer, subject.document(), is_live_moving) {
+            self.toasts.bad(format!("This view cannot be traced: {reason}"));
+        }
         if subject.has_samples() {
             if let Some(named) = self.pending_save.take() {
                 self.files.save(context, &subject, named);
@@ -308,6 +316,13 @@ impl eframe::App for Window {
         let begin = Instant::now();
         self.ui_in(ui);
         self.frame_times.ui = begin.elapsed();
+    }
+
+    fn raw_input_hook(&mut self, context: &egui::Context, raw: &mut egui::RawInput) {
+        input::part_at_tab(&mut self.late_events, &mut raw.events);
+        if !self.late_events.is_empty() {
+            context.request_repaint();
+        }
     }
 
     /// Also called while the window is hidden.

@@ -341,4 +341,24 @@ mod tests {
         assert_eq!(harness.state().commands, [Command::Show(Show::Error)]);
         drawings.keep("info_views");
     }
+
+    #[test]
+    fn spheres_and_materials_are_counted_as_edited() {
+        let mut harness = panel("--scene field:20 --size 32x18");
+        let told = |harness: &Harness<'_, Panel>| {
+            let scene = harness.state().facts.document().scene();
+            let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
+            assert!(harness.query_by_label(&words).is_some(), "{words}");
+            words
+        };
+        let before = told(&harness);
+        let document = &mut harness.state_mut().facts.model.document;
+        let mut scene = document.scene().clone();
+        let material = scene.materials[0].clone();
+        scene.materials.extend([material.clone(), material]);
+        scene.spheres.truncate(4);
+        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+        harness.run_steps(3);
+        assert_ne!(told(&harness), before);
+    }
 }

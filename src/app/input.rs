@@ -24,6 +24,8 @@ pub struct Keyboard {
     pub is_other_view: bool,
     /// A part of the picture is being marked.
     pub is_cropping: bool,
+    /// Paths are listed and drawn over the live picture.
+    pub has_paths: bool,
     /// A slot is shown instead of the live picture.
     pub is_at_slot: bool,
     /// A sphere is selected.
@@ -100,8 +102,8 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if also(Key::Backspace) {
         commands.push(Command::DeleteSphere);
     }
-    // Escape first leaves a control, then closes the code, the first steps, then a crop, then deselects, then leaves a
-    // sight, a comparison or another view, then a slot, then a presentation, then full-screen mode.
+    // Escape first leaves a control, then closes the code, the first steps, then a crop, then clears the paths, then
+    // deselects, then leaves a sight, a comparison or another view, then a slot, then a presentation, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) {
         if keyboard.has_code {
             commands.push(Command::Code);
@@ -109,6 +111,8 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
             commands.push(Command::FirstSteps);
         } else if keyboard.is_cropping {
             commands.push(Command::Crop);
+        } else if keyboard.has_paths && !keyboard.is_at_slot {
+            commands.push(Command::ClearPaths);
         } else if keyboard.has_selection && !keyboard.is_at_slot {
             commands.push(Command::Deselect);
         } else if keyboard.has_sight {
@@ -124,6 +128,23 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         }
     }
     true
+}
+
+/// Leaves Tab, and what is typed after it, to frames of their own: `late` has the events that wait. egui moves the keyboard
+/// on before anything is drawn, and all that was typed in one frame would go to the next control.
+pub fn part_at_tab(late: &mut Vec<egui::Event>, events: &mut Vec<egui::Event>) {
+    late.append(events);
+    let is_typed = |event: &egui::Event| {
+        matches!(event, egui::Event::Text(_) | egui::Event::Paste(_) | egui::Event::Key { pressed: true, .. })
+    };
+    let is_tab = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::Tab, pressed: true, .. });
+    let mut typed = late.iter().enumerate().filter(|(_, event)| is_typed(event));
+    let end = match typed.next() {
+        Some((_, first)) if is_tab(first) => typed.next(),
+        _ => typed.find(|(_, event)| is_tab(event)),
+    };
+    let end = end.map_or(late.len(), |(at, _)| at);
+    events.extend(late.drain(..end));
 }
 
 /// With Alt, a digit is known by its place on the keyboard: with Shift as well, it types something else.

@@ -28,6 +28,7 @@ impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut egui::Ui) {
         let facts = self.facts();
+        self.dialogs.begin(ui.ctx());
         let Window {
             model,
             main,
@@ -201,7 +202,7 @@ impl Window {
                 }
                 self.sizer.ui(ui, room, &mut self.commands);
             }
-            self.toasts.ui(ui, room);
+            self.toasts.ui(ui, room, &mut self.commands);
         }
         if let Some(text) = widgets::take_told(ui.ctx()) {
             self.toasts.good(text);

@@ -39,6 +39,7 @@ mod perform;
 mod perform_flights;
 mod perform_present;
 mod perform_recovery;
+mod perform_scene_file;
 mod perform_sight;
 mod perform_slot_files;
 mod perform_slots;
@@ -53,6 +54,7 @@ mod queries;
 mod receive;
 mod recovery;
 mod rescue;
+mod scene_file;
 mod second;
 mod settings;
 mod sight;
@@ -208,6 +210,17 @@ mod tests {
     /// The window of a command line, without a display.
     pub(super) fn window(words: &str) -> Window {
         Window::new(options(words)).unwrap()
+    }
+
+    /// Makes a name that the system refuses to open, under another name as well: it links to a link to itself, in the
+    /// directory that is returned.
+    #[cfg(unix)]
+    pub(super) fn unreadable(path: &std::path::Path) -> tempfile::TempDir {
+        let elsewhere = tempfile::tempdir().unwrap();
+        let link = elsewhere.path().join("link");
+        std::os::unix::fs::symlink(&link, &link).unwrap();
+        std::os::unix::fs::symlink(link, path).unwrap();
+        elsewhere
     }
 
     fn options(words: &str) -> WindowOptions {

@@ -26,8 +26,8 @@ struct Asked {
 /// The timelines of one packet.
 struct Traced {
     number: u64,
-    /// Without and with refill.
-    timelines: [Timeline; 2],
+    /// Without and with refill, or why there are none.
+    timelines: Result<[Timeline; 2], String>,
 }
 
 /// The panel's timelines, recorded by a background thread.
@@ -77,17 +77,18 @@ impl Packet {
                 (0..SAMPLES).map(|sample| recorder.record(pixel, sample)).collect()
             };
             let paths: Vec<_> = (0..lanes).map(paths_of).collect();
-            Traced { number, timelines: [false, true].map(|refill| timeline(job.scene(), &paths, refill)) }
+            let timelines = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
+            Traced { number, timelines: Ok(timelines) }
         };
-        if self.answers.ask("packet", context, record).is_ok() {
-            self.asked = Some(Asked { document: document.clone(), lanes });
-        }
+        let substitute = move |reason: String| Traced { number, timelines: Err(reason) };
+        self.answers.ask("packet", context, record, substitute);
+        self.asked = Some(Asked { document: document.clone(), lanes });
     }
 
     /// The numbers of steps without and with refill; `None` until they are recorded.
     pub fn steps(&self) -> Option<[usize; 2]> {
-        let traced = self.traced.as_ref()?;
-        Some([traced.timelines[0].len(), traced.timelines[1].len()])
+        let [without, with] = self.traced.as_ref()?.timelines.as_ref().ok()?;
+        Some([without.len(), with.len()])
     }
 
     /// Draws the panel.
@@ -112,12 +113,12 @@ impl Packet {
                         commands.push(Command::Packet);
                     }
                 });
-                match &self.traced {
-                    Some(traced) => paint(ui, &traced.timelines),
-                    None => {
-                        ui.centered_and_justified(|ui| ui.label(RichText::new("Recording paths…").color(weak)));
-                    }
-                }
+                let words = match self.traced.as_ref().map(|traced| &traced.timelines) {
+                    Some(Ok(timelines)) => return paint(ui, timelines),
+                    Some(Err(reason)) => format!("No paths: {reason}"),
+                    None => "Recording paths…".to_owned(),
+                };
+                ui.centered_and_justified(|ui| ui.label(RichText::new(words).color(weak)));
             },
         );
     }
@@ -251,6 +252,17 @@ mod tests {
         harness.get_by_label("Close").click();
         harness.run_steps(2);
         assert_eq!(harness.state().1, [Command::Packet]);
+    }
+
+    #[test]
+    fn it_is_said_why_no_paths_were_recorded() {
+        let mut harness = panel("red-sphere", 2, [700.0, 400.0]);
+        assert!(harness.state().0.steps().is_some());
+        let timelines = Err("the program failed (on purpose)".to_owned());
+        harness.state_mut().0.traced = Some(Traced { number: 1, timelines });
+        harness.run_steps(3);
+        assert!(harness.query_by_label("No paths: the program failed (on purpose)").is_some());
+        assert_eq!(harness.state().0.steps(), None);
     }
 
     #[test]

@@ -5,9 +5,9 @@ use super::dialogs::{Dialog, Palette, PathBox, Purpose};
 use super::facts::neighbour;
 use super::model::Model;
 use super::model::companion;
-use super::model::device::{self, Device};
+use super::model::device::Device;
 use super::model::first_steps::Step;
-use super::model::origin::{Origin, Source};
+use super::model::origin::Origin;
 use super::model::remembered::Bookmark;
 use super::model::show::Show;
 use super::model::tone::Tone;
@@ -17,6 +17,7 @@ use super::plot;
 use super::theme;
 use super::title_bar;
 use super::window::Window;
+use super::wording::lower_first;
 use crate::output::OutputFormat;
 use eframe::egui::{self, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -49,6 +50,7 @@ impl Window {
             Command::Fresh => self.start_fresh(),
             Command::Open => self.ask_path(Purpose::Open),
             Command::Recent(place) => self.open_recent(context, place),
+            Command::Reload => self.scene_file.reload(context, &self.model.document.origin),
             // While a part of the picture is marked, it is what is saved.
             Command::Save(OutputFormat::Png) if self.model.view.crop.flatten().is_some() => {
                 self.ask_path(Purpose::SaveCrop)
@@ -77,7 +79,10 @@ impl Window {
                 let bookmarks = &mut self.model.remembered.bookmarks;
                 let document = &self.model.document;
                 let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-                let mut names = (1..).map(|number| format!("{} {number}", document.title()));
+                // Of a stage, the section is enough.
+                let place =
+                    document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
+                let mut names = (1..).map(|number| format!("{place} view {number}"));
                 let name = names.find(is_free).unwrap_or_default();
                 bookmarks.push(Bookmark::new(name, &document.camera));
                 self.toasts.good("Bookmarked; see the Camera panel");
@@ -100,6 +105,7 @@ impl Window {
             | Command::ResetSpheres => self.perform_on_spheres(command),
             Command::NextRay => self.paths.step(true),
             Command::PreviousRay => self.paths.step(false),
+            Command::ClearPaths => self.paths.forget(),
             Command::Show(show) => self.model.view.choose(show),
             Command::Wipe => {
                 let with = if self.document().stage().is_none() { With::Book } else { With::Stage };
@@ -314,8 +320,10 @@ impl Window {
     }
 
     pub(super) fn ask_path(&mut self, purpose: Purpose) {
-        let mut name = self.subject().document().name();
+        let subject = self.subject();
+        let mut name = subject.document().name();
         match purpose {
+            Purpose::SaveScene => name = subject.document().scene_name(),
             Purpose::SaveCrop => name.push_str("-crop"),
             Purpose::SaveFlight => name.push_str("-path"),
             _ => {}
@@ -362,36 +370,6 @@ impl Window {
             Purpose::ReferenceFilm => self.files.load_reference(context, path),
         }
     }
-
-    fn copy_command(&mut self, context: &egui::Context) {
-        // As many as a picture saved now would have.
-        let subject = self.subject();
-        let document = subject.document();
-        let samples = match subject.samples() {
-            samples @ 1.. if subject.is_full() => samples,
-            _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
-        };
-        let device = self.model.remembered.device;
-        // Software adapters are used only if they are named.
-        let is_gpu = matches!(device, Device::Gpu | Device::Both);
-        let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
-        let adapter = adapter.map(|adapter| adapter.name.as_str());
-        let line = document.command_line(samples.max(1), device.name(), adapter);
-        context.copy_text(line);
-        let is_in_no_file = document.has_changed_scene()
-            || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
-        let is_lost = is_in_no_file && document.checked.file().is_none();
-        self.toasts.good(if is_lost {
-            "Copied; the scene has no file yet: save the scene file, which the command reads"
-        } else {
-            "Copied: the command line that renders this picture"
-        });
-    }
-}
-
-fn lower_first(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use super::command::Command;
 use super::flight::{self, Flight};
-use super::model::origin::Origin;
 use super::window::Window;
 use crate::animation::Keyframe;
 use crate::recipe::Recipe;
@@ -73,9 +72,8 @@ impl Window {
             self.toasts.good(format!("The path has {frames} frames; render them with --frames 0..{frames}"));
         }
         let mut document = self.document().clone();
-        let Origin { recipe, source, scene } = &*document.origin;
-        let recipe = Recipe { keyframes, ..recipe.clone() };
-        document.origin = Arc::new(Origin { recipe, source: source.clone(), scene: Arc::clone(scene) });
+        let recipe = Recipe { keyframes, ..document.origin.recipe.clone() };
+        document.origin = Arc::new(document.origin.with_recipe(recipe));
         self.files.save_scene(context, path, &document);
     }
 

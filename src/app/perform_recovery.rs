@@ -210,6 +210,12 @@ impl Window {
         self.model.has_recovered = !self.recovery.left.is_empty();
     }
 
+    /// Closes the card with what other windows left; the next window offers it again.
+    pub(super) fn close_recovered(&mut self) {
+        self.recovery.left.clear();
+        self.model.has_recovered = false;
+    }
+
     /// Has settings, kept pictures, the film and what the window shows written if it is time, also while the window is
     /// hidden.
     pub(super) fn write_recovery(&mut self, context: &Context) {

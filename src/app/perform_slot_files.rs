@@ -2,7 +2,7 @@
 
 use super::model::slots::{BYTES_LIMIT, Coming, SlotNumber};
 use super::recovery::RecoveryFiles;
-use super::slot_files::{Arrival, Entry, Keeper, News};
+use super::slot_files::{Arrival, Entry, Keeper, Listing, News};
 use super::window::Window;
 use crate::describe::counted;
 use eframe::egui::Context;
@@ -16,8 +16,23 @@ impl Window {
     /// Waits for the kept pictures in `files`, and keeps those of this window there from now on. Those of all windows may
     /// take `limit` bytes.
     pub(super) fn begin_slots(&mut self, files: &RecoveryFiles, limit: u64) {
+        let Listing { mut entries, faults } = match files.slots().listing() {
+            Ok(listing) => listing,
+            Err(reason) => match files.set_slots_aside() {
+                Ok(path) => {
+                    let place = path.display();
+                    let words = format!("{reason}; they stay in {place}, and later windows offer them");
+                    self.toasts.bad(format!("Kept pictures do not come back: {words}"));
+                    Listing::default()
+                }
+                Err(error) => {
+                    let words = format!("{reason}; nor can new ones be kept: {error}");
+                    self.toasts.bad(format!("Kept pictures do not come back: {words}"));
+                    return;
+                }
+            },
+        };
         let mut keeper = Keeper::new(files.slots().clone(), limit);
-        let (mut entries, faults) = files.slots().entries();
         for fault in faults {
             self.toasts.bad(format!("Not all kept pictures come back: {fault}"));
         }
@@ -87,9 +102,7 @@ impl Window {
     /// Says that a kept picture does not come back, and moves its film to where the next window offers it.
     fn leave_out(&mut self, number: SlotNumber, coming: &Coming, reason: &str) {
         let mut place = String::new();
-        if let Some(files) =
-            self.recovery.files.as_ref().filter(|files| files.slots().film(&coming.id).exists())
-        {
+        if let Some(files) = self.recovery.files.as_ref().filter(|files| files.slots().may_have(&coming.id)) {
             match (files.set_slot_aside(&coming.id), &mut self.recovery.keeper) {
                 (Ok(path), _) => place = format!("; it is kept as {}", path.display()),
                 (Err(_), Some(keeper)) => keeper.spare(Entry::awaited(number, coming)),
@@ -161,7 +174,9 @@ impl Window {
         }
         let mut left = self.recovery.left.remove(index);
         let (mut ids, mut stay) = (Vec::new(), None);
-        for entry in left.kept().to_vec() {
+        let entries = left.kept().to_vec();
+        let count = entries.len();
+        for entry in entries {
             let Some(number) = self.place_for(&entry) else {
                 stay = Some("all nine slots are in use; delete one and open them again".to_owned());
                 break;
@@ -184,7 +199,7 @@ impl Window {
         }
         left.count_kept();
         if let Some(reason) = stay {
-            let kept = counted(left.kept().len() as u64, "kept picture");
+            let kept = counted((count - ids.len()) as u64, "kept picture");
             self.toasts.bad(format!("Not opened: {kept}: {reason}"));
         }
         self.recovery.put_back(index, left);
@@ -193,182 +208,4 @@ impl Window {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::kept::Kept;
-    use crate::app::model::kept_view::{KeptView, ShownSlots};
-    use crate::app::model::slots::Slot;
-    use crate::app::model::view::ViewState;
-    use crate::app::recovery::Left;
-    use crate::app::tests::window;
-    use crate::film::Film;
-    use std::path::Path;
-
-    const STAGE: &str = "weekender --stage normals --size 16x9 --samples 1";
-
-    fn entry(number: Option<SlotNumber>, id: &str, size: [u32; 2]) -> Entry {
-        let (id, name) = (id.to_owned(), format!("picture {id}"));
-        Entry { number, id, name, size, samples: 1, has_own_size: true }
-    }
-
-    /// Files in the directory with these kept pictures.
-    fn holding(directory: &Path, entries: &[Entry]) -> RecoveryFiles {
-        let files = RecoveryFiles::claim(directory).unwrap();
-        files.slots().write_list(entries).unwrap();
-        for entry in entries {
-            std::fs::write(files.slots().film(&entry.id), "a film").unwrap();
-        }
-        files
-    }
-
-    #[test]
-    fn a_tenth_picture_stays_on_disk_under_its_name() {
-        let directory = tempfile::tempdir().unwrap();
-        let of_slot = |number: SlotNumber| entry(Some(number), &number.to_string(), [4, 2]);
-        let mut entries: Vec<Entry> = SlotNumber::ALL.into_iter().map(of_slot).collect();
-        entries.push(entry(None, "tenth", [4, 2]));
-        let files = holding(directory.path(), &entries);
-        let mut window = window(STAGE);
-        window.begin_slots(&files, u64::MAX);
-        assert_eq!(window.messages(), ["picture tenth stays on disk: all nine slots are in use"]);
-        window.finish_slots();
-        assert_eq!(files.slots().entries(), (entries, vec![]), "the next window may have room for it");
-    }
-
-    #[test]
-    fn a_picture_that_could_not_be_written_lasts_once_it_is() {
-        let mut window = window(STAGE);
-        let kept = kept(&window);
-        let mut is_passing_after = |news| {
-            window.take_news(news);
-            window.model.view.slots.is_passing(&kept)
-        };
-        let id = || kept.id.clone();
-        assert!(is_passing_after(News::NotWritten { id: Some(id()), words: None }));
-        assert!(!is_passing_after(News::Written(id())));
-    }
-
-    #[test]
-    fn what_another_window_left_stays_there_if_there_is_no_room() {
-        for (free, size, reason) in [
-            (0, [4, 2], "all nine slots are in use; delete one and open them again"),
-            (1, [20_000, 10_000], "the picture takes "),
-        ] {
-            let directory = tempfile::tempdir().unwrap();
-            drop(holding(directory.path(), &[entry(None, "left", size)]));
-            let mut window = window(STAGE);
-            window.recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
-            window.recovery.left = Left::all_in(directory.path());
-            for number in &SlotNumber::ALL[free..] {
-                let coming = entry(Some(*number), &number.to_string(), [4, 2]).coming();
-                window.model.view.slots.expect(*number, coming);
-            }
-            window.take_left_slots(&Context::default(), 0);
-            let [told] = window.messages().try_into().unwrap();
-            assert!(told.starts_with(&format!("Not opened: 1 kept picture: {reason}")), "{told}");
-            assert_eq!(window.recovery.left[0].kept().len(), 1);
-            assert_eq!(window.model.view.slots.free().count(), free);
-        }
-    }
-
-    #[test]
-    fn a_list_of_pictures_that_are_gone_is_told_of_once() {
-        let directory = tempfile::tempdir().unwrap();
-        let files = holding(directory.path(), &[entry(Some(SlotNumber::ALL[2]), "gone", [4, 2])]);
-        std::fs::remove_file(files.slots().film("gone")).unwrap();
-        let mut window = window(STAGE);
-        window.begin_slots(&files, u64::MAX);
-        let told = window.messages();
-        let begin = "Not all kept pictures come back: the film of slot 3, picture gone, is missing";
-        assert!(told.len() == 1 && told[0].starts_with(begin), "{told:?}");
-        assert!(!files.slots().path().exists());
-    }
-
-    #[test]
-    fn a_picture_goes_to_its_own_slot_and_what_is_in_no_list_takes_what_is_left() {
-        let directory = tempfile::tempdir().unwrap();
-        let [one, two, three, ..] = SlotNumber::ALL;
-        let listed = [entry(Some(three), "c", [4, 2]), entry(Some(one), "a", [4, 2])];
-        let files = holding(directory.path(), &listed);
-        std::fs::write(files.slots().film("b"), "a film").unwrap();
-        let mut window = window(STAGE);
-        window.begin_slots(&files, u64::MAX);
-        let slots = &window.model.view.slots;
-        let awaited: Vec<_> = slots.awaited().map(|(number, coming)| (number, coming.id.as_str())).collect();
-        assert_eq!(awaited, [(one, "a"), (two, "b"), (three, "c")]);
-        assert!(window.messages().is_empty(), "{:?}", window.messages());
-    }
-
-    /// What a window remembers that showed this slot.
-    fn shown(number: SlotNumber, kept: &Arc<Kept>) -> ShownSlots {
-        let mut view = ViewState::default();
-        view.slots.put(number, Slot { name: String::new(), kept: Arc::clone(kept) });
-        view.look(Some(number));
-        KeptView::of(&view).slots()
-    }
-
-    fn kept(window: &Window) -> Arc<Kept> {
-        let mut film = Film::new(4, 2, 1);
-        film.record(0..1, 0).unwrap();
-        Arc::new(Kept::new(window.document().clone(), film, Arc::default(), None))
-    }
-
-    #[test]
-    fn the_picture_that_is_to_be_shown_is_read_first() {
-        let directory = tempfile::tempdir().unwrap();
-        let [one, two, three, ..] = SlotNumber::ALL;
-        let entries = [one, two, three].map(|number| entry(Some(number), &number.to_string(), [4, 2]));
-        let files = holding(directory.path(), &entries);
-        let mut window = window(STAGE);
-        window.begin_slots(&files, u64::MAX);
-        window.recovery.shown_slots = Some(shown(three, &kept(&window)));
-        window.read_slots(&Context::default());
-        let (begin, mut read) = (Instant::now(), Vec::new());
-        while read.len() < 3 {
-            assert!(begin.elapsed() < Duration::from_secs(60), "only {read:?}");
-            std::thread::sleep(Duration::from_millis(1));
-            read.extend(window.recovery.reader.take().map(|arrival| arrival.id));
-        }
-        assert_eq!(read, ["3", "1", "2"]);
-    }
-
-    #[test]
-    fn slots_are_shown_again_once_their_pictures_are_there() {
-        let mut window = window(STAGE);
-        let (one, kept) = (SlotNumber::ALL[0], kept(&window));
-        window.model.view.slots.expect(one, entry(Some(one), "1", [4, 2]).coming());
-        window.recovery.shown_slots = Some(shown(one, &kept));
-        window.show_slots_again();
-        assert!(window.looked().is_none() && window.recovery.shown_slots.is_some());
-        window.model.view.slots.arrive("1", Some(kept));
-        window.show_slots_again();
-        assert_eq!(window.looked(), Some(one));
-        assert!(window.recovery.shown_slots.is_none(), "once");
-    }
-
-    #[test]
-    fn a_picture_that_cannot_be_read_is_kept_under_another_name() {
-        let directory = tempfile::tempdir().unwrap();
-        let three = SlotNumber::ALL[2];
-        let entry = entry(Some(three), "c", [4, 2]);
-        let mut window = window(STAGE);
-        window.recovery.files = Some(holding(directory.path(), std::slice::from_ref(&entry)));
-        let mut told = || {
-            window.leave_out(three, &entry.coming(), "it is damaged");
-            window.messages().pop().unwrap()
-        };
-        let first = told();
-        let begin = "Slot 3 (picture c) does not come back: it is damaged";
-        let aside =
-            first.strip_prefix(&format!("{begin}; it is kept as ")).unwrap_or_else(|| panic!("{first}"));
-        assert_eq!(std::fs::read_to_string(aside).unwrap(), "a film");
-        assert_eq!(told(), begin, "it is gone from its place");
-    }
-
-    #[test]
-    fn it_is_said_why_a_picture_is_not_written() {
-        let mut window = window(STAGE);
-        window.take_news(News::NotWritten { id: None, words: Some("the disk is full".to_owned()) });
-        assert_eq!(window.messages(), ["the disk is full"]);
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@ use super::model::slots::{BYTES_LIMIT, Slot, SlotNumber};
 use super::model::view::{Mode, With};
 use super::slots::{Copied, Reopened};
 use super::window::Window;
+use super::wording::lower_first;
 use crate::describe::counted;
 use crate::film::Film;
 use crate::memory::words;
@@ -157,7 +158,7 @@ impl Window {
         let view = &self.model.view;
         let compared = view.compared_slot().filter(|_| view.mode() == Some(Mode::Difference));
         if let Some(reason) = compared.and_then(|number| self.facts().slot_of_other_size(number)) {
-            self.toasts.good(format!("No difference: {}{}", reason[..1].to_lowercase(), &reason[1..]));
+            self.toasts.good(format!("No difference: {}", lower_first(&reason)));
             self.model.view.end_comparison();
         }
     }

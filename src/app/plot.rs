@@ -5,11 +5,11 @@ use super::command::Command;
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
-use super::widgets::compact;
+use super::widgets::{compact, number};
 use crate::progressive::{HistoryPoint, Status, Stop};
 use crate::statistics::fit::{Point, Prediction};
 use eframe::egui::{
-    self, Align2, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo,
+    self, Align2, Color32, CursorIcon, Pos2, Rangef, Rect, RichText, Sense, Ui, Vec2, WidgetInfo,
 };
 use egui_plot::{
     AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints,
@@ -68,9 +68,8 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
         );
         if let Some(target) = target {
             ui.label(RichText::new("target").small());
-            let number = DragValue::new(target).range(TARGETS).speed(1e-4).max_decimals(6);
-            ui.add(number.update_while_editing(false))
-                .accessible_name("Target error")
+            let place = ("Target error", egui::vec2(64.0, ui.spacing().interact_size.y));
+            number(ui, place, target, TARGETS, |drag| drag.speed(1e-4).max_decimals(6))
                 .on_hover_text("The render ends at this error; the line in the plot can be dragged, too");
         } else {
             let button = ui.add(egui::Button::new("Set a target").small());
@@ -103,6 +102,8 @@ fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
     let curves = curves(&status.history);
     let all = points(status);
     let target = *stop_at;
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let name_size = ui.painter().layout_no_wrap(GUIDE.to_owned(), font, weak).size();
     let prediction = prediction(status, target);
     let plot = Plot::new("error")
         .allow_drag(false)
@@ -129,7 +130,8 @@ fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
     let response = plot.show(ui, |plot| {
         // The axes stay fixed while the target is dragged.
         plot.set_auto_bounds(!is_held);
-        guide(plot, &all, weak);
+        let lines: Vec<&[[f64; 2]]> = curves.iter().map(|(_, points)| &points[..]).collect();
+        guide(plot, &all, &lines, (name_size, weak));
         if let Some(target) = target.filter(|target| *target > 0.0) {
             let style = LineStyle::dashed_loose();
             plot.hline(HLine::new("target", target.log10()).color(weak).style(style).allow_hover(false));
@@ -213,8 +215,19 @@ fn hover_words(history: &[HistoryPoint], [x, y]: [f64; 2]) -> String {
 /// What the guide line shows.
 const GUIDE: &str = "4x the time, half the error";
 
-/// The guide for independent samples from the first estimate on: four times the time halves the error.
-fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
+/// Where along the guide line its name can stand, as shares of its length, and which corner of the name is there.
+const NAME_PLACES: [(f64, Align2); 6] = [
+    (0.5, Align2::LEFT_BOTTOM),
+    (0.75, Align2::RIGHT_TOP),
+    (0.75, Align2::LEFT_BOTTOM),
+    (0.5, Align2::RIGHT_TOP),
+    (0.25, Align2::LEFT_BOTTOM),
+    (1.0, Align2::RIGHT_TOP),
+];
+
+/// The guide for independent samples from the first estimate on: four times the time halves the error. Its name, of this
+/// size, stands where none of the `lines` strikes it through.
+fn guide(plot: &mut PlotUi, points: &[Point], lines: &[&[[f64; 2]]], (size, color): (Vec2, Color32)) {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
     let [x, y] = logarithm(first);
     let across = logarithm(last)[0] - x;
@@ -223,10 +236,36 @@ fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
     plot.line(line.color(color).style(LineStyle::dotted_dense()).width(1.0).allow_hover(false));
     // Shorter lines have no room for their name.
     if across > 0.5 {
-        let words = RichText::new(GUIDE).small().color(color);
-        let middle = PlotPoint::new(x + 0.5 * across, y - 0.25 * across);
-        plot.text(Text::new("guide", middle, words).anchor(Align2::LEFT_BOTTOM).allow_hover(false));
+        let at = |share: f64| PlotPoint::new(x + share * across, y - 0.5 * share * across);
+        let is_free = |(share, corner): &(f64, Align2)| {
+            let name = corner.anchor_size(plot.screen_from_plot(at(*share)), size).shrink(1.0);
+            let mut pieces = lines.iter().flat_map(|line| line.windows(2));
+            let on_screen = |[x, y]: [f64; 2]| plot.screen_from_plot(PlotPoint::new(x, y));
+            !pieces.any(|piece| crosses(name, [on_screen(piece[0]), on_screen(piece[1])]))
+        };
+        if let Some((share, corner)) = NAME_PLACES.into_iter().find(is_free) {
+            let words = RichText::new(GUIDE).small().color(color);
+            plot.text(Text::new("guide", at(share), words).anchor(corner).allow_hover(false));
+        }
     }
+}
+
+/// Whether a straight line between two points goes through a rectangle.
+fn crosses(rect: Rect, [from, to]: [Pos2; 2]) -> bool {
+    let mut inside = Rangef::new(0.0, 1.0);
+    for axis in 0..2 {
+        let (way, start) = (to[axis] - from[axis], from[axis]);
+        let [low, high] = [rect.min[axis] - start, rect.max[axis] - start];
+        if way == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let [a, b] = [low / way, high / way];
+        inside = Rangef::new(inside.min.max(a.min(b)), inside.max.min(a.max(b)));
+    }
+    inside.min <= inside.max
 }
 
 /// From the newest estimate to the predicted time at the target, with its uncertainty.

@@ -1,6 +1,7 @@
-//! What can be asked of a window.
+//! What can be asked of a window: by the program, and by the tests in `tests/window`, which use it from outside.
 
 use super::command::Command;
+use super::model::document::Document;
 use super::model::remembered::Remembered;
 use super::model::show::Show;
 use super::model::slots::SlotNumber;
@@ -10,6 +11,25 @@ use crate::progressive::Status;
 use eframe::egui;
 
 impl Window {
+    /// The current view.
+    pub fn show(&self) -> Show {
+        self.model.view.show()
+    }
+
+    /// Why a command is disabled, in words; `None` if it is enabled.
+    pub fn disabled_reason(&self, command: Command) -> Option<String> {
+        self.facts().disabled_reason(command)
+    }
+}
+
+/// For tests only.
+#[doc(hidden)]
+impl Window {
+    /// The document that is shown, to be edited like a panel does.
+    pub fn document_mut(&mut self) -> &mut Document {
+        &mut self.model.document
+    }
+
     /// The status of the render.
     pub fn status(&self) -> &Status {
         self.main.status()
@@ -108,11 +128,6 @@ impl Window {
         self.model.selected
     }
 
-    /// The current view.
-    pub fn show(&self) -> Show {
-        self.model.view.show()
-    }
-
     /// Samples per pixel of the displayed layer at full size.
     pub fn layer_samples(&self) -> u64 {
         self.show().layer().map_or(0, |layer| self.layers.samples(layer))
@@ -176,10 +191,5 @@ impl Window {
     /// Whether tracing is paused.
     pub fn is_paused(&self) -> bool {
         self.model.is_paused
-    }
-
-    /// Why a command is disabled, in words; `None` if it is enabled.
-    pub fn disabled_reason(&self, command: Command) -> Option<String> {
-        self.facts().disabled_reason(command)
     }
 }

@@ -72,7 +72,8 @@ impl Window {
 
     /// The next dialog starts where this file is.
     fn remember_directory(&mut self, path: &Path) {
-        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+        // A bare name is one of a file in the working directory.
+        if let Some(directory) = std::path::absolute(path).ok().as_deref().and_then(Path::parent) {
             self.model.remembered.directory = Some(directory.to_owned());
         }
     }
@@ -262,7 +263,10 @@ mod tests {
         assert_eq!(window.model.remembered.recent, [path("a.png")], "a plot cannot be opened");
         assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
         window.remember_directory(Path::new("c.png"));
-        assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")), "it names no folder");
+        let here = std::env::current_dir().unwrap();
+        assert_eq!(window.model.remembered.directory.as_ref(), Some(&here), "a bare name");
+        window.remember_directory(Path::new("to/c.png"));
+        assert_eq!(window.model.remembered.directory, Some(here.join("to")));
     }
 
     #[test]

@@ -56,13 +56,17 @@ mod tests {
     use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::recovery::RecoveryFiles;
     use crate::app::tests::{until, window};
-    use crate::film::{Film, checkpoint};
+    use crate::film::checkpoint::FilmFile;
+    use crate::film::{Film, checkpoint, key};
     use crate::recipe::{Recipe, file};
     use eframe::egui::Context;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::path::Path;
 
-    /// A window of this scene file that has traced some of its samples.
+    /// Seconds that earlier windows have traced, much longer than a test.
+    const BEFORE: f64 = 1e6;
+
+    /// A window of this scene file that goes on with an earlier film and has traced some samples itself.
     fn traced(scene: &Path) -> Window {
         std::fs::write(scene, file::to_toml(&Recipe::builtin("three-spheres").unwrap())).unwrap();
         let words =
@@ -70,7 +74,14 @@ mod tests {
         let mut window = window(&words);
         let has_some = |window: &Window| window.status().samples_per_pixel >= 4;
         until(&mut window, &Context::default(), "the samples", has_some);
+        window.seconds_before = Some(BEFORE);
         window
+    }
+
+    /// Asserts that the film tells the time of all its samples, each counted once.
+    fn assert_seconds(read: &FilmFile) {
+        let seconds: f64 = read.description.get(key::SECONDS).unwrap().parse().unwrap();
+        assert!((BEFORE..1.5 * BEFORE).contains(&seconds), "{seconds}");
     }
 
     fn panic_with(window: Window) {
@@ -98,11 +109,12 @@ mod tests {
         let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
         let read = checkpoint::load(left.film()).unwrap();
         assert!(read.film.sample_count() >= 4 && read.film.width() == 16);
+        assert_seconds(&read);
         assert!(left.note().unwrap().unwrap().has_film);
-        let (entries, faults) = left.slots().entries();
-        let [entry] = &entries[..] else { panic!("{entries:?}") };
+        let listing = left.slots().listing().unwrap();
+        let [entry] = &listing.entries[..] else { panic!("{listing:?}") };
         assert_eq!((entry.number, &entry.id, entry.name.as_str()), (Some(number), &id, "my picture"));
-        assert_eq!(faults, <[String; 0]>::default());
+        assert_eq!(listing.faults, <[String; 0]>::default());
     }
 
     #[test]
@@ -117,5 +129,6 @@ mod tests {
         let recipe = file::parse(read.description.recipe(), "kept").unwrap();
         assert_eq!((recipe.samples_per_pixel, recipe.settings.width), (read.film.sample_count(), 16));
         assert!(read.film.sample_count() >= 4);
+        assert_seconds(&read);
     }
 }

@@ -4,13 +4,12 @@
 
 use super::answers::Answers;
 use super::model::remembered::Remembered;
-use crate::files::write_text;
+use crate::files::{free_name, lock_path, write_text};
 use eframe::egui::Context;
 use serde_json::{Map, Value};
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// How long changes wait for others, so that not every letter of a name is written.
@@ -85,8 +84,8 @@ impl SettingsFile {
         self.next = Instant::now() + WRITES_APART;
         self.tried = Some(mine.clone());
         let (path, known, mine) = (self.path.clone(), self.known.clone(), mine.clone());
-        self.is_writing =
-            self.outcomes.ask("settings", context, move || write(&path, known.as_ref(), &mine)).is_ok();
+        self.outcomes.ask("settings", context, move || write(&path, known.as_ref(), &mine), Err);
+        self.is_writing = true;
         reason
     }
 
@@ -150,8 +149,7 @@ fn understood(fields: Fields) -> Remembered {
 /// Renames a file that holds no settings, and says so.
 fn set_aside(path: &Path, reason: &str) -> String {
     let name = |number: u32| path.with_extension(format!("damaged-{number}"));
-    let free = (1..=u32::MAX).map(name).find(|other| !other.exists());
-    let outcome = match free.map(|other| (fs::rename(path, &other), other)) {
+    let outcome = match free_name(name).map(|other| (fs::rename(path, &other), other)) {
         Some((Ok(()), other)) => format!("it is kept as {}", other.display()),
         Some((Err(error), _)) => format!("it cannot be renamed: {error}"),
         None => "there is no free name for it".to_owned(),
@@ -183,15 +181,7 @@ fn write(path: &Path, known: Option<&Remembered>, mine: &Remembered) -> Result<(
 /// Windows that write at the same time take turns. Where files cannot be locked, or another window has stopped during its
 /// turn, the later one wins.
 fn take_turn(path: &Path) -> Option<File> {
-    let file = OpenOptions::new().write(true).create(true).truncate(false).open(path).ok()?;
-    let end = Instant::now() + LONGEST_TURN;
-    loop {
-        match file.try_lock() {
-            Ok(()) => return Some(file),
-            Err(TryLockError::WouldBlock) if Instant::now() < end => thread::sleep(LONGEST_TURN / 100),
-            Err(_) => return None,
-        }
-    }
+    lock_path(path, LONGEST_TURN)
 }
 
 fn fields_of(settings: &Remembered) -> Result<Fields, String> {

@@ -1,9 +1,10 @@
 //! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
 
 use super::command::Command;
+use super::corner_card::shown_card;
 use super::model::document::Document;
 use super::model::sizing::Sizing;
-use eframe::egui::{self, Align2, Context, Rect, Ui, vec2};
+use eframe::egui::{self, Align2, Color32, Context, Pos2, Rect, TextStyle, Ui, Vec2, pos2, vec2};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -103,21 +104,42 @@ impl Sizer {
         }
     }
 
-    /// Draws the offer, if there is one, at the right of `over`.
+    /// Draws the offer, if there is one, at the right of `over`, or beside a card that is there. Where a card leaves no
+    /// room, the offer waits until it is closed.
     pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
         let Some([width, height]) = self.offer else { return };
+        let label = format!("Render at {width}x{height}");
+        let font = TextStyle::Button.resolve(ui.style());
+        let text = ui.painter().layout_no_wrap(label.clone(), font, Color32::WHITE).size();
+        let size = text + 2.0 * ui.spacing().button_padding;
+        // Above the axes.
+        let usual = over.right_bottom() - vec2(12.0, 124.0);
+        let Some(corner) = free_corner(usual, size, over, shown_card(ui.ctx())) else { return };
         egui::Area::new(egui::Id::unique("size offer"))
             .pivot(Align2::RIGHT_BOTTOM)
-            // Above the axes.
-            .fixed_pos(over.right_bottom() - vec2(12.0, 124.0))
+            .fixed_pos(corner)
             .constrain_to(over)
             .show(ui.ctx(), |ui| {
                 let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
                             lost; this renders it anew, one pixel of the picture per pixel of the screen";
-                if ui.button(format!("Render at {width}x{height}")).on_hover_text(help).clicked() {
+                if ui.button(label).on_hover_text(help).clicked() {
                     commands.push(Command::Size(Sizing::Viewport));
                 }
             });
+    }
+}
+
+/// The lower right corner of something of this size: the usual one, or one beside the card, if that is in the way. `None` if
+/// there is no room for it in `over`.
+fn free_corner(usual: Pos2, size: Vec2, over: Rect, card: Option<Rect>) -> Option<Pos2> {
+    const GAP: f32 = 8.0;
+    let card = card.map(|card| card.expand(GAP));
+    match card.filter(|card| card.intersects(Align2::RIGHT_BOTTOM.anchor_size(usual, size))) {
+        None => Some(usual),
+        Some(card) => {
+            let beside = pos2(card.left(), usual.y);
+            (beside.x - size.x >= over.left()).then_some(beside)
+        }
     }
 }
 
@@ -141,7 +163,9 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::corner_card::corner_card;
     use crate::app::model::origin::Origin;
+    use crate::app::places::Place;
     use crate::app::tests::{Drawings, dressed, leave};
     use crate::stages::Stage;
     use egui_kittest::kittest::Queryable;
@@ -260,6 +284,31 @@ mod tests {
         let nearly = Duration::from_millis(249);
         assert_eq!(verdict(&YOUNG, nearly, false, 0), Verdict::Wait(Duration::from_millis(1)));
         assert_eq!(verdict(&YOUNG, SETTLE, true, 0), Verdict::Wait(SETTLE));
+    }
+
+    #[test]
+    fn the_offer_is_on_no_card() {
+        let over = Rect::from_min_max(pos2(0.0, 0.0), pos2(600.0, 400.0));
+        let (usual, size) = (pos2(588.0, 276.0), vec2(120.0, 24.0));
+        let card = |left: f32, bottom: f32| Some(Rect::from_min_max(pos2(left, 12.0), pos2(588.0, bottom)));
+        let corner = |card| free_corner(usual, size, over, card);
+        assert_eq!(corner(None), Some(usual));
+        assert_eq!(corner(card(288.0, 200.0)), Some(usual), "the card ends above it");
+        assert_eq!(corner(card(288.0, 260.0)), Some(pos2(280.0, 276.0)));
+        assert_eq!(corner(card(288.0, 390.0)), Some(pos2(280.0, 276.0)));
+        assert_eq!(corner(card(100.0, 390.0)), None, "nowhere");
+
+        let sizer = Sizer { offer: Some([1037, 583]), ..Sizer::default() };
+        let draw = move |ui: &mut Ui, card: &mut Option<Rect>| {
+            corner_card(ui, over, Place::Recovered, "Card", |ui| ui.set_min_height(300.0));
+            *card = shown_card(ui.ctx());
+            sizer.ui(ui, over, &mut Vec::new());
+        };
+        let mut harness = dressed([600.0, 400.0]).build_ui_state(draw, None);
+        harness.run_steps(4);
+        let card = harness.state().unwrap();
+        let offer = harness.get_by_label("Render at 1037x583").rect();
+        assert!(card.bottom() > offer.top() && !offer.intersects(card), "{offer} {card}");
     }
 
     #[test]

@@ -25,7 +25,9 @@ const PAGE: usize = 8;
 pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
     let here = facts.document().stage();
     let (has_opened, has_moved) = (has_just_opened(ui), has_moved(ui, here));
-    let height = (ui.ctx().content_rect().height() - 130.0).clamp(160.0, 720.0);
+    // In a menu, the entries above it take room.
+    let above = ui.cursor().top() - ui.min_rect().top();
+    let height = (ui.ctx().content_rect().height() - 130.0 - above).clamp(160.0, 720.0);
     let id = ui.scope_id();
     let (typed, has_typed) = typed(ui);
     let is_new = (has_opened || has_moved) && typed.is_empty();
@@ -40,8 +42,7 @@ pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mu
     }
     let mut focused = None;
     let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
-    // However few stages are left, the list keeps its size.
-    area.auto_shrink([true, typed.is_empty()]).show(ui, |ui| {
+    area.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         let mut chapter = "";
         for (place, stage) in found.iter().copied().enumerate() {
@@ -198,13 +199,17 @@ mod tests {
         facts: Facts,
         thumbnails: Thumbnails,
         commands: Vec<Command>,
+        /// The room that the list takes.
+        room: Rect,
     }
 
     fn list(words: &str, height: f32) -> Harness<'static, List> {
-        let list = List { facts: facts_of(words), thumbnails: Thumbnails::default(), commands: Vec::new() };
-        let draw = |ui: &mut Ui, List { facts, thumbnails, commands }: &mut List| {
+        let (thumbnails, commands, room) = (Thumbnails::default(), Vec::new(), Rect::NOTHING);
+        let list = List { facts: facts_of(words), thumbnails, commands, room };
+        let draw = |ui: &mut Ui, List { facts, thumbnails, commands, room }: &mut List| {
             ui.set_width(WIDTH);
             super::ui(ui, thumbnails, facts, commands);
+            *room = ui.min_rect();
         };
         dressed([400.0, height]).build_ui_state(draw, list)
     }
@@ -287,6 +292,22 @@ mod tests {
         harness.key_press(Key::Enter);
         harness.run_steps(3);
         assert_eq!(harness.state().commands, [Command::Stage(expected[1])]);
+    }
+
+    #[test]
+    fn the_list_is_as_high_as_what_was_found() {
+        let mut harness = list("--stage sky --size 32x18", 700.0);
+        harness.run_steps(4);
+        let whole = harness.state().room;
+        assert!(whole.height() > 500.0, "{whole}");
+        type_in(&mut harness, "schl");
+        let one = harness.state().room;
+        assert!(one.top() == whole.top() && one.height() < 160.0, "{one}");
+        type_in(&mut harness, "xyzzy");
+        assert!(harness.state().room.height() < one.height());
+        (0..9).for_each(|_| harness.key_press(Key::Backspace));
+        harness.run_steps(5);
+        assert_eq!(harness.state().room, whole);
     }
 
     #[test]

@@ -93,10 +93,14 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
     });
 }
 
+const PATHS_HELP: &str = "Millions of paths finished per second, in the last second of tracing";
+
 /// For each figure its text, its widest text, and its help.
 fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
     let Bar { status, stop, is_paused, speed, seconds_before, .. } = *bar;
     let samples = status.samples_per_pixel;
+    // A film that was opened does not say how its samples were traced.
+    let has_paths = status.stats.paths > 0;
     let mut figures = vec![
         (phase_word(&status.phase, is_paused), "preparing", "What the tracer is doing".into()),
         (
@@ -109,13 +113,13 @@ fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
         ),
         seconds(status.trace.as_secs_f64(), seconds_before),
         (
-            format!("{:.1} Mpaths/s", speed / 1e6),
+            if has_paths { format!("{:.1} Mpaths/s", speed / 1e6) } else { "– Mpaths/s".to_owned() },
             "0000.0 Mpaths/s",
-            format!(
-                "Millions of paths finished per second, in the last second of tracing; {:.1} on average",
-                status.paths_per_second() / 1e6
-            )
-            .into(),
+            if has_paths {
+                format!("{PATHS_HELP}; {:.1} on average", status.paths_per_second() / 1e6).into()
+            } else {
+                PATHS_HELP.into()
+            },
         ),
         (
             rays_per_path(status),
@@ -184,9 +188,10 @@ fn phase_word(phase: &Phase, is_paused: bool) -> String {
 }
 
 fn rays_per_path(status: &Status) -> String {
-    let rays =
-        if status.stats.paths == 0 { 0.0 } else { status.stats.rays as f64 / status.stats.paths as f64 };
-    format!("{rays:.2} rays/path")
+    match status.stats.paths {
+        0 => "– rays/path".to_owned(),
+        paths => format!("{:.2} rays/path", status.stats.rays as f64 / paths as f64),
+    }
 }
 
 fn error_words(status: &Status, target: Option<f64>) -> String {

@@ -1,5 +1,6 @@
 //! Short messages over the picture.
 
+use super::command::Command;
 use super::theme;
 use crate::console;
 use eframe::egui::{self, Align2, Color32, RichText};
@@ -20,6 +21,15 @@ struct Toast {
     since: Instant,
     /// The run of the render whose picture it is about, if it is about a picture.
     run: Option<u64>,
+    /// What it offers to do. Such a message stays until it is closed.
+    offer: Option<Command>,
+}
+
+impl Toast {
+    /// How long the message is still shown, if it does not stay.
+    fn left(&self) -> Option<Duration> {
+        self.offer.is_none().then(|| lifetime(self.tone).saturating_sub(self.since.elapsed()))
+    }
 }
 
 /// The visible messages.
@@ -67,9 +77,23 @@ impl Toasts {
         self.good(words(is_on));
     }
 
+    /// Reports something that calls for a command, and offers the command. The message stays until it is closed, or the
+    /// offer withdrawn.
+    pub fn offer(&mut self, text: impl Into<String>, command: Command) {
+        self.add(text.into(), Tone::Good);
+        if let Some(toast) = self.0.last_mut() {
+            toast.offer = Some(command);
+        }
+    }
+
+    /// Removes the messages that offer this command.
+    pub fn withdraw(&mut self, command: Command) {
+        self.0.retain(|toast| toast.offer != Some(command));
+    }
+
     fn add(&mut self, text: String, tone: Tone) {
         self.0.retain(|toast| toast.text != text);
-        self.0.push(Toast { text, tone, since: Instant::now(), run: None });
+        self.0.push(Toast { text, tone, since: Instant::now(), run: None, offer: None });
     }
 
     /// The visible messages, oldest first.
@@ -77,13 +101,14 @@ impl Toasts {
         self.0.iter().map(|toast| toast.text.as_str())
     }
 
-    pub fn ui(&mut self, ui: &egui::Ui, over: egui::Rect) {
-        self.0.retain(|toast| toast.since.elapsed() < lifetime(toast.tone));
-        let Some(first) = self.0.iter().map(|toast| lifetime(toast.tone) - toast.since.elapsed()).min()
-        else {
+    pub fn ui(&mut self, ui: &egui::Ui, over: egui::Rect, commands: &mut Vec<Command>) {
+        self.0.retain(|toast| toast.left() != Some(Duration::ZERO));
+        if self.0.is_empty() {
             return;
-        };
-        ui.ctx().request_repaint_after(first);
+        }
+        if let Some(first) = self.0.iter().filter_map(Toast::left).min() {
+            ui.ctx().request_repaint_after(first);
+        }
         let mut closed = None;
         egui::Area::new(egui::Id::unique("toasts"))
             .order(egui::Order::Foreground)
@@ -105,7 +130,18 @@ impl Toasts {
                             let room = ui.available_width() - 28.0;
                             ui.scope(|ui| {
                                 ui.set_max_width(room);
-                                ui.add(egui::Label::new(RichText::new(&toast.text).color(colour)).wrap());
+                                let words = RichText::new(&toast.text).color(colour);
+                                let Some(command) = toast.offer else {
+                                    ui.add(egui::Label::new(words).wrap());
+                                    return;
+                                };
+                                ui.vertical(|ui| {
+                                    ui.add(egui::Label::new(words).wrap());
+                                    if ui.button(command.name()).on_hover_text(command.help()).clicked() {
+                                        commands.push(command);
+                                        closed = Some(index);
+                                    }
+                                });
                             });
                             if ui.add(close).on_hover_text("Close this message").clicked() {
                                 closed = Some(index);
@@ -134,7 +170,9 @@ mod tests {
         for text in ["first", "second", "third"] {
             toasts.add(text.to_owned(), Tone::Bad);
         }
-        let draw = |ui: &mut egui::Ui, toasts: &mut Toasts| toasts.ui(ui, ui.ctx().content_rect());
+        let draw = |ui: &mut egui::Ui, toasts: &mut Toasts| {
+            toasts.ui(ui, ui.ctx().content_rect(), &mut Vec::new());
+        };
         let mut harness = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, toasts);
         harness.get_all_by_label("×").nth(1).unwrap().click();
         harness.run_steps(2);
@@ -155,7 +193,7 @@ mod tests {
                         Tone::Bad,
                     );
                 }
-                toasts.ui(ui, over);
+                toasts.ui(ui, over, &mut Vec::new());
             });
             harness.run_steps(3);
             drawings.add(&format!("{width} points"), &harness);
@@ -201,11 +239,37 @@ mod tests {
             tone,
             since: Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap(),
             run: None,
+            offer: None,
         };
         let mut toasts = Toasts(ages.into_iter().map(toast).collect());
         let context = egui::Context::default();
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
-        let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over));
+        let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["11"]);
+    }
+
+    #[test]
+    fn an_offer_stays_until_it_is_taken_or_withdrawn() {
+        let (mut toasts, long_ago) = (Toasts::default(), Instant::now().checked_sub(Duration::from_secs(99)));
+        toasts.good("Saved");
+        toasts.offer("It was changed", Command::Reload);
+        toasts.0.iter_mut().for_each(|toast| toast.since = long_ago.unwrap());
+        let draw = |ui: &mut egui::Ui, (toasts, commands): &mut (Toasts, Vec<Command>)| {
+            toasts.ui(ui, ui.ctx().content_rect(), commands);
+        };
+        let mut harness =
+            Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, (toasts, Vec::new()));
+        harness.run_steps(2);
+        assert_eq!(harness.state().0.texts().collect::<Vec<_>>(), ["It was changed"]);
+        harness.get_by_label(&Command::Reload.name()).click();
+        harness.run_steps(2);
+        let (toasts, commands) = harness.state_mut();
+        assert_eq!(*commands, [Command::Reload]);
+        assert_eq!(toasts.texts().count(), 0);
+        toasts.offer("It was changed", Command::Reload);
+        toasts.withdraw(Command::Open);
+        assert_eq!(toasts.texts().count(), 1);
+        toasts.withdraw(Command::Reload);
+        assert_eq!(toasts.texts().count(), 0);
     }
 }

@@ -25,6 +25,7 @@ use super::pixel_values::PixelValues;
 use super::places::Place;
 use super::present::Presenter;
 use super::recovery::Recovery;
+use super::scene_file::SceneFile;
 use super::second::Second;
 use super::settings::{Read, SettingsFile};
 use super::sight::Sighted;
@@ -47,7 +48,7 @@ use crate::render::RenderJob;
 use crate::saved::SavedFilm;
 use crate::stages::Stage;
 use anyhow::{Context as _, Result};
-use eframe::egui::Context;
+use eframe::egui::{Context, Event};
 use std::path::PathBuf;
 
 /// For how many frames a new window's size is compared with the screen, because the system reports it late.
@@ -75,6 +76,7 @@ pub struct Window {
     pub(super) code: Code,
     pub(super) check: Check,
     pub(super) files: Files,
+    pub(super) scene_file: SceneFile,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
     pub(super) first_steps: Card,
@@ -109,6 +111,8 @@ pub struct Window {
     pub(super) performed: Option<Command>,
     /// Whether a control, a menu or a dialog had the keyboard focus in the previous frame.
     pub(super) had_focus: bool,
+    /// Events that wait for the next frame.
+    pub(super) late_events: Vec<Event>,
     pub(super) told_messages: (u64, usize),
     /// The run, and how many of its failures are known.
     pub(super) known_failures: (u64, usize),
@@ -189,6 +193,7 @@ impl Window {
             code: Code::default(),
             check: Check::default(),
             files: Files::default(),
+            scene_file: SceneFile::default(),
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
             first_steps: Card::default(),
@@ -210,6 +215,7 @@ impl Window {
             frame_times: FrameTimes::default(),
             performed: None,
             had_focus: false,
+            late_events: Vec::new(),
             told_messages: (0, 0),
             known_failures: (0, 0),
             panel: None,
@@ -248,11 +254,6 @@ impl Window {
     /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document
-    }
-
-    /// The document that is shown, to be edited like a panel does.
-    pub fn document_mut(&mut self) -> &mut Document {
-        &mut self.model.document
     }
 
     /// Renders small pictures of all stages while the program has nothing better to do. They are kept in `directory`, if

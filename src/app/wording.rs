@@ -1,4 +1,5 @@
-//! Messages of other rooms in the words of the window, which has controls instead of flags and keys of scene files.
+//! Words of messages. Those of other rooms are put in the words of the window, which has controls instead of flags and keys
+//! of scene files.
 
 use super::model::device::Device;
 
@@ -28,9 +29,20 @@ pub fn in_window_words(message: &str) -> String {
     words
 }
 
+/// The text with a small first letter, to follow a colon.
+pub fn lower_first(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_reason_goes_on_in_the_middle_of_a_sentence() {
+        assert_eq!(["Nothing yet", "Über", "a", ""].map(lower_first), ["nothing yet", "über", "a", ""]);
+    }
 
     #[test]
     fn flags_and_keys_become_controls() {

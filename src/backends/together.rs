@@ -3,6 +3,7 @@
 use super::close;
 use crate::film::Film;
 use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use crate::threads::shared;
 use std::any::Any;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -196,20 +197,12 @@ impl Renderer for Together {
         self.departed.clear();
         loop {
             let speeds: Vec<Option<f64>> = self.members.iter().map(|m| m.samples_per_second).collect();
-            let outcomes: Vec<Outcome> = std::thread::scope(|scope| {
-                let pieces = &pieces;
-                let run = |(index, member)| {
-                    let pace = Pace::of(index, &speeds);
-                    scope.spawn(move || work_off(member, pace, job, pieces, cancel))
-                };
-                let threads: Vec<_> = self.members.iter_mut().enumerate().map(run).collect();
-                threads
-                    .into_iter()
-                    .map(|thread| thread.join().unwrap_or_else(|payload| Outcome::panicked(payload.as_ref())))
-                    .collect()
-            });
+            let members = self.members.iter_mut().enumerate();
+            let shares: Vec<_> = members.map(|(index, member)| (member, Pace::of(index, &speeds))).collect();
+            let outcomes = shared(shares, |(member, pace)| work_off(member, pace, job, &pieces, cancel));
             let mut failed = Vec::new();
             for (index, outcome) in outcomes.into_iter().enumerate() {
+                let outcome = outcome.unwrap_or_else(|payload| Outcome::panicked(payload.as_ref()));
                 stats.add(&outcome.stats);
                 films.extend(outcome.film);
                 match outcome.error {

@@ -6,8 +6,10 @@ use crate::files::{FileIdentity, ShownPath};
 use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
 use crate::output::{Forms, OutputFormat, write_image_as};
 use crate::progressive::Status;
+use crate::render::panic_text;
 use crate::saved::{rescue, same_job};
 use anyhow::anyhow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -104,8 +106,11 @@ pub(super) fn write(
     let mut failures = Vec::new();
     let mut is_film_kept = false;
     for (_, path, place) in places.films(render) {
-        say(path);
-        match place.lock().save(film, &description, &same_job) {
+        let saved = caught(path, || {
+            say(path);
+            place.lock().save(film, &description, &same_job).map_err(|error| error.to_string())
+        });
+        match saved {
             Ok(SaveOutcome { path, note, is_elsewhere }) => {
                 is_film_kept = true;
                 written.files.push(path);
@@ -114,23 +119,30 @@ pub(super) fn write(
                     note => written.notes.extend(note),
                 }
             }
-            Err(error) => failures.push(error.to_string()),
+            Err(reason) => failures.push(reason),
         }
     }
     if matches!(places.out, Out::Picture) {
-        say(&render.out);
-        let transfer = render.job.rules().transfer;
-        let forms = Forms { ppm: render.ppm, ..Forms::default() };
-        match write_image_as(&render.out, film, transfer, &description, forms) {
+        let saved = caught(&render.out, || {
+            say(&render.out);
+            let transfer = render.job.rules().transfer;
+            let forms = Forms { ppm: render.ppm, ..Forms::default() };
+            write_image_as(&render.out, film, transfer, &description, forms)
+                .map_err(|error| error.to_string())
+        });
+        match saved {
             Ok(()) => written.files.push(render.out.clone()),
-            Err(error) => failures.push(error.to_string()),
+            Err(reason) => failures.push(reason),
         }
     }
     if !failures.is_empty() && !is_film_kept {
         match rescue(&beside(render), &render.recipe.name, film, &description) {
             Ok(path) => {
-                failures
-                    .push(format!("the samples were saved in {0}; continue with --resume {0}", path.shown()));
+                failures.push(format!(
+                    "the samples were saved in {}; {}",
+                    path.shown(),
+                    go_on(render, &path)
+                ));
                 written.files.push(path);
             }
             Err(lost) => failures.push(lost),
@@ -138,6 +150,26 @@ pub(super) fn write(
     }
     written.failure = (!failures.is_empty()).then(|| anyhow!("{}", failures.join("; ")));
     written
+}
+
+/// Does `write`, which writes `path`. A panic there is a reason like others, because the samples can still be written to
+/// another place or later.
+pub(super) fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
+        let reason = panic_text(payload.as_ref());
+        Err(format!("cannot write {}: the program failed ({reason})", path.shown()))
+    })
+}
+
+/// How to go on with a film that was saved in `rescued`.
+fn go_on(render: &RenderOptions, rescued: &Path) -> String {
+    match render.is_part {
+        true => format!(
+            "once {} can be written, move the film there and run the same command again",
+            render.out.shown()
+        ),
+        false => format!("continue with --resume {}", rescued.shown()),
+    }
 }
 
 /// The description of a render's film.
@@ -170,14 +202,35 @@ pub(super) fn is_film(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::batch::outcome::outcome;
     use crate::batch::tests::options;
+    use crate::failure::Failure;
     use crate::film::checkpoint;
 
     fn write_two_samples(render: &RenderOptions) -> (Film, Written) {
+        write_two_samples_and_say(render, |_| {})
+    }
+
+    fn write_two_samples_and_say(render: &RenderOptions, say: impl FnMut(&Path)) -> (Film, Written) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = write(render, &Places::of(render), &film, &Status::default(), None, |_| {});
+        let written = write(render, &Places::of(render), &film, &Status::default(), None, say);
         (film, written)
+    }
+
+    #[test]
+    fn a_panic_in_writing_a_file_does_not_lose_the_film() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["picture.png", "film.exr"].map(|name| directory.path().join(name));
+        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
+        let (film, written) = write_two_samples_and_say(&render, |_| panic!("injected fault"));
+        let [rescued] = written.files.as_slice() else { panic!("{written:?}") };
+        assert_eq!(rescued.parent(), Some(directory.path()));
+        assert!(checkpoint::load(rescued).unwrap().film == film);
+        let told = written.failure.unwrap().to_string();
+        for part in ["film.exr", "picture.png", "injected fault", "--resume"] {
+            assert!(told.contains(part), "{told} should say {part}");
+        }
     }
 
     #[test]
@@ -210,6 +263,22 @@ mod tests {
     }
 
     #[test]
+    fn a_rescued_film_of_a_part_is_to_go_to_the_part_s_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let film = directory.path().join("missing/part-0.exr");
+        let name = film.to_str().unwrap();
+        let render = options(&["--out", name]);
+        let render = RenderOptions { checkpoint: Some(film.clone()), is_part: true, ..render };
+        let (_, written) = write_two_samples(&render);
+        let [rescued] = written.files.as_slice() else { panic!("{written:?}") };
+        std::fs::remove_file(rescued).unwrap();
+        let told = written.failure.unwrap().to_string();
+        let words = format!("once {name} can be written, move the film there and run the same command again");
+        assert!(told.contains(&words), "{told}");
+        assert!(!told.contains("--resume"), "{told}");
+    }
+
+    #[test]
     fn a_film_that_is_written_needs_no_rescue() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["gone/picture.png", "film.exr"].map(|name| directory.path().join(name));
@@ -229,5 +298,50 @@ mod tests {
         let [picture, rescued] = written.files.as_slice() else { panic!("{written:?}") };
         assert_eq!((picture, rescued.parent()), (&out, Some(directory.path())));
         assert!(checkpoint::load(rescued).unwrap().film == film);
+    }
+
+    /// A render of two samples to `picture.png` with the film `film.exr`, which another program writes meanwhile.
+    fn write_after(directory: &Path, other: impl FnOnce(&RenderOptions, &Path)) -> (Film, Written) {
+        let [out, path] = ["picture.png", "film.exr"].map(|name| directory.join(name));
+        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", path.to_str().unwrap()]);
+        let places = Places::of(&render);
+        other(&render, &path);
+        let mut film = render.job.new_film();
+        film.record(0..2, 0).unwrap();
+        let status = Status::default();
+        let written = write(&render, &places, &film, &status, None, |_| {});
+        let ended = outcome(&render, &status, Some(&film), &written, None);
+        assert_eq!(matches!(ended, Err(Failure::Run(_))), written.failure.is_some(), "{ended:?}");
+        (film, written)
+    }
+
+    #[test]
+    fn a_film_that_had_to_go_elsewhere_is_a_failure() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let (film, written) =
+            write_after(directory.path(), |_, path| std::fs::write(path, "no film").unwrap());
+        assert_eq!(written.files, [at("film-2.exr"), at("picture.png")]);
+        assert!(checkpoint::load(&at("film-2.exr")).unwrap().film == film);
+        assert_eq!(std::fs::read(at("film.exr")).unwrap(), b"no film");
+        assert!(written.notes.is_empty(), "{:?}", written.notes);
+        let told = written.failure.unwrap().to_string();
+        assert!(told.contains("film.exr") && told.contains("film-2.exr"), "{told}");
+    }
+
+    #[test]
+    fn samples_that_another_run_has_added_are_a_note() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let (_, written) = write_after(directory.path(), |render, path| {
+            let mut theirs = render.job.new_film();
+            theirs.record(8..10, 0).unwrap();
+            let description = described(render, &theirs, &Status::default(), None);
+            checkpoint::save(path, &theirs, &description).unwrap();
+        });
+        assert_eq!(written.files, [at("film.exr"), at("picture.png")]);
+        assert_eq!(checkpoint::load(&at("film.exr")).unwrap().film.sample_count(), 4);
+        assert!(written.failure.is_none(), "{:?}", written.failure);
+        assert!(matches!(&written.notes[..], [note] if note.contains("8..10")), "{:?}", written.notes);
     }
 }

@@ -2,10 +2,10 @@
 //! kept, so an interrupted run is continued by the same command.
 
 use super::ended;
+use super::frames_summary::{SCHEMA, Summary, files_of_done};
 use super::progress::LINE_INTERVAL;
 use crate::backends;
 use crate::cli::{FramesOptions, JsonTarget};
-use crate::console::printable;
 use crate::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
 use crate::failure::Failure;
 use crate::files::{JsonPath, ShownPath, check_writable};
@@ -18,14 +18,9 @@ use crate::recipe::Recipe;
 use crate::saved::FrameState;
 use crate::terminal::{Display, print_beside, write_json};
 use anyhow::{Context, anyhow};
-use serde::Serialize;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-
-/// Version of the JSON. It is raised when a key changes its meaning or is removed.
-const SCHEMA: u32 = 1;
 
 /// Renders the frames that are not there yet, and makes an animated PNG of all if that is asked for. After a signal, the
 /// frame in progress is dropped.
@@ -225,6 +220,8 @@ impl<'a> Run<'a> {
 
     fn summary(&self) -> Summary {
         let FramesOptions { recipe, frames, names, .. } = self.options;
+        let done = self.rendered + self.kept;
+        let [first_file, last_file] = files_of_done(frames.start, done, |frame| names.path(frame));
         Summary {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
@@ -235,14 +232,14 @@ impl<'a> Run<'a> {
             first_frame: frames.start,
             last_frame: frames.end - 1,
             frames: frames.end - frames.start,
-            frames_done: self.rendered + self.kept,
+            frames_done: done,
             rendered: self.rendered,
             kept: self.kept,
             rendering_seconds: self.rendering.as_secs_f64(),
             total_seconds: self.begin.elapsed().as_secs_f64(),
             directory: names.directory.clone().into(),
-            first_file: names.path(frames.start).into(),
-            last_file: names.path(frames.end - 1).into(),
+            first_file,
+            last_file,
             animation: self.animation.clone().map(JsonPath),
             warnings: self.warnings.clone(),
         }
@@ -276,62 +273,6 @@ fn so_far(
     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
 }
 
-/// The figures of an animation.
-#[derive(Serialize)]
-struct Summary {
-    schema: u32,
-    version: &'static str,
-    scene: String,
-    width: u32,
-    height: u32,
-    samples_per_pixel: u64,
-    first_frame: u32,
-    last_frame: u32,
-    frames: u32,
-    frames_done: u32,
-    rendered: u32,
-    kept: u32,
-    rendering_seconds: f64,
-    total_seconds: f64,
-    directory: JsonPath,
-    first_file: JsonPath,
-    last_file: JsonPath,
-    animation: Option<JsonPath>,
-    warnings: Vec<String>,
-}
-
-impl fmt::Display for Summary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Summary { scene, width, height, samples_per_pixel, .. } = self;
-        writeln!(
-            f,
-            "scene    {}, {width}x{height}, {} per pixel",
-            printable(scene),
-            counted(*samples_per_pixel, "sample")
-        )?;
-        let Summary { frames, frames_done, rendered, kept, .. } = self;
-        writeln!(f, "frames   {frames_done} of {frames} done: {rendered} rendered, {kept} already there")?;
-        write!(f, "time     {}", seconds(self.total_seconds))?;
-        if self.rendered > 0 {
-            let each = self.rendering_seconds / f64::from(self.rendered);
-            write!(f, " ({each:.3} s for each frame rendered)")?;
-        }
-        writeln!(f)?;
-        if self.frames_done < self.frames {
-            return writeln!(
-                f,
-                "files    in {}; run the same command again to go on",
-                self.directory.0.shown()
-            );
-        }
-        writeln!(f, "files    {} to {}", self.first_file.0.shown(), self.last_file.0.shown())?;
-        match &self.animation {
-            Some(path) => writeln!(f, "         {}", path.0.shown()),
-            None => Ok(()),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -352,48 +293,5 @@ mod tests {
             let told = format!("frame 7 failed; {words}, and the same command goes on: no space");
             assert_eq!(format!("{error:#}"), told);
         }
-    }
-
-    #[test]
-    fn the_summary_counts_frames_and_names_files() {
-        let mut summary = Summary {
-            schema: SCHEMA,
-            version: "",
-            scene: "turn".to_owned(),
-            width: 24,
-            height: 14,
-            samples_per_pixel: 1,
-            first_frame: 2,
-            last_frame: 6,
-            frames: 5,
-            frames_done: 3,
-            rendered: 2,
-            kept: 1,
-            rendering_seconds: 3.0,
-            total_seconds: 75.0,
-            directory: PathBuf::from("d").into(),
-            first_file: PathBuf::from("d/2.png").into(),
-            last_file: PathBuf::from("d/6.png").into(),
-            animation: None,
-            warnings: Vec::new(),
-        };
-        let head = "scene    turn, 24x14, 1 sample per pixel\n";
-        assert_eq!(
-            summary.to_string(),
-            format!(
-                "{head}frames   3 of 5 done: 2 rendered, 1 already there\n\
-                 time     1 min 15 s (1.500 s for each frame rendered)\n\
-                 files    in d; run the same command again to go on\n"
-            )
-        );
-        (summary.frames_done, summary.rendered, summary.kept) = (5, 0, 5);
-        let whole = format!(
-            "{head}frames   5 of 5 done: 0 rendered, 5 already there\n\
-             time     1 min 15 s\n\
-             files    d/2.png to d/6.png\n"
-        );
-        assert_eq!(summary.to_string(), whole);
-        summary.animation = Some(PathBuf::from("a.png").into());
-        assert_eq!(summary.to_string(), format!("{whole}         a.png\n"));
     }
 }

@@ -1,6 +1,6 @@
 //! Checkpoints: the film is written at intervals during a render, so a crash loses only the samples since the last one.
 
-use super::files::{SharedPlace, described};
+use super::files::{SharedPlace, caught, described};
 use crate::cli::RenderOptions;
 use crate::film::Film;
 use crate::progressive::{Progressive, Status};
@@ -48,10 +48,28 @@ struct Writer {
 }
 
 impl Writer {
+    /// Has a copy of the film written by the `thread`. If there is no memory for a copy, or no such thread, the film is
+    /// written here.
+    fn take(&self, film: &Film, status: Status, thread: Option<Sender<Snapshot>>) {
+        let copy = thread.and_then(|thread| Some((thread, film.try_copy().ok()?)));
+        let is_handed_over = copy.is_some_and(|(thread, film)| {
+            let status = status.clone();
+            thread.send(Snapshot { film, status }).is_ok()
+        });
+        if !is_handed_over {
+            self.write(film, &status);
+        }
+    }
+
+    /// Writes the film, and always says what came of it: the next checkpoint waits for that.
     fn write(&self, film: &Film, status: &Status) {
-        let status = status.of_film(film, self.held_before);
-        let description = described(&self.render, film, &status, self.seconds_before);
-        let outcome = match self.place.lock().save(film, &description, &same_job) {
+        let path = self.render.checkpoint.as_ref().unwrap_or(&self.render.out);
+        let saved = caught(path, || {
+            let status = status.of_film(film, self.held_before);
+            let description = described(&self.render, film, &status, self.seconds_before);
+            self.place.lock().save(film, &description, &same_job).map_err(|error| error.to_string())
+        });
+        let outcome = match saved {
             Ok(saved) => {
                 log::info!(
                     "checkpoint: {} samples per pixel in {}",
@@ -60,8 +78,8 @@ impl Writer {
                 );
                 Outcome { samples: Some(film.sample_count()), words: saved.note }
             }
-            Err(error) => {
-                let words = format!("{error}; rendering continues, and writing will be tried again");
+            Err(reason) => {
+                let words = format!("{reason}; rendering continues, and writing will be tried again");
                 Outcome { samples: None, words: Some(words) }
             }
         };
@@ -111,13 +129,7 @@ impl Keeper {
             (self.is_under_way, self.asked) = (true, status.samples_per_pixel);
             let (writer, snapshots, status) =
                 (Arc::clone(&self.writer), self.snapshots.clone(), status.clone());
-            progressive.inspect(move |film| match (film.try_copy().ok(), snapshots) {
-                (Some(film), Some(snapshots)) => {
-                    // The writer lives as long as the render.
-                    let _ = snapshots.send(Snapshot { film, status });
-                }
-                _ => writer.write(film, &status),
-            });
+            progressive.inspect(move |film| writer.take(film, status, snapshots));
         }
         words
     }
@@ -198,6 +210,23 @@ mod tests {
         drop(progressive);
         assert!(keeper.finish() >= seen.last().copied());
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn without_a_thread_for_it_the_film_is_written_at_once() {
+        for has_thread in [true, false] {
+            let directory = tempfile::tempdir().unwrap();
+            let path = directory.path().join("film.exr");
+            let render = options(&["--checkpoint", path.to_str().unwrap()]);
+            let keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 0, Some(0.0));
+            let mut film = render.job.new_film();
+            film.record(0..6, 0).unwrap();
+            // A thread that has ended listens no more.
+            let (ended, _) = mpsc::channel();
+            keeper.writer.take(&film, Status::default(), has_thread.then_some(ended));
+            assert_eq!(keeper.finish(), Some(6));
+            assert!(checkpoint::load(&path).unwrap().film == film);
+        }
     }
 
     #[test]

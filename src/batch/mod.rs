@@ -3,6 +3,7 @@
 mod existing;
 mod files;
 mod frames;
+mod frames_summary;
 mod keeping;
 mod listing;
 mod outcome;

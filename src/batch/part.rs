@@ -7,7 +7,7 @@ use super::{check_before, frames, render_all, write_figures};
 use crate::cli::{BatchOptions, CHECKPOINT_INTERVAL, FramesOptions, PartOptions, RenderOptions};
 use crate::console;
 use crate::failure::Failure;
-use crate::files::ShownPath;
+use crate::files::{NAME_LIMIT, ShownPath, free_name};
 use crate::film::{CheckpointError, Film};
 use crate::output::PpmForm;
 use crate::plan::{AnyPlan, Frames, Part, Plan, Samples};
@@ -70,6 +70,7 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         checkpoint: Some(path.clone()),
         every: options.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: Some(path.clone()),
+        is_part: true,
         asked_samples: None,
         ppm: PpmForm::Binary,
         command: options.command.clone(),
@@ -131,7 +132,13 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
             OpenError::Film(damaged @ CheckpointError::Damaged { .. })
             | OpenError::NotFilm(damaged @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })),
         ) => {
-            let aside = free_name(path);
+            let aside = free_name(|number| damaged_name(path, number)).ok_or_else(|| {
+                let last = damaged_name(path, NAME_LIMIT);
+                Failure::Input(anyhow!(
+                    "{damaged}; it cannot be put aside, because the names up to {} are taken; delete some of them",
+                    last.shown()
+                ))
+            })?;
             std::fs::rename(path, &aside)
                 .with_context(|| format!("cannot rename {} to {}", path.shown(), aside.shown()))
                 .map_err(Failure::Input)?;
@@ -149,14 +156,9 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
     }
 }
 
-/// `part-0.exr.damaged`, or with a number behind it.
-fn free_name(path: &Path) -> PathBuf {
-    let named = |end: &str| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(end);
-        PathBuf::from(name)
-    };
-    let plain = named(".damaged");
-    let numbered = (2..10_000).map(|number| named(&format!(".damaged-{number}")));
-    [plain.clone()].into_iter().chain(numbered).find(|path| path.symlink_metadata().is_err()).unwrap_or(plain)
+/// `part-0.exr.damaged`, or `part-0.exr.damaged-2` and so on.
+fn damaged_name(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(if number == 1 { ".damaged".to_owned() } else { format!(".damaged-{number}") });
+    PathBuf::from(name)
 }

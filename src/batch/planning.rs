@@ -8,7 +8,8 @@ use crate::files::ShownPath;
 use crate::film::Film;
 use crate::memory;
 use crate::plan::{
-    Commands, Division, Frames, Manifest, Plan, Samples, ScriptKind, Work, divide, write_scripts,
+    Commands, Division, Frames, Manifest, Plan, Samples, ScriptKind, Work, check_scripts, divide,
+    write_scripts,
 };
 use crate::shell;
 use crate::terminal::write_json;
@@ -50,6 +51,9 @@ fn written<W: Work>(options: &PlanOptions, work: W) -> Result<Plan<W>, Failure> 
             format!("cannot create the directory {}; choose another with --out", directory.shown())
         })
         .map_err(Failure::Input)?;
+    if let Some(kind) = scripts(options.format) {
+        check_scripts(kind, directory).map_err(Failure::input)?;
+    }
     let manifest = Manifest {
         command: options.command.clone(),
         scene: options.recipe.name.clone(),
@@ -60,6 +64,16 @@ fn written<W: Work>(options: &PlanOptions, work: W) -> Result<Plan<W>, Failure> 
     Plan::write(directory, &options.recipe, &options.job, manifest).map_err(Failure::input)
 }
 
+/// The scripts of this form, if it has any.
+fn scripts(format: PlanFormat) -> Option<ScriptKind> {
+    match format {
+        PlanFormat::Text | PlanFormat::Json => None,
+        PlanFormat::Slurm => Some(ScriptKind::Slurm),
+        PlanFormat::Parallel => Some(ScriptKind::Parallel),
+        PlanFormat::Make => Some(ScriptKind::Make),
+    }
+}
+
 /// Makes the commands of a plan, in the form that is asked for.
 fn start<W: Work>(plan: &Plan<W>, options: &PlanOptions) -> Result<ExitCode, Failure> {
     let directory = &options.directory;
@@ -67,22 +81,17 @@ fn start<W: Work>(plan: &Plan<W>, options: &PlanOptions) -> Result<ExitCode, Fai
         || (plan.path.display().to_string(), directory.join(&plan.manifest.result).display().to_string());
     let (path, result) = told();
     let commands = Commands::new(&options.program, &path, plan);
-    let kind = match options.format {
-        PlanFormat::Text => {
+    let Some(kind) = scripts(options.format) else {
+        if options.format == PlanFormat::Json {
+            let json = PlanJson::of(plan, &commands, &result);
+            write_json(&json, &JsonTarget::StandardOutput).map_err(Failure::Run)?;
+        } else {
             let lines: String =
                 (0..plan.manifest.work.count()).map(|part| commands.part_line(part) + "\n").collect();
             console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
-            console::note(&format!("then: {}", commands.merge_line(&result)));
-            return Ok(ExitCode::SUCCESS);
+            console::note_whole(&format!("then: {}", commands.merge_line(&result)));
         }
-        PlanFormat::Json => {
-            let json = PlanJson::of(plan, &commands, &result);
-            write_json(&json, &JsonTarget::StandardOutput).map_err(Failure::Run)?;
-            return Ok(ExitCode::SUCCESS);
-        }
-        PlanFormat::Slurm => ScriptKind::Slurm,
-        PlanFormat::Parallel => ScriptKind::Parallel,
-        PlanFormat::Make => ScriptKind::Make,
+        return Ok(ExitCode::SUCCESS);
     };
     let files = write_scripts(kind, plan, &options.program).map_err(Failure::run)?;
     if kind == ScriptKind::Slurm && plan.manifest.work.count() > USUAL_ARRAY {
@@ -92,8 +101,8 @@ fn start<W: Work>(plan: &Plan<W>, options: &PlanOptions) -> Result<ExitCode, Fai
         ));
     }
     let start = match (kind, files.first()) {
-        (ScriptKind::Make, _) => shell::line(["make".into(), "-C".into(), directory.to_string_lossy()]),
-        (_, Some(first)) => shell::line(["sh".into(), first.to_string_lossy()]),
+        (ScriptKind::Make, _) => shell::line(["make", "-C", &shell::operand(&directory.to_string_lossy())]),
+        (_, Some(first)) => shell::line(["sh", &shell::operand(&first.to_string_lossy())]),
         (_, None) => String::new(),
     };
     console::write_out(&(start + "\n")).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
@@ -110,7 +119,7 @@ fn about_samples(plan: &Plan<Samples>, Division { block, parts }: &Division) -> 
         format!("{shortest} to {longest} samples per pixel, in blocks of {block}")
     };
     let settings = plan.job.settings();
-    let film = Film::bytes(settings.width, settings.height, if settings.estimate_error { 2 } else { 1 });
+    let film = Film::bytes(settings.width, settings.height, settings.half_count());
     format!(
         "{}: {} of {}x{}, {} of {each}; a part's film takes {} of memory",
         plan.path.shown(),
@@ -154,10 +163,10 @@ struct PlanJson<'a, W: Work> {
 }
 
 impl<'a, W: Work> PlanJson<'a, W> {
-    fn of(plan: &'a Plan<W>, commands: &Commands<'a>, result: &str) -> Self {
+    fn of(plan: &'a Plan<W>, commands: &'a Commands<'_>, result: &str) -> Self {
         let part = |part: usize| commands.part(&part.to_string());
         PlanJson {
-            plan: commands.manifest,
+            plan: &commands.manifest,
             manifest: &plan.manifest,
             part_commands: (0..plan.manifest.work.count()).map(part).collect(),
             merge_command: commands.merge(result),

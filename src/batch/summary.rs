@@ -273,6 +273,13 @@ mod tests {
         let told = Summary { error, ..summary.clone() }.to_string();
         let line = "\nerror    3e-8 RMSE, by rounding alone (the two halves are equal), 1 rejected sample\n";
         assert!(told.contains(line), "{told}");
+        let error =
+            Some(ErrorEstimate { rmse: ROUNDING_LIMIT.next_up(), rmse_deviation: 1e-9, rel_mse: 0.0 });
+        let told = Summary { error, ..summary.clone() }.to_string();
+        let line = "\nerror    3e-8 RMSE, by rounding; the noise is below that (estimated from the two halves), 1 rejected";
+        assert!(told.contains(line), "{told}");
+        let told = Summary { error: None, ..summary.clone() }.to_string();
+        assert!(told.contains("\nerror    not estimated, 1 rejected sample\n"), "{told}");
         let json = serde_json::to_value(&summary).unwrap();
         for (key, value) in [("prepare_seconds", 2.0), ("total_seconds", 6.5), ("rel_mse_estimate", 0.3)] {
             assert_eq!(json[key], value, "{key}");

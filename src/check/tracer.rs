@@ -5,7 +5,7 @@
 use super::mistake::Mistake;
 use crate::recipe::Recipe;
 use crate::sampling::pcg4d;
-use crate::scene::{Camera, Material, Scene, Sphere};
+use crate::scene::{Camera, Look, Scene, Sphere};
 use crate::stages::{DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -231,17 +231,19 @@ impl<'a> Tracer<'a> {
     }
 
     fn scatter(&self, ray: &Ray, hit: &Hit, random: &mut Random) -> Option<(DVec3, DVec3)> {
-        match self.scene.materials[hit.material].material {
-            Material::Lambertian { albedo } => Some((albedo, self.diffuse(hit, random))),
-            Material::Metal { albedo, fuzz } => {
+        let material = &self.scene.materials[hit.material].material;
+        let attenuation = material.albedo().unwrap_or(DVec3::ONE);
+        match material.look() {
+            Look::Matte => Some((attenuation, self.diffuse(hit, random))),
+            Look::Mirror { fuzz } => {
                 let reflected = reflect(ray.direction, hit.normal);
                 let reflected =
                     if self.makes(Mistake::FuzzUnnormalised) { reflected } else { reflected.normalize() };
-                let direction = reflected + fuzz.min(1.0) * random.unit_vector();
-                (direction.dot(hit.normal) > 0.0).then_some((albedo, direction))
+                let direction = reflected + fuzz * random.unit_vector();
+                (direction.dot(hit.normal) > 0.0).then_some((attenuation, direction))
             }
-            Material::Dielectric { refraction_index } => {
-                Some((DVec3::ONE, self.refract_or_reflect(ray, hit, refraction_index, random)))
+            Look::Glass { refraction_index } => {
+                Some((attenuation, self.refract_or_reflect(ray, hit, refraction_index, random)))
             }
         }
     }

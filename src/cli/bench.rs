@@ -24,13 +24,14 @@ pub(super) struct RawBench {
     #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene",
           help_heading = "Scenes")]
     pub scale: Option<Vec1<u64>>,
-    /// Measure what leaving out of a kernel what a picture does not need gains, for all stages and built-in scenes
+    /// Measure the gain from leaving out of each kernel the code that its picture does not need, for all stages and
+    /// built-in scenes
     #[arg(long, conflicts_with_all = ["scale", "plot"], help_heading = "Scenes")]
     pub features: bool,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's; with --features, 200 pixels across]
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Scenes")]
     pub size: Option<(u32, u32)>,
-    /// Most samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
+    /// Maximum samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
     /// many as --run-limit allows]
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           allow_hyphen_values = true, help_heading = "Scenes")]

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct RawCheck {
-    /// The picture that your own program has written: PPM (P3 or P6) or PNG, of any size up to 4 million pixels
+    /// The picture that your own program has written: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million
+    /// pixels
     #[arg(value_name = "PICTURE")]
     pub picture: PathBuf,
     /// The stage of the book that it shows [default: the one that it looks like]

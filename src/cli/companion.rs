@@ -52,6 +52,10 @@ pub(super) fn companion(raw: RawCompanion) -> Result<CompanionOptions, CliError>
     Paths::default()
         .read("--bench", raw.bench.as_deref())
         .write("the page of --out,", Some(&raw.out.join("index.html")))
+        .own("a figure of --out,", &raw.out.join("figures"), |name| {
+            let folded = name.to_lowercase();
+            (folded.ends_with(".png") || folded == "gallery.json").then(|| name.to_owned())
+        })
         .check(&[])?;
     let RawCompanion { out, bench, source, quick, progress } = raw;
     let backend = choose(RawDevice::Auto, CpuOptions::default(), GpuOptions::of_adapter(None), [None, None])?;

@@ -145,6 +145,12 @@ pub enum CliError {
         /// The directory.
         path: PathBuf,
     },
+    /// Slurm would take the directory's name for a pattern.
+    #[error("--out is {}, but Slurm takes % and \\ in the path of a log for signs of its own, and no part would run; choose a directory whose whole path has neither", path.shown())]
+    SlurmDirectory {
+        /// The directory.
+        path: PathBuf,
+    },
     /// Words of the command line are not UTF-8, and at least one of them must be.
     #[error(
         "the command line has words that are not UTF-8, as the name of a scene, a choice or a number must be: {words}; rename the file, or make a link to it with another name"

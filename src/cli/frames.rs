@@ -3,7 +3,7 @@
 use super::Request;
 use super::backend;
 use super::error::CliError;
-use super::paths::Paths;
+use super::paths::{Paths, same_name};
 use super::raw::{self, ProgressChoice, RawAnimation, RawPicture, RawRender};
 use super::sources;
 use super::unused;
@@ -87,8 +87,12 @@ pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>,
     let json = raw.json.clone().map(JsonTarget::from);
     Paths::default()
         .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
-        .write("--out", animation.as_deref().or(Some(&names.path(frames.start))))
+        .write("--out", animation.as_deref())
         .write_json(json.as_ref())
+        .own("a frame of the animation", &names.directory, {
+            let (names, frames) = (names.clone(), frames.clone());
+            move |name| same_name(name, frames.clone().filter_map(|frame| file_name(&names, frame)))
+        })
         .check(&[])?;
     Ok(Some(Request::Frames(Box::new(FramesOptions {
         notes: unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
@@ -104,6 +108,11 @@ pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>,
         json,
         command: command.to_owned(),
     }))))
+}
+
+/// The name of a frame's file.
+fn file_name(names: &FrameNames, frame: u32) -> Option<String> {
+    names.path(frame).file_name().map(|name| name.to_string_lossy().into_owned())
 }
 
 /// Returns an error if a flag makes no sense for an animation.

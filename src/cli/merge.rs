@@ -2,6 +2,7 @@
 
 use super::error::CliError;
 use super::paths::Paths;
+use super::plan;
 use super::values::parse_duration;
 use crate::output::OutputFormat;
 use crate::plan::AnyPlan;
@@ -101,6 +102,10 @@ pub(super) fn merge(raw: RawMerge, program: &str) -> Result<MergeOptions, CliErr
     let paths = films
         .iter()
         .fold(Paths::default(), |paths, film| paths.read("one of the films to merge", Some(film)));
+    let paths = match &source {
+        MergeSource::Plan(plan) if !raw.check => plan::files_of(paths, plan, false),
+        _ => paths,
+    };
     raw.out.iter().fold(paths, |paths, out| paths.write("--out", Some(out))).check(&[])?;
     let watch = raw.watch.then(|| raw.every.unwrap_or(WATCH_INTERVAL));
     Ok(MergeOptions { source, out: raw.out, watch, check: raw.check, program: program.to_owned() })

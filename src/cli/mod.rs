@@ -42,7 +42,8 @@ pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser};
+use clap::{CommandFactory, FromArgMatches};
+use paths::Paths;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use subcommands::{Raw, RawCommand};
@@ -100,11 +101,23 @@ pub fn command() -> clap::Command {
 /// none; [`parse`] says what is wrong with it.
 ///
 /// # Errors
-/// If its name does not end in `.log`. Other names are refused so that a log never replaces a picture.
+/// If its name does not end in `.log`, or is that of another file of the command. Other names are refused so that a log
+/// never replaces a picture.
 pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
-    let log = Raw::try_parse_from(arguments).ok().and_then(|raw| raw.log);
+    let Ok(matches) = command().try_get_matches_from(arguments) else { return Ok(None) };
+    let log = Raw::from_arg_matches(&matches).ok().and_then(|raw| raw.log);
     if let Some(path) = &log {
         sources::check_ending("--log", path, "the log", ".log").map_err(Failure::input)?;
+        let mut values = Vec::new();
+        typed::find_values(&matches, "log", &mut values);
+        values
+            .iter()
+            .fold(Paths::default(), |paths, value| {
+                paths.read("another file of this command", Some(Path::new(value)))
+            })
+            .write("--log", Some(path))
+            .check(&[])
+            .map_err(Failure::input)?;
     }
     Ok(log)
 }
@@ -178,4 +191,37 @@ fn called(first: Option<&OsString>) -> String {
     let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
     let path = if is_path { std::env::current_exe().ok() } else { None };
     path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_call_the_program_in_any_directory_as_it_was_called_in_this_one() {
+        let whole = std::env::current_exe().unwrap().to_str().unwrap().to_owned();
+        for (name, expected) in [
+            ("weekender", "weekender"),
+            ("./weekender", whole.as_str()),
+            ("../release/weekender", whole.as_str()),
+            ("target/release/weekender", whole.as_str()),
+            ("/usr/bin/weekender", whole.as_str()),
+        ] {
+            let parsed =
+                |words: &[&str]| parse([&[name], words].concat().into_iter().map(Into::into)).unwrap();
+            let planned = |more: &[&str]| match parsed(
+                &[&["plan", "--samples", "4", "--parts", "2", "--out", "no-such-plan"], more].concat(),
+            ) {
+                Request::Plan(options) => options.program,
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(planned(&[]), expected, "{name}");
+            assert_eq!(planned(&["--program", "./another"]), "./another", "{name}");
+            match parsed(&["merge", "no-such-a.exr", "no-such-b.exr", "--out", "no-such-c.exr"]) {
+                Request::Merge(options) => assert_eq!(options.program, expected, "{name}"),
+                other => panic!("{other:?}"),
+            }
+        }
+        assert_eq!(called(None), "weekender");
+    }
 }

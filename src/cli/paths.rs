@@ -5,11 +5,44 @@ use super::values::JsonTarget;
 use crate::files::FileIdentity;
 use std::path::{Path, PathBuf};
 
-/// The files that a command reads and writes, each with its flag.
-#[derive(Debug, Default)]
+/// The files that a command reads and writes: those that flags name, each with its flag, and those to which the command
+/// gives names of its own.
+#[derive(Default)]
 pub(super) struct Paths {
     inputs: Vec<Named>,
     outputs: Vec<Named>,
+    own: Vec<Own>,
+}
+
+/// Finds a file name of the command's own that differs from the given one in letter case at most.
+type FindOwn = Box<dyn Fn(&str) -> Option<String>>;
+
+/// Files of the command's own names in a directory.
+struct Own {
+    /// What they are, in words.
+    what: &'static str,
+    directory: PathBuf,
+    find: FindOwn,
+}
+
+impl Own {
+    fn is_same_as(&self, named: &Named) -> bool {
+        let target = followed(&named.path);
+        let Some(name) = target.file_name() else { return false };
+        (self.find)(&name.to_string_lossy())
+            .is_some_and(|own| Named::new(self.what, &self.directory.join(own)).is_same_as(named))
+    }
+}
+
+/// The file at the end of a link, whether or not it exists.
+fn followed(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    // As many links as systems follow.
+    for _ in 0..40 {
+        let Ok(target) = path.read_link() else { break };
+        path = path.with_file_name(target);
+    }
+    path
 }
 
 #[derive(Debug)]
@@ -54,8 +87,21 @@ impl Paths {
         self.write("--json", path)
     }
 
-    /// Returns an error if two outputs are the same file or an output would replace an input. `may_replace` lists the
-    /// outputs that may replace an input, because they continue it.
+    /// Adds files in `directory` that the command reads or writes, and no flag names. They may be very many, so `find` is
+    /// asked for the name of one that differs from a given name in letter case at most: the file system decides whether
+    /// that is the same file.
+    pub fn own(
+        mut self,
+        what: &'static str,
+        directory: &Path,
+        find: impl Fn(&str) -> Option<String> + 'static,
+    ) -> Self {
+        self.own.push(Own { what, directory: directory.to_owned(), find: Box::new(find) });
+        self
+    }
+
+    /// Returns an error if two outputs are the same file, an output would replace an input, or a file that a flag names is
+    /// one of the command's own. `may_replace` lists the outputs that may replace an input, because they continue it.
     pub fn check(&self, may_replace: &[(&str, &str)]) -> Result<(), CliError> {
         for (index, second) in self.outputs.iter().enumerate() {
             if let Some(first) = self.outputs[..index].iter().find(|first| first.is_same_as(second)) {
@@ -80,13 +126,60 @@ impl Paths {
                 });
             }
         }
+        self.check_own()
+    }
+
+    fn check_own(&self) -> Result<(), CliError> {
+        let owner = |named: &Named| self.own.iter().find(|own| own.is_same_as(named));
+        for output in &self.outputs {
+            if let Some(own) = owner(output) {
+                let path = output.path.clone();
+                return Err(CliError::Overwrites { output: output.flag, path, input: own.what });
+            }
+        }
+        for input in &self.inputs {
+            if let Some(own) = owner(input) {
+                let path = input.path.clone();
+                return Err(CliError::Overwrites { output: own.what, path, input: input.flag });
+            }
+        }
         Ok(())
     }
+}
+
+/// The one of `names` that differs from `name` in letter case at most.
+pub(super) fn same_name(name: &str, names: impl IntoIterator<Item = String>) -> Option<String> {
+    let folded = name.to_lowercase();
+    names.into_iter().find(|own| own.to_lowercase() == folded)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_to_a_file_of_the_command_is_that_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        std::fs::create_dir(at("d")).unwrap();
+        std::os::unix::fs::symlink("second", at("first")).unwrap();
+        std::os::unix::fs::symlink("d/plan.json", at("second")).unwrap();
+        std::os::unix::fs::symlink("d", at("e")).unwrap();
+        for name in ["d/plan.json", "e/plan.json", "first", "d/../second"] {
+            let check = |is_there: bool| {
+                let paths = Paths::default().own("a file of the plan", &at("d"), |name| {
+                    (name == "plan.json").then(|| name.to_owned())
+                });
+                let told = paths.write("--json", Some(&at(name))).check(&[]);
+                assert!(told.is_err(), "{name}: {is_there}");
+            };
+            check(false);
+            std::fs::write(at("d/plan.json"), "").unwrap();
+            check(true);
+            std::fs::remove_file(at("d/plan.json")).unwrap();
+        }
+    }
 
     #[test]
     fn only_an_input_that_lives_on_in_the_output_may_be_replaced() {
@@ -101,6 +194,21 @@ mod tests {
         assert!(error.contains("--json") && error.contains("--resume") && error.contains("g.exr"), "{error}");
         let both = Paths::default().write("--out", Some(file)).write("--checkpoint", Some(&again));
         assert!(matches!(both.check(&allowed), Err(CliError::SameFile { .. })));
+        let own = |paths: Paths| {
+            paths.own("a part", directory.path(), |name| same_name(name, ["g.exr".to_owned()]))
+        };
+        let error =
+            own(Paths::default().write("--json", Some(&again))).check(&allowed).unwrap_err().to_string();
+        assert!(error.contains("--json") && error.contains("would replace a part;"), "{error}");
+        let error = own(resumed()).check(&allowed).unwrap_err().to_string();
+        assert!(error.starts_with("a part ") && error.contains("the file that --resume reads"), "{error}");
+        for other in ["d/g.exr", "h.exr"].map(|name| directory.path().join(name)) {
+            assert!(own(Paths::default().write("--json", Some(&other))).check(&[]).is_ok(), "{other:?}");
+        }
+        // Whether case matters depends on the file system.
+        let upper = directory.path().join("G.EXR");
+        let is_same = own(Paths::default().write("--json", Some(&upper))).check(&[]).is_err();
+        assert_eq!(is_same, upper.exists());
         let null = Path::new("/dev/null");
         if null.exists() {
             assert!(

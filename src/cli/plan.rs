@@ -3,6 +3,7 @@
 use super::backend;
 use super::error::CliError;
 use super::frames::{DEFAULT_RATE, frames_of, path_of};
+use super::paths::{Paths, same_name};
 use super::raw::{self, ProgressChoice, RawAnimation, RawBackend, RawPicture, RawSwitch};
 use super::sources::{self, ChosenRecipe};
 use super::unused;
@@ -10,12 +11,13 @@ use super::values::{JsonTarget, parse_duration, parse_sample_range, whole};
 use crate::animation::Turn;
 use crate::backends::BackendChoice;
 use crate::output::FrameRate;
+use crate::plan::PlanFiles;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::stages::Stage;
 use clap::{Args, ValueEnum, ValueHint};
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Most parts of a plan.
@@ -59,7 +61,7 @@ pub(super) struct RawPlan {
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
           help_heading = "Files")]
     pub every: Option<Duration>,
-    /// What is made: the commands, one a line; the same as JSON; or files that give the parts to Slurm, GNU parallel or
+    /// What is made: the commands, one per line; the same as JSON; or files that give the parts to Slurm, GNU parallel or
     /// make
     #[arg(long, value_enum, default_value = "text", help_heading = "Files")]
     pub format: PlanFormat,
@@ -94,7 +96,7 @@ pub(super) struct RawPart {
 /// What `weekender plan` makes besides the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum PlanFormat {
-    /// The commands on standard output, one a line.
+    /// The commands on standard output, one per line.
     Text,
     /// Manifest and commands as JSON on standard output.
     Json,
@@ -189,6 +191,15 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
     if name.is_none() {
         return Err(CliError::PlanDirectory { path: raw.out });
     }
+    let signs: &[char] = if cfg!(windows) { &['%'] } else { &['%', '\\'] };
+    if raw.format == PlanFormat::Slurm && physical(&raw.out).to_string_lossy().contains(signs) {
+        return Err(CliError::SlurmDirectory { path: raw.out });
+    }
+    let written = PlanFiles::to_write(&raw.out);
+    Paths::default()
+        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+        .own("the plan's file", &raw.out, move |name| same_name(name, written.names()))
+        .check(&[])?;
     let mut flags = backend::words(&raw.backend);
     flags.extend(raw.every.map(|every| format!("--every={}s", every.as_secs_f64())));
     Ok(PlanOptions {
@@ -204,6 +215,15 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
         program: raw.program.unwrap_or_else(|| program.to_owned()),
         command,
     })
+}
+
+/// The path without links, as far as it exists: Slurm names logs by it.
+fn physical(path: &Path) -> PathBuf {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let known = whole.ancestors().find_map(|at| Some((at, at.canonicalize().ok()?)));
+    known
+        .and_then(|(at, known)| whole.strip_prefix(at).ok().map(|rest| known.join(rest)))
+        .unwrap_or_else(|| whole.clone())
 }
 
 /// Samples to divide.
@@ -245,14 +265,29 @@ pub(super) fn part(raw: RawPart, command: String) -> Result<PartOptions, CliErro
         Some(part) => part,
         None => part_of_environment(|name| std::env::var(name).ok())?,
     };
+    let json = raw.json.map(JsonTarget::from);
+    if let Some(JsonTarget::File(_)) = &json {
+        files_of(Paths::default(), &raw.plan, true).write_json(json.as_ref()).check(&[])?;
+    }
     Ok(PartOptions {
         plan: raw.plan,
         part,
         backend: backend::choice(&raw.backend)?,
         every: raw.every,
         progress: raw.progress,
-        json: raw.json.map(JsonTarget::from),
+        json,
         command,
+    })
+}
+
+/// Adds the files of a plan, also what its parts are merged into if `with_result`. A plan that cannot be read has none;
+/// whoever uses it says why.
+pub(super) fn files_of(paths: Paths, plan: &Path, with_result: bool) -> Paths {
+    let Ok(files) = PlanFiles::of(plan) else { return paths };
+    let directory = files.directory.clone();
+    paths.own("a file of the plan", &directory, move |name| {
+        let result = files.result.clone().filter(|_| with_result);
+        same_name(name, files.names().chain(result))
     })
 }
 

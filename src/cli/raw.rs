@@ -20,7 +20,7 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct RawRender {
-    /// Render to a file, without a window
+    /// Render to a file, without a window; with --stage all, every stage of the book, to the directory --out
     #[arg(long)]
     pub batch: bool,
     /// List scenes, stages and devices
@@ -64,11 +64,11 @@ pub(super) struct RawRender {
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
     #[arg(long, value_enum, help_heading = "Files")]
     pub ppm: Option<RawPpm>,
-    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. A file
-    /// that is there is never replaced unless the render goes on with it (--continue, --resume)
+    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
+    /// existing file is never replaced, unless the render continues its film (--continue, --resume)
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
-    /// Resume the film of --checkpoint if it is there, so that one command starts a render and goes on with it
+    /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it
     #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume", help_heading = "Files")]
     pub go_on: bool,
     /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
@@ -116,8 +116,8 @@ pub(super) struct RawAnimation {
     #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true,
           help_heading = "Animation")]
     pub frames: Option<Range<u32>>,
-    /// Let the camera circle around --look-at about --vup: so many frames a turn, or degrees a frame, such as 1.5deg or
-    /// -3deg [without a value: 120 frames]
+    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
+    /// as 1.5deg or -3deg [without a value: 120 frames]
     #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
           require_equals = true, default_missing_value = "120", help_heading = "Animation")]
     pub turntable: Option<Turn>,
@@ -184,13 +184,13 @@ pub(super) struct RawPicture {
     #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage",
           help_heading = "Picture")]
     pub scene: Option<String>,
-    /// A stage of the book; "all" renders all of them to the directory --out
+    /// A stage of the book; --list shows them
     #[arg(long, value_name = "ID", help_heading = "Picture")]
     pub stage: Option<String>,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
     pub size: Option<(u32, u32)>,
-    /// Most rays per path, including the camera's, 1 to 10000 [default: the scene's]
+    /// Maximum number of rays per path, including the camera's, 1 to 10000 [default: the scene's]
     #[arg(long, value_name = "RAYS", value_parser = whole(1..=DEPTH_LIMIT, 50),
           allow_hyphen_values = true, help_heading = "Picture")]
     pub depth: Option<u32>,

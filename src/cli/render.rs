@@ -101,6 +101,8 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Whether it is a part of a plan, which only goes on with a film in the part's own file.
+    pub is_part: bool,
     /// Samples per pixel that `--samples` asks for.
     pub asked_samples: Option<u64>,
     /// How a PPM holds its numbers.
@@ -265,6 +267,7 @@ fn render(
         checkpoint: raw.checkpoint.clone(),
         every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: raw.resume.clone(),
+        is_part: false,
         asked_samples: raw.samples,
         ppm: raw.ppm.map_or(PpmForm::Binary, RawPpm::form),
         command: command.to_owned(),

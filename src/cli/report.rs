@@ -1,12 +1,12 @@
 //! The flags of `weekender report` and their validation.
 
 use super::error::CliError;
-use super::paths::Paths;
+use super::paths::{Paths, same_name};
 use super::raw::{ProgressChoice, RawSwitch};
 use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, plain_name};
 use crate::render::{SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::GpuOptions;
@@ -64,7 +64,7 @@ pub(super) struct RawReport {
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
           help_heading = "How it is measured")]
     pub time_limit: Option<f64>,
-    /// Most samples per pixel, 2 to 4294967296 [default: 1024]
+    /// Maximum samples per pixel, 2 to 4294967296 [default: 1024]
     #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub max_samples: Option<u64>,
@@ -77,7 +77,7 @@ pub(super) struct RawReport {
         help_heading = "How it is measured"
     )]
     pub estimate_error: RawSwitch,
-    /// Also tell the seconds until this RMSE, and mark it in the plot [default: 0.01]
+    /// Also report the seconds needed to reach this RMSE, and mark it in the plot [default: 0.01]
     #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
           help_heading = "How it is measured")]
     pub target: Option<f64>,
@@ -210,7 +210,7 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
     let backends = report_backends(&raw, &defaults)?;
     let size = raw.size.unwrap_or(defaults.size);
     let scenes = report_scenes(&raw, &defaults, size)?;
-    check_paths(&raw)?;
+    check_paths(&raw, &scenes)?;
     let max_samples = raw.max_samples.unwrap_or(defaults.max_samples);
     let reference = match raw.reference {
         Some(_) if scenes.len() > 1 => {
@@ -244,8 +244,12 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
     })
 }
 
-/// Returns an error if the report would replace one of its inputs.
-fn check_paths(raw: &RawReport) -> Result<(), CliError> {
+/// Returns an error if the report would replace one of its inputs. Each of its `scenes` gets a reference, unless that is
+/// given.
+fn check_paths(raw: &RawReport, scenes: &[Recipe]) -> Result<(), CliError> {
+    let reference = |scene: &Recipe| format!("reference-{}.exr", plain_name(&scene.name));
+    let made: &[Recipe] = if raw.reference.is_some() { &[] } else { scenes };
+    let references: Vec<String> = made.iter().map(reference).collect();
     let files = raw.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
     let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
     REPORT_FILES
@@ -253,6 +257,7 @@ fn check_paths(raw: &RawReport) -> Result<(), CliError> {
         .fold(paths.read("--reference", raw.reference.as_deref()), |paths, name| {
             paths.write("a file of --out,", Some(&raw.out.join(name)))
         })
+        .own("a file of --out,", &raw.out, move |name| same_name(name, references.iter().cloned()))
         .check(&[])
 }
 

@@ -45,19 +45,19 @@ pub(super) enum RawCommand {
     /// Divide the samples of a picture, or the frames of an animation, into parts that many machines render, and make the
     /// commands for them
     ///
-    /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it goes on
-    /// from the part's last checkpoint or from the frames that are there, and ends at once if the part is whole.
+    /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
+    /// from the part's last checkpoint or from the existing frames, and ends at once if the part is whole.
     Plan(Box<RawPlan>),
-    /// Render a part of a plan, or go on with it
+    /// Render a part of a plan, or continue it
     ///
-    /// The part's film is its own checkpoint; frames are kept one by one. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint
-    /// is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
+    /// The part's film is its own checkpoint; frames are kept one by one. The exit code is 0 if the part is whole, 143 after
+    /// SIGTERM (the checkpoint is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
     RenderPart(Box<RawPart>),
     /// Merge films of the same picture that hold different samples, or the parts of a plan
     ///
-    /// Of a plan, what is there is merged, also checkpoints of unfinished parts; frames become an animated PNG once all are
-    /// there. The exit code is 0 if nothing is
-    /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
+    /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included; frames become an animated PNG
+    /// once all of them exist. The exit code is 0 if nothing is missing, 1 if a part is missing, unfinished or damaged, and
+    /// 2 if nothing could be merged.
     Merge(Box<RawMerge>),
     /// Say what a film, picture, scene file or plan says about itself
     Info(RawInfo),
@@ -86,7 +86,7 @@ pub(super) enum RawCommand {
     Companion(Box<RawCompanion>),
     /// Render every figure of the book, with a page that shows them
     ///
-    /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command goes on.
+    /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command continues.
     Gallery(Box<RawGallery>),
     /// Find the mistake in a picture that your own program has rendered
     ///

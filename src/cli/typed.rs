@@ -29,6 +29,17 @@ fn find_paths(command: &Command, matches: &ArgMatches, paths: &mut Vec<String>) 
     }
 }
 
+/// Adds the values of all flags but `except`, also those of the subcommand.
+pub(super) fn find_values(matches: &ArgMatches, except: &str, values: &mut Vec<OsString>) {
+    for id in matches.ids().filter(|id| id.as_str() != except) {
+        let found = matches.try_get_raw(id.as_str()).ok().flatten().into_iter().flatten();
+        values.extend(found.map(OsStr::to_owned));
+    }
+    if let Some((_, matches)) = matches.subcommand() {
+        find_values(matches, except, values);
+    }
+}
+
 /// A word `PATH` or `--flag=PATH` with only the file's name.
 fn shortened(word: &str, paths: &[String]) -> String {
     let is_path = |value: &str| paths.iter().any(|path| path == value);

@@ -49,13 +49,23 @@ impl Book {
         Some(stages::book_url(self.heading(chapter)?, section))
     }
 
-    /// A text that begins with the number of a chapter or section, such as "6.1 Shading with Surface Normals".
+    /// A text that begins with the number of a section, such as "6.1 Shading with Surface Normals".
     pub fn split(heading: &str) -> Option<(&str, &str)> {
         let (number, title) = heading.split_once(' ')?;
-        let mut parts = number.split('.');
-        let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-        (number.contains('.') && parts.all(is_number)).then_some((number, title.trim()))
+        is_section(number).then_some((number, title.trim()))
     }
+
+    /// The section whose number is among the words of a link, such as "section 9.3".
+    pub fn named(words: &str) -> Option<&str> {
+        let around = ['[', '(', ')', ',', ';'];
+        words.split_whitespace().map(|word| word.trim_matches(around)).find(|word| is_section(word))
+    }
+}
+
+/// Whether this is a number such as "9.3".
+fn is_section(number: &str) -> bool {
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    number.contains('.') && number.split('.').all(is_number)
 }
 
 #[cfg(test)]
@@ -82,6 +92,21 @@ mod tests {
         assert_eq!(Book::split("6.1 Shading with Normals"), Some(("6.1", "Shading with Normals")));
         for heading in ["1. Paths", "6 Normals", "What a lane is", "6.x Normals", "6.1"] {
             assert_eq!(Book::split(heading), None, "{heading}");
+        }
+    }
+
+    #[test]
+    fn a_link_may_name_a_section() {
+        for (words, section) in [
+            ("[9.3", Some("9.3")),
+            ("[section 10.1", Some("10.1")),
+            ("[the first part of section 9.2, above", Some("9.2")),
+            ("[chapter 9", None),
+            ("[case 34", None),
+            ("[cases 4 to 6", None),
+            ("<https://a.org/1.5", None),
+        ] {
+            assert_eq!(Book::named(words), section, "{words}");
         }
     }
 }

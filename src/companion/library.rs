@@ -153,6 +153,12 @@ impl Library {
     }
 }
 
+/// Whether a path of the repository looks like one: not all of them can be looked up in the program.
+pub fn is_source(path: &str) -> bool {
+    let folders = ["src/", "shaders/", "tests/", "examples/", "reference/", "benches/", "docs/", "assets/"];
+    folders.iter().any(|folder| path.starts_with(folder)) && !path.contains("..")
+}
+
 /// Whether this is `docs/companion/NN-name.md`.
 fn is_chapter(path: &str) -> bool {
     let name = Path::new(path).strip_prefix(FOLDER).ok().and_then(Path::to_str).unwrap_or_default();
@@ -194,6 +200,17 @@ mod tests {
         assert_eq!(library.chapters().unwrap(), Library::Embedded.chapters().unwrap());
         for path in Library::embedded() {
             assert!(library.read(path) == Library::Embedded.read(path), "{path}");
+        }
+    }
+
+    #[test]
+    fn sources_that_chapters_cite_exist() {
+        for path in Library::Embedded.chapters().unwrap() {
+            let text = Library::Embedded.read(&path).unwrap();
+            for cited in text.split("](source:").skip(1) {
+                let cited = cited.split(')').next().unwrap();
+                assert!(is_source(cited) && checkout().join(cited).exists(), "{path}: {cited}");
+            }
         }
     }
 

@@ -4,6 +4,7 @@ use super::book::Book;
 use super::chapter::Chapter;
 use super::directive;
 use super::faults::{Fault, line_of};
+use super::library::is_source;
 use super::site::{Site, Uses};
 use super::text::{slug, typographic};
 use maud::{Markup, PreEscaped, html};
@@ -174,7 +175,10 @@ impl Converter<'_> {
     fn paragraph<'e>(&mut self, range: Range<usize>, rest: &mut Events<'e>, out: &mut Vec<Event<'e>>) {
         let text = self.place.text[range.clone()].trim();
         let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) else {
-            out.push(Event::Start(Tag::Paragraph));
+            // A formula alone may be wider than the text.
+            let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
+            let wide = Event::Html("<p class=\"wide\">".into());
+            out.push(if is_formula { wide } else { Event::Start(Tag::Paragraph) });
             return;
         };
         skip_to(rest, TagEnd::Paragraph);
@@ -291,6 +295,14 @@ impl Converter<'_> {
         };
         let nothing = || (html! {}, html! {});
         let (scheme, rest) = target.split_once(':').unwrap_or(("", target));
+        let words = self.place.text[range.clone()].split("](").next().unwrap_or_default();
+        let there = if scheme == "book" { rest } else { rest.split_once('#').unwrap_or_default().1 };
+        if matches!(scheme, "book" | "page")
+            && let Some(section) = Book::named(words).filter(|section| *section != there)
+        {
+            let remedy = format!("write page:CHAPTER#{section} or book:{section}");
+            self.fault(range, format!("the link names section {section} but leads to {target:?}; {remedy}"));
+        }
         match scheme {
             "glossary" => match self.site.term(rest) {
                 Some(entry) => {
@@ -326,11 +338,17 @@ impl Converter<'_> {
                     self.fault(range, format!("the page has no chapter {name:?}"));
                     return nothing();
                 };
-                let anchor = if fragment.is_empty() { name.to_owned() } else { format!("{name}-{fragment}") };
+                let heading = self.site.book.heading(fragment).map(|heading| format!("{fragment} {heading}"));
+                let anchor = match &heading {
+                    Some(heading) => format!("{name}-{}", slug(heading)),
+                    None if fragment.is_empty() => name.to_owned(),
+                    None => format!("{name}-{fragment}"),
+                };
                 let line = self.line(range);
                 self.uses.targets.push((anchor.clone(), self.place.file.to_owned(), line));
                 let number = chapter.shown_number().map(|number| format!("Chapter {number}: "));
-                let title = number.unwrap_or_default() + &chapter.title;
+                let title = heading.map(|heading| format!("Section {heading}"));
+                let title = title.unwrap_or_else(|| number.unwrap_or_default() + &chapter.title);
                 (open("", &format!("#{anchor}"), &title, None), close)
             }
             "source" => {
@@ -340,7 +358,8 @@ impl Converter<'_> {
                         format!("there is no source {rest:?}; give its path in the repository"),
                     );
                 }
-                (html! {}, html! { " (" code .path { (rest) } ")" })
+                // The page has no copy of the repository, so it cites the path as it cites references.
+                (html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } })
             }
             "https" | "mailto" => (open("", target, "", None), close),
             "" if target.starts_with('#') => {
@@ -366,12 +385,6 @@ fn with_punctuation(formula: &Markup, rest: &mut Events<'_>) -> Markup {
     let Some(mark) = next.chars().next().filter(|c| ".,;:!?)".contains(*c)) else { return formula.clone() };
     *next = CowStr::from(next[mark.len_utf8()..].to_owned());
     html! { span .nb { (formula) (mark) } }
-}
-
-/// Whether a path of the repository looks like one: it cannot be looked up in the program.
-fn is_source(path: &str) -> bool {
-    let folders = ["src/", "shaders/", "tests/", "examples/", "reference/", "benches/", "docs/", "assets/"];
-    folders.iter().any(|folder| path.starts_with(folder)) && !path.contains("..")
 }
 
 fn skip_to(rest: &mut Events<'_>, end: TagEnd) {

@@ -33,6 +33,8 @@ pub enum Area {
     Rendering,
     /// Lanes, threads and devices.
     Parallelism,
+    /// How numbers are stored and rounded.
+    Numbers,
 }
 
 /// A work that the text refers to.

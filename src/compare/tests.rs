@@ -149,6 +149,35 @@ fn a_backend_and_a_file_keep_their_order() {
 }
 
 #[test]
+fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else() {
+    let directory = tempfile::tempdir().unwrap();
+    // A gradient from the left to the right, in values from 0 to 1.
+    let side = |most: u32, is_rounded: bool, brighter: f64| {
+        let mut file = format!("P6 64 64 {most} ").into_bytes();
+        for pixel in 0..64 * 64 {
+            let value = 0.2 + 0.4 * f64::from(pixel % 64) / 64.0 + brighter;
+            let most = f64::from(most);
+            let stored = if is_rounded { (most * value).round() } else { ((most + 1.0) * value).floor() };
+            file.extend([stored as u8; 3]);
+        }
+        let path = directory.path().join("a.ppm");
+        std::fs::write(&path, file).unwrap();
+        Side::read(&path, Encoding::Book(Transfer::Gamma2)).unwrap()
+    };
+    let fine = side(255, false, 0.0);
+    for (most, is_rounded) in [(31, false), (31, true), (15, false), (15, true), (100, true)] {
+        for found in [
+            compare(&fine, &side(most, is_rounded, 0.0), None),
+            compare(&side(most, is_rounded, 0.0), &fine, None),
+        ] {
+            assert!(found.is_equal(), "{most}, {is_rounded}: {:?} {:?}", found.reasons, found.unclear);
+        }
+        let found = compare(&fine, &side(most, is_rounded, 0.3), None);
+        assert!(!found.reasons.is_empty(), "{most}, {is_rounded}: {:?}", found.unclear);
+    }
+}
+
+#[test]
 fn each_of_two_backends_renders_its_own_side() {
     let recipe = small();
     let start = |choice, name| Rendering::start(&choice, name).unwrap();

@@ -53,12 +53,18 @@ pub struct Comparison {
     pub unclear: Option<String>,
 }
 
-/// Whether two pictures of floats hold the same bits; any NaN is equal to any other.
+/// Whether two pictures hold the same bits in the same format; any NaN is equal to any other.
 fn is_same(a: &Side, b: &Side) -> bool {
     let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
-    a.steps.is_none()
-        && b.steps.is_none()
-        && a.pixels.iter().flatten().zip(b.pixels.iter().flatten()).all(same)
+    let all_same = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().flatten().zip(b.iter().flatten()).all(same);
+    let has_same_steps = match (&a.steps, &b.steps) {
+        (Some(a), Some(b)) => all_same(a, b),
+        (None, None) => true,
+        _ => false,
+    };
+    // The largest value has no step.
+    let is_same_format = has_same_steps && a.limit.to_bits() == b.limit.to_bits();
+    is_same_format && all_same(&a.pixels, &b.pixels)
 }
 
 /// The steps of both pictures together, if either has steps.
@@ -105,7 +111,8 @@ pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison 
     let count = finite().count();
     let mean = |sum: f64| sum / count.max(1) as f64;
     let mut comparison = Comparison {
-        is_same: count > 0 && is_same(a, b),
+        // An integer that is not known is the largest of its format.
+        is_same: (count > 0 || a.steps.is_some()) && is_same(a, b),
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
         bias_deviation: variances.as_ref().map(|v| v.of_mean.hypot(ROUNDING_BIAS)),

@@ -3,11 +3,11 @@
 use crate::film::FIXED_POINT_SCALE;
 use crate::record::{PathRecord, RecordedRay};
 use crate::render::RenderJob;
-use crate::scene::Material;
+use crate::scene::Look;
 use crate::stages::Shading;
 use serde::Serialize;
 
-/// A quantity that can differ at a bounce, in the order in which they are computed.
+/// A quantity of a ray or of the whole path, in the order in which they are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
@@ -70,22 +70,21 @@ impl Departure {
     }
 }
 
-/// What happens to a path after ray `bounce`; `None` if that ray hits no sphere.
-pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<Departure> {
-    let ray = path.rays.get(bounce)?;
+/// What happens to a path after the ray with this index; `None` if that ray hits no sphere.
+pub fn departure(job: &RenderJob, path: &PathRecord, index: usize) -> Option<Departure> {
+    let ray = path.rays.get(index)?;
     let hit = ray.hit?;
     let sphere = job.scene().spheres.get(hit.sphere)?;
-    let material = job.scene().material_of(sphere);
-    Some(match (path.rays.get(bounce + 1), material) {
-        (Some(next), material) if material.is_transparent() => {
+    Some(match (path.rays.get(index + 1), job.scene().material_of(sphere).look()) {
+        (Some(next), Look::Glass { .. }) => {
             let outward = glam::DVec3::from(next.origin) - sphere.center;
             let side = |ray: &RecordedRay| glam::DVec3::from(ray.direction).dot(outward) > 0.0;
             if side(ray) == side(next) { Departure::Refracted } else { Departure::Reflected }
         }
-        (Some(_), Material::Lambertian { .. }) => Departure::Scattered,
-        (Some(_), _) => Departure::Reflected,
-        (None, _) if bounce + 1 >= job.settings().max_depth as usize => Departure::CutOff,
-        (None, Material::Metal { .. }) if job.rules().shading == Shading::Path => Departure::Absorbed,
+        (Some(_), Look::Matte) => Departure::Scattered,
+        (Some(_), Look::Mirror { .. }) => Departure::Reflected,
+        (None, _) if index + 1 >= job.settings().max_depth as usize => Departure::CutOff,
+        (None, Look::Mirror { .. }) if job.rules().shading == Shading::Path => Departure::Absorbed,
         (None, _) => Departure::Shown,
     })
 }
@@ -93,8 +92,8 @@ pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<De
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Index of the ray, 0 for the camera's.
-    pub bounce: usize,
+    /// Index of the ray among the path's rays, 0 for the camera's.
+    pub ray: usize,
     /// The quantity that differs.
     pub quantity: Quantity,
     /// The difference relative to the larger value; infinite if the quantity has no magnitude.
@@ -106,7 +105,7 @@ pub struct Difference {
 pub struct PathComparison {
     /// The first difference above the tolerance.
     pub first: Option<Difference>,
-    /// The first bounce at which the paths part. Their numbers may drift apart before that.
+    /// The first difference after which the paths are not the same. Their numbers may drift apart before that.
     pub parting: Option<Difference>,
     /// Largest difference of any quantity before the paths part.
     pub largest: f64,
@@ -123,31 +122,31 @@ pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> Pat
         radiance: radiance_amount(a.radiance, b.radiance),
     };
     let count = a.rays.len().max(b.rays.len());
-    'bounces: for bounce in 0..count {
+    'rays: for ray in 0..count {
         for quantity in Quantity::OF_RAY {
-            let amount = amount(job, [a, b], bounce, quantity);
-            let difference = Difference { bounce, quantity, amount };
+            let amount = amount(job, [a, b], ray, quantity);
+            let difference = Difference { ray, quantity, amount };
             if amount > tolerance {
                 comparison.first.get_or_insert(difference);
             }
             if amount.is_infinite() {
                 comparison.parting = Some(difference);
-                break 'bounces;
+                break 'rays;
             }
             comparison.largest = comparison.largest.max(amount);
         }
     }
     if comparison.radiance > tolerance {
-        let bounce = count.saturating_sub(1);
-        let difference = Difference { bounce, quantity: Quantity::Radiance, amount: comparison.radiance };
+        let ray = count.saturating_sub(1);
+        let difference = Difference { ray, quantity: Quantity::Radiance, amount: comparison.radiance };
         comparison.first.get_or_insert(difference);
     }
     comparison
 }
 
-/// Difference of a quantity of ray `bounce`, relative to the larger value.
-pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity: Quantity) -> f64 {
-    let (ray_a, ray_b) = match (a.rays.get(bounce), b.rays.get(bounce)) {
+/// Difference of a quantity of the ray with this index, relative to the larger value.
+pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], index: usize, quantity: Quantity) -> f64 {
+    let (ray_a, ray_b) = match (a.rays.get(index), b.rays.get(index)) {
         (Some(ray_a), Some(ray_b)) => (ray_a, ray_b),
         (None, None) => return 0.0,
         _ => return f64::INFINITY,
@@ -156,7 +155,7 @@ pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity
     match quantity {
         Quantity::Origin => {
             // Positions are only as exact as the largest coordinate that the path has passed through.
-            let extent = a.rays[..=bounce].iter().map(|ray| length(ray.origin)).fold(0.0, f64::max);
+            let extent = a.rays[..=index].iter().map(|ray| length(ray.origin)).fold(0.0, f64::max);
             share(length(minus(ray_a.origin, ray_b.origin)), extent.max(length(ray_b.origin)))
         }
         Quantity::Direction => length(minus(ray_a.direction, ray_b.direction)),
@@ -168,7 +167,7 @@ pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity
             }
             _ => 0.0,
         },
-        Quantity::Departure => apart(departure(job, a, bounce) != departure(job, b, bounce)),
+        Quantity::Departure => apart(departure(job, a, index) != departure(job, b, index)),
         Quantity::Radiance => radiance_amount(a.radiance, b.radiance),
     }
 }
@@ -205,6 +204,7 @@ mod tests {
     use super::*;
     use crate::recipe::Recipe;
     use crate::record::RecordedHit;
+    use crate::scene::Material;
 
     fn job() -> RenderJob {
         Recipe::find("three-spheres").expect("built in").job().expect("valid")
@@ -235,12 +235,12 @@ mod tests {
             (0, Quantity::Departure, |p| p.rays.truncate(1)),
             (1, Quantity::Radiance, |p| p.radiance[0] = 0.26),
         ];
-        for (bounce, quantity, change) in cases {
+        for (ray, quantity, change) in cases {
             let mut changed = path();
             change(&mut changed);
             for pair in [[&path(), &changed], [&changed, &path()]] {
                 let first = compare(&job(), pair, 1e-4).first.expect("a difference");
-                assert_eq!((first.bounce, first.quantity), (bounce, quantity));
+                assert_eq!((first.ray, first.quantity), (ray, quantity));
             }
         }
     }
@@ -267,14 +267,14 @@ mod tests {
         let metal = of(|material| matches!(material, Material::Metal { .. }));
         let glass = of(|material| matches!(material, Material::Dielectric { .. }));
         // A ray downwards meets the top of the sphere; the next one starts there.
-        let found = |sphere: usize, next: Option<[f64; 3]>, bounce: usize| {
+        let found = |sphere: usize, next: Option<[f64; 3]>, index: usize| {
             let center = scene.spheres[sphere].center;
             let top = (center + scene.spheres[sphere].radius * glam::DVec3::Y).to_array();
             let hit = RecordedHit { sphere, distance: 1.0, position: Some(top) };
             let ray = |direction, hit| RecordedRay { origin: top, direction, throughput: [1.0; 3], hit };
-            let mut rays = vec![ray([0.0, -1.0, 0.0], Some(hit)); bounce + 1];
+            let mut rays = vec![ray([0.0, -1.0, 0.0], Some(hit)); index + 1];
             rays.extend(next.map(|direction| ray(direction, None)));
-            departure(&job, &PathRecord { rays, radiance: [0.0; 3] }, bounce)
+            departure(&job, &PathRecord { rays, radiance: [0.0; 3] }, index)
         };
         let (up, down) = (Some([0.6, 0.8, 0.0]), Some([0.6, -0.8, 0.0]));
         assert_eq!(found(matte, up, 0), Some(Departure::Scattered));

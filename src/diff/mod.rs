@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use text::{Paint, Tone};
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 struct DiffJson<'a> {
@@ -87,7 +87,7 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     let paint = Paint::on(is_terminal, std::env::var_os("NO_COLOR"));
     let mut text = opening(options, &sides, pixel, sample, found, paint);
     text.push('\n');
-    text.push_str(&text::bounces(&told, &comparison, paint));
+    text.push_str(&text::rays(&told, &comparison, paint));
     text.push_str(&text::closing(&told, &comparison, paint));
     print_painted_beside(json, &text).map_err(Failure::Input)?;
 

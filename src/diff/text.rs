@@ -53,22 +53,22 @@ impl Paint {
     }
 }
 
-/// All bounces of both paths, with the first difference marked.
-pub fn bounces(told: &Told, comparison: &PathComparison, paint: Paint) -> String {
+/// All rays of both paths, with the first difference marked.
+pub fn rays(told: &Told, comparison: &PathComparison, paint: Paint) -> String {
     let mut text = String::new();
     let [a, b] = told.names.map(|name| cut(name, COLUMN));
     line(&mut text, &paint.paint(Tone::Strong, format!("{:LABEL$}{a:COLUMN$}   {b}", "").trim_end()));
     let count = told.paths.iter().map(|path| path.rays.len()).max().unwrap_or(0);
-    for bounce in 0..count {
-        let from = if bounce == 0 { " from the camera" } else { "" };
-        let heading = format!("bounce {bounce}{from} ");
+    for index in 0..count {
+        let from = if index == 0 { " from the camera" } else { "" };
+        let heading = format!("ray {}{from} ", index + 1);
         let rule = "─".repeat(WIDTH.saturating_sub(heading.chars().count()));
         line(
             &mut text,
             &format!("{}{}", paint.paint(Tone::Strong, &heading), paint.paint(Tone::Faint, &rule)),
         );
         for quantity in Quantity::OF_RAY {
-            row(&mut text, told, comparison, bounce, quantity, paint);
+            row(&mut text, told, comparison, index, quantity, paint);
         }
     }
     text
@@ -79,11 +79,11 @@ fn row(
     text: &mut String,
     told: &Told,
     comparison: &PathComparison,
-    bounce: usize,
+    index: usize,
     quantity: Quantity,
     paint: Paint,
 ) {
-    let values = told.paths.map(|path| value(told, path, bounce, quantity));
+    let values = told.paths.map(|path| value(told, path, index, quantity));
     if values.iter().all(Option::is_none) {
         return;
     }
@@ -97,7 +97,7 @@ fn row(
         Quantity::Radiance => "radiance",
     };
     // If a side has no value, the row of what it hit says why.
-    let difference = amount(told.job, told.paths, bounce, quantity);
+    let difference = amount(told.job, told.paths, index, quantity);
     let sign = if values.iter().all(Option::is_some) {
         sign(difference, told.tolerance, paint)
     } else {
@@ -105,7 +105,7 @@ fn row(
     };
     let [a, b] = values.map(|value| cut(&value.unwrap_or_default(), COLUMN));
     let is = |found: Option<super::compare::Difference>| {
-        found.filter(|found| (found.bounce, found.quantity) == (bounce, quantity))
+        found.filter(|found| (found.ray, found.quantity) == (index, quantity))
     };
     let marked = is(comparison.first).or(is(comparison.parting));
     let (mark, tone) = if marked.is_some() { ("▶ ", Tone::Bad) } else { ("  ", Tone::Faint) };
@@ -160,8 +160,8 @@ fn sign(difference: f64, tolerance: f64, paint: Paint) -> String {
     }
 }
 
-fn value(told: &Told, path: &PathRecord, bounce: usize, quantity: Quantity) -> Option<String> {
-    let ray = path.rays.get(bounce)?;
+fn value(told: &Told, path: &PathRecord, index: usize, quantity: Quantity) -> Option<String> {
+    let ray = path.rays.get(index)?;
     match quantity {
         Quantity::Origin => Some(vector(ray.origin)),
         Quantity::Direction => Some(vector(ray.direction)),
@@ -174,7 +174,7 @@ fn value(told: &Told, path: &PathRecord, bounce: usize, quantity: Quantity) -> O
             },
         }),
         Quantity::Distance => ray.hit.map(|hit| number(hit.distance).trim_start().to_owned()),
-        Quantity::Departure => departure(told.job, path, bounce).map(|departure| departure.word().to_owned()),
+        Quantity::Departure => departure(told.job, path, index).map(|departure| departure.word().to_owned()),
         Quantity::Radiance => Some(vector(path.radiance)),
     }
 }
@@ -269,5 +269,30 @@ mod tests {
     fn lines_break_between_words() {
         assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
         assert_eq!(cut("sphere 7", 5), "sphe…");
+    }
+
+    #[test]
+    fn rays_that_only_one_path_has_are_shown_with_the_difference_that_they_make() {
+        let job = Recipe::find("three-spheres").unwrap().job().unwrap();
+        let ray = |z: f64| {
+            let (direction, throughput) = ([0.0, 0.0, -1.0], [1.0; 3]);
+            RecordedRay { origin: [0.0, 0.0, z], direction, throughput, hit: None }
+        };
+        let path = |rays: &[RecordedRay]| PathRecord { rays: rays.to_vec(), radiance: [0.5; 3] };
+        let (short, long) = (path(&[ray(1.0)]), path(&[ray(1.0), ray(2.0)]));
+        for paths in [[&short, &long], [&long, &short]] {
+            let told = Told { job: &job, names: ["cpu", "reference"], paths, tolerance: 1e-3 };
+            let text = rays(&told, &compare(&job, paths, 1e-3), Paint { is_on: false });
+            let (both, one) = text.split_once("ray 2 ").unwrap();
+            assert!(both.contains("ray 1 from the camera") && !both.contains('▶'), "{text}");
+            let row = |label: &str| one.lines().find(|line| line.contains(label)).unwrap();
+            assert!(row("▶ from").contains("2.000000"), "{text}");
+            assert!(row("direction ").contains("-1.000000"), "{text}");
+            assert!(row("meets").contains("the sky"), "{text}");
+            assert!(
+                one.contains("ray 2: the origins of the rays differ") && !text.contains("ray 3"),
+                "{text}"
+            );
+        }
     }
 }

@@ -42,16 +42,15 @@ impl Told<'_> {
         }
     }
 
-    /// A difference in a sentence: `bounce 2: the paths part: cpu avx2 hits sphere 7 (glass), gpu the sky`.
+    /// A difference in a sentence: `ray 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`. Rays are counted
+    /// from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
-        let Difference { bounce, quantity, amount } = *difference;
+        let Difference { ray: index, quantity, amount } = *difference;
+        let number = index + 1;
         let [a, b] = self.names;
-        let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(bounce));
+        let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(index));
         let drift = |what: &str| {
-            format!(
-                "bounce {bounce}: {what} differ by {amount:.1e}, but only {:.0e} is allowed",
-                self.tolerance
-            )
+            format!("ray {number}: {what} differ by {amount:.1e}, but only {:.0e} is allowed", self.tolerance)
         };
         match quantity {
             Quantity::Origin => drift("the origins of the rays"),
@@ -65,7 +64,7 @@ impl Told<'_> {
             Quantity::Object => {
                 let meets = |ray: Option<&RecordedRay>| self.object(ray);
                 format!(
-                    "bounce {bounce}: the paths part: {a} meets {}, {b} {}{}",
+                    "ray {number}: the paths part: {a} meets {}, {b} {}{}",
                     meets(ray_a),
                     meets(ray_b),
                     self.near_miss(ray_a, ray_b).unwrap_or_default()
@@ -73,10 +72,10 @@ impl Told<'_> {
             }
             Quantity::Departure => {
                 let word =
-                    |path| departure(self.job, path, bounce).map_or("gone", |departure| departure.word());
+                    |path| departure(self.job, path, index).map_or("gone", |departure| departure.word());
                 let [word_a, word_b] = self.paths.map(word);
                 let at = self.object(ray_a.or(ray_b));
-                format!("bounce {bounce}: the paths part at {at}: {a} is {word_a}, {b} is {word_b}")
+                format!("ray {number}: the paths part at {at}: {a} is {word_a}, {b} is {word_b}")
             }
         }
     }
@@ -139,7 +138,7 @@ mod tests {
             let missing = path(beside, None);
             let paths = if is_swapped { [&missing, &hitting] } else { [&hitting, &missing] };
             let told = Told { job: &job, names: ["cpu", "gpu"], paths, tolerance: 1e-3 };
-            told.sentence(&Difference { bounce: 0, quantity: Quantity::Object, amount: f64::INFINITY })
+            told.sentence(&Difference { ray: 0, quantity: Quantity::Object, amount: f64::INFINITY })
         };
         assert!(told(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
         let swapped = told(1.005, true);

@@ -3,7 +3,7 @@
 use crate::record::{PathRecord, RecordedRay};
 use crate::render::RenderJob;
 use crate::sampling::{numbers, unit_float};
-use crate::scene::{Material, Sphere};
+use crate::scene::{Look, Material, Sphere};
 use crate::stages::{DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;
 
@@ -117,8 +117,8 @@ fn event_of(
     if job.rules().shading != Shading::Path {
         return Event::Shown;
     }
-    let material = job.scene().materials[job.scene().spheres[hit.sphere].material].material;
-    let lobe = lobe_of(&material, job.rules(), hit, direction, next, coin);
+    let material = job.scene().material_of(&job.scene().spheres[hit.sphere]);
+    let lobe = lobe_of(material, job.rules(), hit, direction, next, coin);
     match next {
         Some(_) => Event::Scattered(lobe),
         None if bounce + 1 >= job.settings().max_depth as usize => Event::Limit,
@@ -136,11 +136,11 @@ fn lobe_of(
 ) -> Lobe {
     let cosine = (-direction.dot(hit.normal)).clamp(0.0, 1.0);
     let mirrored = (direction + hit.normal * (2.0 * cosine)).normalize_or_zero();
-    match *material {
-        Material::Lambertian { .. } if rules.diffuse == Diffuse::Hemisphere => Lobe::Hemisphere,
-        Material::Lambertian { .. } => Lobe::Lambertian,
-        Material::Metal { .. } => Lobe::Metal { mirrored, fuzz: material.effective_fuzz() },
-        Material::Dielectric { refraction_index } => {
+    match material.look() {
+        Look::Matte if rules.diffuse == Diffuse::Hemisphere => Lobe::Hemisphere,
+        Look::Matte => Lobe::Lambertian,
+        Look::Mirror { fuzz } => Lobe::Metal { mirrored, fuzz },
+        Look::Glass { refraction_index } => {
             let ratio = if hit.is_outside { 1.0 / refraction_index } else { refraction_index };
             let across = direction + hit.normal * cosine;
             let refracted_sine2 = ratio * ratio * across.length_squared();

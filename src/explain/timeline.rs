@@ -1,7 +1,7 @@
 //! What each lane of a packet does, step by step.
 
 use crate::record::PathRecord;
-use crate::scene::{Material, Scene};
+use crate::scene::{Look, Scene};
 
 /// What a lane does in one step of its packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub enum Activity {
     Camera,
     /// Traces a ray that a matte surface scattered.
     Matte,
-    /// Traces a ray that a metal reflected.
+    /// Traces a ray that a metal, or a similar surface, reflected.
     Metal,
     /// Traces a ray that glass reflected or refracted.
     Glass,
@@ -50,10 +50,10 @@ impl Timeline {
 pub fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timeline {
     let rays = |path: &PathRecord| -> Vec<Activity> {
         let after = |ray: usize| match path.rays[ray].hit {
-            Some(hit) => match scene.materials[scene.spheres[hit.sphere].material].material {
-                Material::Lambertian { .. } => Activity::Matte,
-                Material::Metal { .. } => Activity::Metal,
-                Material::Dielectric { .. } => Activity::Glass,
+            Some(hit) => match scene.material_of(&scene.spheres[hit.sphere]).look() {
+                Look::Matte => Activity::Matte,
+                Look::Mirror { .. } => Activity::Metal,
+                Look::Glass { .. } => Activity::Glass,
             },
             None => Activity::Camera,
         };
@@ -83,6 +83,7 @@ fn even_out(lanes: &mut [Vec<Activity>]) {
 mod tests {
     use super::*;
     use crate::record::{RecordedHit, RecordedRay};
+    use crate::scene::Material;
     use glam::DVec3;
 
     /// A path that meets these spheres, then the sky.

@@ -2,6 +2,8 @@
 
 mod identity;
 mod leftovers;
+mod lock;
+mod names;
 mod places;
 mod read;
 mod replace;
@@ -9,6 +11,8 @@ mod shown;
 
 pub use identity::FileIdentity;
 pub(crate) use identity::Stamp;
+pub use lock::{lock_path, lock_within};
+pub use names::{NAME_LIMIT, free_name};
 pub use places::{cache_directory, home_directory, state_directory};
 pub use read::{InputError, open, read};
 pub(crate) use replace::NewFile;

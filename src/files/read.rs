@@ -153,4 +153,24 @@ mod tests {
             assert_eq!(kind_of(&pipe), "a pipe");
         }
     }
+
+    /// The system reports a length of 0 for this file.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_that_is_longer_than_it_reports_is_read_whole_or_not_at_all() {
+        let path = Path::new("/proc/version");
+        let whole = fs::read(path).unwrap();
+        let length = whole.len() as u64;
+        assert!(fs::metadata(path).unwrap().len() < length);
+        for limit in [length, length + 1] {
+            assert_eq!(read(path, "a list", limit).unwrap(), whole);
+        }
+        for limit in [0, 1, length - 1] {
+            let outcome = read(path, "a list", limit);
+            assert!(
+                matches!(outcome, Err(InputError::TooLong { bytes, .. }) if bytes > limit),
+                "{outcome:?}"
+            );
+        }
+    }
 }

@@ -2,6 +2,9 @@
 
 use std::fmt::Display;
 
+/// The program and its version, as files and messages name them.
+pub const SOFTWARE: &str = concat!("Weekender ", env!("CARGO_PKG_VERSION"));
+
 /// The key of the recipe in a picture file.
 pub const RECIPE_KEY: &str = "Weekender recipe";
 

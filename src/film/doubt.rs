@@ -9,6 +9,9 @@ const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 /// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
 const DOMINANT_SHARE: f64 = 0.2;
 
+/// A doubtful estimate must be below a target by this many of its standard deviations.
+const DEVIATIONS: f64 = 3.0;
+
 /// Rounding matters if it can cost more than this share of the brightness.
 const ROUNDING_SHARE: f64 = 0.01;
 
@@ -30,12 +33,25 @@ enum Light {
 }
 
 impl Film {
+    /// Whether the error of this film, of which `estimate` is the estimate, is at most `target`, whatever is doubtful: an
+    /// estimate that few pixels dominate must be lower, and while no path has found any light, the error may be as large
+    /// as `brightest`, the largest radiance that a sample can have.
+    pub fn meets(&self, target: f64, estimate: Option<&ErrorEstimate>, brightest: f64) -> bool {
+        match estimate {
+            Some(found) if self.rests_on_few_pixels(found) => {
+                found.rmse + DEVIATIONS * found.rmse_deviation <= target
+            }
+            Some(found) => found.rmse <= target,
+            None => self.has_both_halves() && brightest <= target,
+        }
+    }
+
     /// Why this film or the estimate of its error is doubtful, in words: rounding matters, no path has found any light, or
     /// few pixels dominate the estimate. The estimate and its deviation are then most likely too low. `brightest` is the
     /// largest radiance that a sample can have, 0 if the scene has no light.
     pub fn doubt(&self, estimate: Option<&ErrorEstimate>, brightest: f64) -> Option<String> {
         match self.light() {
-            Light::None => self.doubt_in_the_dark(estimate, brightest),
+            Light::None => self.doubt_in_the_dark(brightest),
             Light::Faint(mean) => Some(format!(
                 "the picture is so dark that rounding matters: its brightness is {mean:.1e}, and {STEPS}, which can cost \
                  {:.0} % of it; {REMEDY}",
@@ -45,7 +61,7 @@ impl Film {
         }
     }
 
-    fn doubt_in_the_dark(&self, estimate: Option<&ErrorEstimate>, brightest: f64) -> Option<String> {
+    fn doubt_in_the_dark(&self, brightest: f64) -> Option<String> {
         let count = self.sample_count();
         let shown = Number(brightest);
         if count == 0 {
@@ -66,7 +82,7 @@ impl Film {
                  paths find becomes 0; {REMEDY}"
             ))
         } else {
-            estimate.map(|_| {
+            self.has_both_halves().then(|| {
                 format!(
                     "no path has found any light in {count} samples per pixel, so the error cannot be estimated; more \
                      samples may find some"
@@ -75,9 +91,14 @@ impl Film {
         }
     }
 
+    fn rests_on_few_pixels(&self, estimate: &ErrorEstimate) -> bool {
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
+        pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64
+    }
+
     fn doubt_of_few_pixels(&self, estimate: &ErrorEstimate) -> Option<String> {
         let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
-        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
+        self.rests_on_few_pixels(estimate).then(|| {
             format!(
                 "a few pixels dominate the error estimate: it effectively rests on {pixels:.0} of {all} pixels, but needs \
                  {PIXELS_IN_EFFECT_MIN:.0}; until there are more samples it may be far too low"

@@ -6,14 +6,18 @@ use super::{FIXED_POINT_SCALE, Film, ROUNDING_LIMIT};
 /// not show where both are rounded the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// Root of the mean squared error over pixels and channels, linear radiance.
+    /// Root of the mean squared error over pixels and channels, linear radiance. It is [`ROUNDING_LIMIT`] only if the
+    /// halves are equal, and just above it if they differ by less.
     pub rmse: f64,
-    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels. Neither number includes
-    /// features that no sample has hit yet.
+    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels; 0 if the halves are equal.
+    /// Neither number includes features that no sample has hit yet.
     pub rmse_deviation: f64,
     /// `mean(error^2 / (mean^2 + 0.01))`, which gives errors in dark regions more weight.
     pub rel_mse: f64,
 }
+
+/// The error of halves that differ, but by less than rounding can cost.
+const WITHIN_ROUNDING: f64 = ROUNDING_LIMIT.next_up();
 
 /// The most that rounding can add to `rel_mse`.
 const ROUNDING_REL_MSE: f64 = ROUNDING_LIMIT * ROUNDING_LIMIT / 1e-2;
@@ -27,16 +31,17 @@ impl ErrorEstimate {
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// Whether the halves do not differ, so that only rounding is left. Either the picture has no noise, or no path has
-    /// found any light yet.
+    /// Whether the halves do not differ, so that only rounding is left: the picture has no noise.
     pub fn is_without_noise(&self) -> bool {
         self.rmse <= ROUNDING_LIMIT
     }
 
-    /// The error in words: `2.000e-2 ± 5.0 % RMSE`, or how much rounding can cost if there is nothing else.
+    /// The error in words: `2.000e-2 ± 5.0 % RMSE`, or how much rounding can cost if that is more than the noise.
     pub fn words(&self) -> String {
         if self.is_without_noise() {
             format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding alone")
+        } else if self.rmse <= WITHIN_ROUNDING {
+            format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding; the noise is below that")
         } else {
             format!("{:.3e} {} RMSE", self.rmse, self.uncertainty())
         }
@@ -52,12 +57,12 @@ impl ErrorEstimate {
 impl Film {
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples,
     /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after
-    /// every even number of samples. The root is at least [`ROUNDING_LIMIT`]. `None` with one half, or while a half has
-    /// no samples.
+    /// every even number of samples. The root is at least [`ROUNDING_LIMIT`]. `None` with one half, while a half has no
+    /// samples, and while all of it is black, because equal halves say nothing of light that no path has found.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
-        if count_a == 0.0 || count_b == 0.0 || half_a.is_empty() {
+        if count_a == 0.0 || count_b == 0.0 || self.is_black() {
             return None;
         }
         let count = count_a + count_b;
@@ -86,10 +91,40 @@ impl Film {
         let [square, fourth_power] = [square_sum / (3.0 * pixels), fourth_power_sum / (9.0 * pixels)];
         let deviation_of_square = ((fourth_power - square * square).max(0.0) / pixels).sqrt();
         let rmse = square.sqrt();
+        let has_noise = rmse > ROUNDING_LIMIT || self.halves_differ();
         Some(ErrorEstimate {
-            rmse: rmse.max(ROUNDING_LIMIT),
-            rmse_deviation: if rmse > ROUNDING_LIMIT { 0.5 * deviation_of_square / rmse } else { 0.0 },
+            rmse: rmse.max(if has_noise { WITHIN_ROUNDING } else { ROUNDING_LIMIT }),
+            rmse_deviation: if has_noise && rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
             rel_mse: (relative_sum / (3.0 * pixels)).max(ROUNDING_REL_MSE),
         })
+    }
+
+    /// Whether no path has found any light.
+    fn is_black(&self) -> bool {
+        self.halves.iter().flatten().all(|sum| sum.0 == [0; 3])
+    }
+
+    /// Why [`Film::error`] has nothing to say, in words.
+    pub fn why_no_error(&self) -> &'static str {
+        if self.halves.len() < 2 {
+            "the film has one half"
+        } else if !self.has_both_halves() {
+            "only one half has samples"
+        } else {
+            "no path has found any light"
+        }
+    }
+
+    /// Whether there are two halves, each with samples.
+    pub(super) fn has_both_halves(&self) -> bool {
+        self.halves.len() == 2 && (0..2).all(|half| self.half_sample_count(half) > 0)
+    }
+
+    /// Whether the means of the halves differ anywhere. As integers, because quotients of equal means can differ.
+    fn halves_differ(&self) -> bool {
+        let [half_a, half_b] = self.halves.as_slice() else { return false };
+        let [count_a, count_b] = [0, 1].map(|half| u128::from(self.half_sample_count(half)));
+        let differ = |(a, b): (&u64, &u64)| u128::from(*a) * count_b != u128::from(*b) * count_a;
+        half_a.iter().zip(half_b).any(|(a, b)| a.0.iter().zip(&b.0).any(differ))
     }
 }

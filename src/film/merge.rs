@@ -1,7 +1,9 @@
 //! Merges films from several files.
 
 use super::checkpoint::{ApplyError, FilmHead, Sign, apply};
-use super::{CheckpointError, Description, Film, FilmError, FilmFile, SampleRanges, checkpoint, key};
+use super::{
+    CheckpointError, Description, Film, FilmError, FilmFile, PixelSum, SampleRanges, checkpoint, key,
+};
 use crate::files::{self, InputError, ShownPath};
 use std::fs::File;
 use std::io::{BufReader, Seek};
@@ -80,8 +82,17 @@ pub struct Share {
     rejected: u64,
     seconds: Option<f64>,
     backend: Option<String>,
+    /// What it needs to be taken away again, if it may leave.
+    guest: Option<Guest>,
+}
+
+/// The file of a film that may leave a sum.
+#[derive(Debug)]
+struct Guest {
     /// Held open, so that it can be taken away even if the file was replaced.
-    file: Option<File>,
+    file: File,
+    /// The film that it held. A copy in its place may have changed that.
+    mark: String,
 }
 
 impl Share {
@@ -122,7 +133,7 @@ impl FilmSum {
         same_job: impl Fn(&str, &str) -> Result<(), String>,
         may_leave: impl Fn(&SampleRanges) -> bool,
     ) -> Result<&Share, MergeError> {
-        let (file, about) = open(path)?;
+        let (file, about, mark) = open(path)?;
         let (first, other) = (self.first.clone(), path.to_owned());
         if let Err(difference) = same_job(self.description.recipe(), about.description.recipe()) {
             return Err(MergeError::OtherJob { first, other, difference });
@@ -141,7 +152,7 @@ impl FilmSum {
         let failed = |reason| MergeError::Film { first: first.clone(), other: other.clone(), reason };
         let samples = self.film.samples.union(&about.samples).map_err(failed)?;
         let rejected = self.film.with_rejected(about.rejected).map_err(failed)?;
-        apply(&mut self.film.halves, &file, path, Sign::Plus).map_err(apply_error)?;
+        apply(&mut self.film.halves, &file, path, &mark, Sign::Plus).map_err(apply_error)?;
         (self.film.samples, self.film.rejected) = (samples, rejected);
         let is_guest = may_leave(&about.samples);
         self.shares.push(Share {
@@ -150,7 +161,7 @@ impl FilmSum {
             rejected: about.rejected,
             seconds: about.description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok()),
             backend: about.description.get(key::BACKEND).map(str::to_owned),
-            file: is_guest.then_some(file),
+            guest: is_guest.then_some(Guest { file, mark }),
         });
         // It was pushed just now.
         Ok(&self.shares[self.shares.len() - 1])
@@ -159,12 +170,13 @@ impl FilmSum {
     /// Takes away every film that was added with `may_leave`.
     ///
     /// # Errors
-    /// [`MergeError::Lost`] if one of them cannot be read any more: the sum is then worthless.
+    /// [`MergeError::Lost`] if one of them cannot be read any more: the sum is then worthless, until it is cleared.
     pub fn take_back(&mut self) -> Result<(), MergeError> {
-        let leaves = |share: &mut Share| share.file.is_some();
+        let leaves = |share: &mut Share| share.guest.is_some();
         for share in self.shares.extract_if(.., leaves) {
-            let Some(file) = &share.file else { continue };
-            apply(&mut self.film.halves, file, &share.path, Sign::Minus).map_err(|error| match error {
+            let Some(Guest { file, mark }) = &share.guest else { continue };
+            let taken = apply(&mut self.film.halves, file, &share.path, mark, Sign::Minus);
+            taken.map_err(|error| match error {
                 ApplyError::File(reason) | ApplyError::Lost(reason) => MergeError::Lost { reason },
             })?;
             self.film.rejected -= share.rejected;
@@ -176,6 +188,35 @@ impl FilmSum {
             reason,
         })?;
         Ok(())
+    }
+
+    /// A copy. What is in it stays in it: [`FilmSum::take_back`] takes away only what is added to the copy.
+    ///
+    /// # Errors
+    /// [`MergeError::Film`] if there is not enough memory.
+    pub fn try_copy(&self) -> Result<Self, MergeError> {
+        let film = self.film.try_copy().map_err(|reason| MergeError::Film {
+            first: self.first.clone(),
+            other: self.first.clone(),
+            reason,
+        })?;
+        let shares = self.shares.iter().map(|share| Share {
+            path: share.path.clone(),
+            samples: share.samples.clone(),
+            rejected: share.rejected,
+            seconds: share.seconds,
+            backend: share.backend.clone(),
+            guest: None,
+        });
+        let (description, first) = (self.description.clone(), self.first.clone());
+        Ok(FilmSum { film, description, first, shares: shares.collect() })
+    }
+
+    /// Empties the sum, which needs no memory.
+    pub fn clear(&mut self) {
+        self.film.halves.iter_mut().for_each(|half| half.fill(PixelSum::default()));
+        (self.film.samples, self.film.rejected) = (SampleRanges::default(), 0);
+        self.shares.clear();
     }
 
     /// The sum.
@@ -211,13 +252,13 @@ fn apply_error(error: ApplyError) -> MergeError {
     }
 }
 
-/// A film file, held open, and what it says about its film.
-fn open(path: &Path) -> Result<(File, FilmHead), CheckpointError> {
+/// A film file, held open, what it says about its film, and the film's mark.
+fn open(path: &Path) -> Result<(File, FilmHead, String), CheckpointError> {
     let (mut file, length) = files::open(path)?;
-    let about = checkpoint::head_of(BufReader::new(&file), length, path)?;
+    let (about, mark) = checkpoint::head_of(BufReader::new(&file), length, path)?;
     file.rewind()
         .map_err(|reason| InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() })?;
-    Ok((file, about))
+    Ok((file, about, mark))
 }
 
 /// Merges the films of several files. Besides the sum, this needs memory for a few rows.
@@ -240,25 +281,4 @@ pub fn merge_files<P: AsRef<Path>>(
     }
     let description = sum.description();
     Ok(FilmFile { film: sum.film, description })
-}
-
-/// Checks whether two recipes have the same text, apart from lines that set `samples_per_pixel`.
-///
-/// # Errors
-/// The first lines that differ.
-pub fn same_recipe_text(first: &str, other: &str) -> Result<(), String> {
-    let lines = |text: &str| -> Vec<String> {
-        text.lines().filter(|line| !is_sample_count(line)).map(str::to_owned).collect()
-    };
-    let (first, other) = (lines(first), lines(other));
-    let count = first.len().max(other.len());
-    let line = |lines: &[String], i: usize| lines.get(i).cloned().unwrap_or_else(|| "nothing".into());
-    match (0..count).find(|i| first.get(*i) != other.get(*i)) {
-        None => Ok(()),
-        Some(i) => Err(format!("one recipe says `{}`, the other `{}`", line(&first, i), line(&other, i))),
-    }
-}
-
-fn is_sample_count(line: &str) -> bool {
-    line.trim_start().strip_prefix("samples_per_pixel").is_some_and(|rest| rest.trim_start().starts_with('='))
 }

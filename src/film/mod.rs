@@ -21,13 +21,13 @@ mod smooth;
 
 pub use checkpoint::{CheckpointError, FilmFile, FilmHead};
 pub use checksum::Checksum;
-pub use description::{Description, RECIPE_KEY, key};
+pub use description::{Description, RECIPE_KEY, SOFTWARE, key};
 pub use error_estimate::ErrorEstimate;
 pub use fixed_point::{
     FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIMIT, ROUNDING_LIMIT, fixed_point,
 };
 pub use histogram::Histogram;
-pub use merge::{FilmSum, MergeError, Share, merge_files, same_recipe_text};
+pub use merge::{FilmSum, MergeError, Share, merge_files};
 pub use ranges::SampleRanges;
 pub use resolve::to_byte;
 pub use shared_file::{SaveOutcome, SharedFile};

@@ -8,21 +8,18 @@
 use super::checkpoint::{self, FilmFile};
 use super::difference::{difference, minus, ranges_of};
 use super::{Description, Film, SampleRanges, key};
-use crate::files::{NewFile, ShownPath, Stamp, WriteError};
-use std::fs::{File, TryLockError};
+use crate::files::{NAME_LIMIT, NewFile, ShownPath, Stamp, WriteError, free_name, lock_within};
+use std::fs::File;
 use std::io::{BufReader, Seek};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long a run waits for another run's check and rename, which take a moment.
 const LOCK_PATIENCE: Duration = Duration::from_secs(10);
 
 /// How many times a run tries to merge with another run's film before both films are kept.
 const ATTEMPTS: usize = 5;
-
-/// The largest number that is tried for a free file name.
-const NAME_LIMIT: u32 = 10_000;
 
 /// A file to which a run writes its film repeatedly.
 #[derive(Debug)]
@@ -236,11 +233,9 @@ impl SharedFile {
         reason: &str,
     ) -> Result<SaveOutcome, WriteError> {
         let taken = self.path.clone();
-        for number in 2..NAME_LIMIT {
-            let path = numbered(&taken, number);
-            if path.symlink_metadata().is_ok() {
-                continue;
-            }
+        // Another run may take a name that was free just now.
+        for _ in 0..NAME_LIMIT {
+            let Some(path) = free_name(|number| numbered(&taken, number + 1)) else { break };
             let new = NewFile::write(&path, |writer| checkpoint::write(film, description, writer))?;
             if new.put_new()? {
                 let note = format!(
@@ -280,17 +275,7 @@ fn numbered(path: &Path, number: u32) -> PathBuf {
 /// and only the check before the rename protects the file.
 fn lock_directory(path: &Path) -> Option<File> {
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
-    let file = File::open(directory.unwrap_or(Path::new("."))).ok()?;
-    let begin = Instant::now();
-    loop {
-        match file.try_lock() {
-            Ok(()) => return Some(file),
-            Err(TryLockError::WouldBlock) if begin.elapsed() < LOCK_PATIENCE => {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            Err(_) => return None,
-        }
-    }
+    lock_within(File::open(directory.unwrap_or(Path::new("."))).ok()?, LOCK_PATIENCE)
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 mod figures;
 mod fingerprint;
 mod page;
-mod panels;
 mod program;
 mod progress;
 mod quality;

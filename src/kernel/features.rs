@@ -275,11 +275,6 @@ features! {
 }
 
 impl Features {
-    /// Whether the job needs code that few jobs need: anchored spheres, specks or steep glass.
-    pub fn are_extreme(&self) -> bool {
-        self.parts() & parts::EXTREMES != 0
-    }
-
     /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
         let is_told =

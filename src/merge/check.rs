@@ -95,7 +95,8 @@ pub(super) fn films(films: &[PathBuf], program: &str) -> Result<ExitCode, Failur
     while let Some(gap) = held.first_gap(from..held.end(), u64::MAX) {
         lines.push(format!("samples {}..{} are missing", gap.start, gap.end));
         if let Some((first, _)) = good.first() {
-            let (first, range) = (first.to_string_lossy(), format!("{}..{}", gap.start, gap.end));
+            let first = first.to_string_lossy();
+            let (first, range) = (shell::operand(&first), format!("{}..{}", gap.start, gap.end));
             let words = [program, "--batch", "--resume", &first, "--sample-range", &range, "--out", &first];
             commands.push(shell::line(words));
         }

@@ -44,7 +44,7 @@ pub(super) fn merge(plan: &Plan<Frames>, options: &MergeOptions) -> Result<ExitC
         console::note(&frame.line(plan));
     }
     console::note(&words(plan, lacking.len()));
-    console::note(&parts::remedy(plan, &parts_of(&lacking), &options.program));
+    parts::note_remedy(plan, &parts_of(&lacking), &options.program);
     Ok(ExitCode::from(FAILED))
 }
 
@@ -95,7 +95,7 @@ pub(super) fn watch(
     let lacking: Vec<Frame> = awaited.into_iter().map(|(frame, _)| frame).collect();
     console::note(&words(plan, lacking.len()));
     console::note("interrupted; the same command goes on");
-    console::note(&parts::remedy(plan, &parts_of(&lacking), &options.program));
+    parts::note_remedy(plan, &parts_of(&lacking), &options.program);
     Ok(interrupt.exit_code())
 }
 

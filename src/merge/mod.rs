@@ -78,7 +78,7 @@ fn merge_plan(plan: &Plan<Samples>, options: &MergeOptions) -> Result<ExitCode, 
     for (index, state) in &lacking {
         console::note(&parts::line(plan, *index, state));
     }
-    console::note(&parts::remedy(plan, &parts::numbers(&lacking), &options.program));
+    parts::note_remedy(plan, &parts::numbers(&lacking), &options.program);
     Ok(ExitCode::from(FAILED))
 }
 

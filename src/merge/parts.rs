@@ -1,12 +1,14 @@
 //! The parts of a plan: what is there of each, and their sum.
 
 use super::Lacking;
-use crate::describe::describe;
+use crate::console;
+use crate::describe::{counted, describe};
 use crate::files::ShownPath;
 use crate::film::{CheckpointError, Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key};
 use crate::plan::{Commands, Plan, Samples, Work};
 use crate::progressive::Status;
 use crate::saved::same_job;
+use crate::shell;
 use std::path::Path;
 
 /// What is there of a part.
@@ -33,12 +35,26 @@ impl<'a> PlanSum<'a> {
     /// An empty sum.
     pub fn new(plan: &'a Plan<Samples>) -> Result<Self, MergeError> {
         let settings = plan.job.settings();
-        let halves = if settings.estimate_error { 2 } else { 1 };
+        let halves = settings.half_count();
         let mut description =
             describe(&plan.recipe, plan.stage(), &Film::new(1, 1, 1), &Status::default(), None);
         description.set(key::COMMAND, &plan.manifest.command);
         let sum = FilmSum::new(settings.width, settings.height, halves, description, &plan.path)?;
         Ok(PlanSum { plan, sum, states: vec![State::Missing; plan.manifest.work.parts.len()] })
+    }
+
+    /// A copy, from which [`PlanSum::take_back`] takes away only what is added to it.
+    ///
+    /// # Errors
+    /// [`MergeError::Film`] if there is not enough memory.
+    pub fn try_copy(&self) -> Result<Self, MergeError> {
+        Ok(PlanSum { plan: self.plan, sum: self.sum.try_copy()?, states: self.states.clone() })
+    }
+
+    /// Empties the sum.
+    pub fn clear(&mut self) {
+        self.sum.clear();
+        self.states.fill(State::Missing);
     }
 
     /// Adds what is there of a part: only a whole one, or also a checkpoint, which [`PlanSum::take_back`] takes away
@@ -184,14 +200,41 @@ pub(super) fn line(plan: &Plan<Samples>, index: usize, state: &State) -> String 
     }
 }
 
+/// Most commands that are told beside a result.
+const COMMANDS_TOLD: usize = 50;
+
 /// How to render what these parts lack: a heading, and the commands, one a line.
 pub(super) fn remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) -> String {
+    remedy_lines(plan, parts, program, parts.len())
+}
+
+/// Tells the same on standard error; of many commands, only the first and how to see the others.
+pub(super) fn note_remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) {
+    console::note_whole(&remedy_lines(plan, parts, program, COMMANDS_TOLD));
+}
+
+/// The remedy with `most` commands.
+fn remedy_lines<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str, most: usize) -> String {
     let manifest = plan.path.to_string_lossy();
     let commands = Commands::new(program, &manifest, plan);
-    let numbers: Vec<String> = parts.iter().map(usize::to_string).collect();
-    let heading = format!("for what is missing (--array={} in Slurm):", numbers.join(","));
-    let lines = parts.iter().map(|index| commands.part_line(*index));
-    [heading].into_iter().chain(lines).collect::<Vec<_>>().join("\n")
+    let mut lines = vec![format!("for what is missing (--array={} in Slurm):", ranges(parts))];
+    lines.extend(parts.iter().take(most).map(|index| commands.part_line(*index)));
+    if parts.len() > most {
+        let check = shell::line([program, "merge", &commands.manifest, "--check"]);
+        let more = counted((parts.len() - most) as u64, "more command");
+        lines.push(format!("... and {more}; all of them: {check}"));
+    }
+    lines.join("\n")
+}
+
+/// Ascending numbers as Slurm takes them: `0,3-7,9`.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|number, next| number + 1 == *next);
+    let words = |run: &[usize]| match run {
+        [first, _, .., last] => format!("{first}-{last}"),
+        few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(","),
+    };
+    runs.map(words).collect::<Vec<_>>().join(",")
 }
 
 /// The numbers of the parts.
@@ -200,14 +243,15 @@ pub(super) fn numbers(lacking: &Lacking) -> Vec<usize> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::plan::{Manifest, Part};
     use crate::recipe::Recipe;
+    use std::ops::Range;
     use tempfile::TempDir;
 
     /// A plan of the samples 7 to 49 in parts of 23 and 20.
-    fn planned() -> (TempDir, Plan<Samples>) {
+    pub fn planned() -> (TempDir, Plan<Samples>) {
         let directory = tempfile::tempdir().unwrap();
         let mut recipe = Recipe::find("three-spheres").unwrap();
         (recipe.settings.width, recipe.settings.height) = (4, 3);
@@ -216,6 +260,26 @@ mod tests {
         let work = Samples { samples: [7, 50], block: 1, parts };
         let plan = Plan::write(directory.path(), &recipe, &recipe.job().unwrap(), Manifest::new(work));
         (directory, plan.unwrap())
+    }
+
+    /// A film of the plan in which sample `i` is `i + 1` in every pixel.
+    pub fn film(plan: &Plan<Samples>, samples: Range<u64>) -> Film {
+        let mut film = plan.job.new_film();
+        let halves = film.halves().len() as u64;
+        for (half, sums) in (0..).zip(film.halves_mut()) {
+            let own = samples.clone().filter(|sample| sample % halves == half);
+            let sum: u64 = own.map(|sample| sample + 1).sum();
+            sums.iter_mut().for_each(|pixel| pixel.0 = [sum; 3]);
+        }
+        film.record(samples, 0).unwrap();
+        film
+    }
+
+    /// Writes a film of the plan, as a renderer does: a new file takes the place of the old one.
+    pub fn save(plan: &Plan<Samples>, name: &str, samples: Range<u64>) {
+        let film = film(plan, samples);
+        let description = describe(&plan.recipe, None, &film, &Status::default(), None);
+        checkpoint::save(&plan.beside(name), &film, &description).unwrap();
     }
 
     #[test]
@@ -240,13 +304,37 @@ mod tests {
         let (_directory, plan) = planned();
         let mut sum = PlanSum::new(&plan).unwrap();
         assert_eq!(sum.words(), "0 of 43 samples per pixel (); 0 of 2 parts are whole");
-        let mut film = plan.job.new_film();
-        film.record(30..50, 0).unwrap();
-        let description = describe(&plan.recipe, None, &film, &Status::default(), None);
-        checkpoint::save(&plan.beside("part-1.exr"), &film, &description).unwrap();
+        save(&plan, "part-1.exr", 30..50);
         assert_eq!(sum.add(1, false).unwrap(), &State::Whole);
         assert_eq!(sum.words(), "20 of 43 samples per pixel (30..50); 1 of 2 parts are whole");
         assert_eq!((sum.is_whole(0), sum.is_whole(1)), (false, true));
         assert_eq!(numbers(&sum.lacking()), [0]);
+    }
+
+    #[test]
+    fn three_numbers_in_a_row_are_a_range() {
+        for (numbers, words) in [
+            (&[][..], ""),
+            (&[4], "4"),
+            (&[0, 2, 4], "0,2,4"),
+            (&[1, 2], "1,2"),
+            (&[0, 1, 2, 4, 6, 8, 9, 10], "0-2,4,6,8-10"),
+            (&[3, 4, 6, 7, 8], "3,4,6-8"),
+        ] {
+            assert_eq!(ranges(numbers), words);
+        }
+        let most: Vec<usize> = (8..1000).collect();
+        assert_eq!(ranges(&most), "8-999");
+    }
+
+    #[test]
+    fn the_commands_that_are_not_told_are_counted() {
+        let (_directory, plan) = planned();
+        assert_eq!(remedy(&plan, &[0, 1], "w"), remedy_lines(&plan, &[0, 1], "w", 2));
+        let told = remedy_lines(&plan, &[0, 1], "w", 1);
+        let lines: Vec<&str> = told.lines().collect();
+        assert!(lines.len() == 3 && lines[1].ends_with("--part 0"), "{told}");
+        assert!(lines[2].starts_with("... and 1 more command; all of them: w merge "), "{told}");
+        assert!(lines[2].ends_with("plan.json --check"), "{told}");
     }
 }

@@ -17,6 +17,13 @@ pub struct FrameRate {
     pub seconds: u16,
 }
 
+impl FrameRate {
+    /// Frames per second.
+    pub fn per_second(self) -> f64 {
+        f64::from(self.frames) / f64::from(self.seconds)
+    }
+}
+
 /// Writes an animated PNG that repeats without end, replacing an existing file. `frames` are the files of its frames: 8-bit
 /// RGB PNG of `size`, width and height in pixels. One frame at a time is in memory.
 ///
@@ -54,6 +61,22 @@ fn encode(
     }
     writer.finish()?;
     Ok(())
+}
+
+/// The number of frames of an animated PNG, and its rate if the first frame tells one. `None` for other files, also those
+/// that cannot be read.
+pub fn animation_in(path: &Path) -> Option<(u32, Option<FrameRate>)> {
+    let (file, _) = files::open(path).ok()?;
+    let mut decoder = ::png::Decoder::new(BufReader::new(file));
+    decoder.set_ignore_text_chunk(true);
+    let reader = decoder.read_info().ok()?;
+    let count = reader.info().animation_control()?.num_frames;
+    // A denominator of 0 stands for 100.
+    let rate = reader.info().frame_control().map(|control| FrameRate {
+        frames: if control.delay_den == 0 { 100 } else { control.delay_den },
+        seconds: control.delay_num,
+    });
+    Some((count, rate.filter(|rate| rate.seconds > 0)))
 }
 
 /// Checks that a file is an 8-bit RGB PNG of `size`, and whole.

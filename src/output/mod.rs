@@ -1,14 +1,17 @@
-//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`].
-//! Pictures of other programs can be read, too: [`read_picture`].
+//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`],
+//! 8-bit ones without the recipe if it is longer than [`RECIPE_LIMIT`]. Pictures of other programs can be read, too:
+//! [`read_picture`].
 
 mod apng;
 mod limits;
+mod long_recipe;
 mod pfm;
 mod png;
 mod ppm;
 mod read;
 
-pub use apng::{FrameRate, check_frame, write_animation};
+pub use apng::{FrameRate, animation_in, check_frame, write_animation};
+pub use long_recipe::{RECIPE_LIMIT, length_of_missing, recipe_in_picture};
 pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
@@ -207,9 +210,6 @@ fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     reader.rewind()?;
     Ok(start)
 }
-
-/// Largest size of a picture's texts when decompressed, bytes.
-const TEXT_LIMIT: usize = 64 << 20;
 
 /// Writes all pixels as 8-bit RGB, row by row, because a second copy of a large picture may not fit into memory.
 fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {

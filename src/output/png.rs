@@ -1,6 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::{Description, PngForm, RECIPE_KEY, TEXT_LIMIT, write_rows};
+use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Seek, Write};
@@ -102,17 +102,38 @@ pub(super) fn begin<W: Write>(
         if latin_1 { encoder.add_text_chunk(key, value)? } else { encoder.add_itxt_chunk(key, value)? }
     }
     let mut writer = encoder.write_header()?;
-    let mut recipe = ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, description.recipe());
+    let mut recipe =
+        ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, recipe_in_picture(description.recipe()));
     recipe.compressed = true;
     recipe.compress_text()?;
     writer.write_text_chunk(&recipe)?;
     Ok(writer)
 }
 
+/// A decoder that can read every description that [`begin`] writes. A chunk counts up to three times while it is read.
+fn decoder<R: BufRead + Seek>(reader: R) -> ::png::Decoder<R> {
+    ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: 4 * RECIPE_LIMIT })
+}
+
+/// The number of values that a sample can have: fewer than its bits allow if the file says that only some of them are
+/// significant. The colours of a palette have 8 bits.
+pub(super) fn levels(reader: impl BufRead + Seek) -> io::Result<u32> {
+    use ::png::ColorType;
+    let reader = decoder(reader).read_info()?;
+    let info = reader.info();
+    let (bits, colours) = match info.color_type {
+        ColorType::Grayscale | ColorType::GrayscaleAlpha => (info.bit_depth as u32, 1),
+        ColorType::Rgb | ColorType::Rgba => (info.bit_depth as u32, 3),
+        ColorType::Indexed => (8, 3),
+    };
+    let significant = info.sbit.as_deref().unwrap_or_default().iter().take(colours);
+    let bits = significant.map(|bits| u32::from(*bits)).fold(bits, u32::min);
+    Ok(1 << bits)
+}
+
 /// Reads an 8-bit RGB picture of this size to its end, row by row from the top, three bytes a pixel.
 pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<Vec<u8>> {
-    let mut reader =
-        ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: TEXT_LIMIT }).read_info()?;
+    let mut reader = decoder(reader).read_info()?;
     let info = reader.info();
     let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
     if (info.width, info.height) != (width, height) || !is_rgb || info.interlaced {
@@ -126,14 +147,17 @@ pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]
 }
 
 pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
-    let limits = ::png::Limits { bytes: TEXT_LIMIT };
-    let reader = ::png::Decoder::new_with_limits(reader, limits).read_info()?;
+    let reader = decoder(reader).read_info()?;
     let info = reader.info();
     let Some(recipe) = info.utf8_text.iter().find(|chunk| chunk.keyword == RECIPE_KEY) else {
         return Ok(None);
     };
     let mut recipe = recipe.clone();
-    recipe.decompress_text_with_limit(TEXT_LIMIT)?;
+    // The decompressor wants room for one byte more to find the end.
+    recipe.decompress_text_with_limit(RECIPE_LIMIT + 1).map_err(|error| {
+        let reason = format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})");
+        io::Error::new(io::ErrorKind::InvalidData, reason)
+    })?;
     let mut description = Description::new(&recipe.get_text()?);
     for chunk in &info.uncompressed_latin1_text {
         description.set(&chunk.keyword, &chunk.text);

@@ -2,18 +2,20 @@
 
 use super::OutputError;
 use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
-use super::pfm;
+use super::{pfm, png};
 use crate::files;
 use crate::film::checkpoint;
 use crate::stages::Transfer;
 use image::ImageDecoder;
+use image::codecs::pnm::PnmDecoder;
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
-/// What integer values of 8 or 16 bits mean.
+/// What integer values mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// As Weekender and the book write them: the transfer, then `floor(256 v)`.
+    /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values with another number of levels than
+    /// 256 or 65536 may also be rounded.
     Book(Transfer),
     /// The sRGB curve, rounded, as most other programs write pictures.
     Srgb,
@@ -133,31 +135,45 @@ fn size_of_layer(size: exr::prelude::Vec2<usize>) -> io::Result<(u32, u32)> {
 const LARGEST_RATIO: u64 = 1032 * 24;
 
 fn read_whole(
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     length: u64,
     format: image::ImageFormat,
     encoding: Encoding,
 ) -> io::Result<ReadPicture> {
-    let image = decode(reader, length, format)?;
+    let image = decode(&mut reader, length, format)?;
+    reader.rewind()?;
+    let levels = levels(reader, format)?;
     let (width, height) = (image.width(), image.height());
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
-    let (levels, values): (u32, Vec<u16>) = if is_deep {
-        (1 << 16, image.to_rgb16().into_raw())
+    let (most, values): (u16, Vec<u16>) = if is_deep {
+        (u16::MAX, image.to_rgb16().into_raw())
     } else {
-        (1 << 8, image.to_rgb8().into_raw().into_iter().map(u16::from).collect())
+        (u16::from(u8::MAX), image.to_rgb8().into_raw().into_iter().map(u16::from).collect())
     };
+    // The decoder has scaled the values up to 8 or 16 bits.
+    let scale = f64::from(levels - 1) / f64::from(most);
+    let stored = |value: u16| (f64::from(value) * scale).round() as u16;
     let (triples, _) = values.as_chunks::<3>();
     let intervals = triples.iter().enumerate().map(|(index, triple)| {
         let row = index / width as usize;
-        triple.map(|value| encoding.interval(value, levels, row, height as usize))
+        triple.map(|value| encoding.interval(stored(value), levels, row, height as usize))
     });
     let (pixels, steps) = intervals
         .map(|pixel| {
             (pixel.map(|[low, high]| 0.5 * (low + high)), pixel.map(|[low, high]| 0.5 * (high - low)))
         })
         .unzip();
-    let [_, limit] = encoding.interval((levels - 2) as u16, levels, height as usize - 1, height as usize);
+    let [limit, _] = encoding.ends((levels - 1) as u16, levels, height as usize - 1, height as usize);
     Ok(ReadPicture { width, height, pixels, steps: Some(steps), limit })
+}
+
+/// The number of values that a sample in the file can have, 2 to 65536.
+fn levels(reader: impl BufRead + Seek, format: image::ImageFormat) -> io::Result<u32> {
+    if format == image::ImageFormat::Png {
+        return png::levels(reader);
+    }
+    let most = PnmDecoder::new(reader).map_err(invalid)?.header().maximal_sample();
+    Ok(most.clamp(1, u16::MAX.into()) + 1)
 }
 
 /// Decodes a picture whose size its file can have.
@@ -191,18 +207,26 @@ impl Encoding {
         if u32::from(value) + 1 == levels {
             return [f64::NAN; 2];
         }
+        self.ends(value, levels, row, height)
+    }
+
+    /// The least and the largest linear value that are stored as `value` of `levels`, if nothing is brighter.
+    fn ends(self, value: u16, levels: u32, row: usize, height: usize) -> [f64; 2] {
+        let is_cut_off = matches!(levels, 0x100 | 0x1_0000);
         let (value, levels) = (f64::from(value), f64::from(levels));
+        let cut_off = [value, value + 1.0].map(|end| end / levels);
+        let rounded = [value - 0.5, value + 0.5].map(|end| end.max(0.0) / (levels - 1.0));
         match self {
             Encoding::Book(transfer) => {
                 let is_gamma = transfer.is_gamma(row, height);
-                [value, value + 1.0].map(|end| {
-                    let end = end / levels;
-                    if is_gamma { end * end } else { end }
-                })
+                let [low, high] = if is_cut_off {
+                    cut_off
+                } else {
+                    [cut_off[0].min(rounded[0]), cut_off[1].max(rounded[1])]
+                };
+                [low, high].map(|end| if is_gamma { end * end } else { end })
             }
-            Encoding::Srgb => {
-                [value - 0.5, value + 0.5].map(|end| srgb_to_linear(end.max(0.0) / (levels - 1.0)))
-            }
+            Encoding::Srgb => rounded.map(srgb_to_linear),
         }
     }
 }
@@ -213,93 +237,4 @@ fn srgb_to_linear(v: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::film::to_byte;
-    use proptest::prelude::*;
-
-    /// Reads a PPM whose only row has these bytes.
-    fn of_bytes(bytes: &[u8], encoding: Encoding) -> ReadPicture {
-        let header = format!("P6 {} 1 255 ", bytes.len() / 3);
-        let file = [header.as_bytes(), bytes].concat();
-        decode_picture(io::Cursor::new(&file), file.len() as u64, encoding).unwrap()
-    }
-
-    #[test]
-    fn whole_numbers_end_where_the_last_of_them_begins() {
-        let srgb = ((254.5 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
-        for (encoding, limit) in [
-            (Encoding::Book(Transfer::Linear), 255.0 / 256.0),
-            (Encoding::Book(Transfer::Gamma2), (255.0_f64 / 256.0).powi(2)),
-            (Encoding::Srgb, srgb),
-        ] {
-            let read = of_bytes(&[254, 255, 0], encoding);
-            assert!((read.limit - limit).abs() < 1e-12, "{encoding:?}: {}", read.limit);
-            let [below, end, zero] = read.pixels[0];
-            assert!(below < read.limit && end.is_nan() && zero < below, "{:?}", read.pixels);
-        }
-    }
-
-    #[test]
-    fn where_rows_have_two_transfers_the_lower_limit_counts() {
-        let file = b"P6 1 2 255 \x80\x80\x80\x80\x80\x80";
-        let encoding = Encoding::Book(Transfer::LinearAboveGamma2);
-        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
-        assert!(read.pixels[0][0] > 0.5 && read.pixels[1][0] < 0.3, "{:?}", read.pixels);
-        assert_eq!(read.limit, (255.0_f64 / 256.0).powi(2));
-    }
-
-    proptest! {
-        #[test]
-        fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {
-            for transfer in [Transfer::Linear, Transfer::Gamma2] {
-                let byte = to_byte(x, transfer, 0, 1);
-                let [low, high] = Encoding::Book(transfer).interval(byte.into(), 256, 0, 1);
-                if byte == 255 {
-                    prop_assert!(low.is_nan());
-                } else {
-                    prop_assert!(low <= x && x < high, "{x}: {low} to {high}");
-                }
-            }
-        }
-
-        #[test]
-        fn srgb_is_read_within_its_steps(x in 0.0..0.99_f64) {
-            let v = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-            let byte = (255.0 * v).round() as u16;
-            if byte < 255 {
-                let [low, high] = Encoding::Srgb.interval(byte, 256, 0, 1);
-                prop_assert!(low - 1e-9 <= x && x <= high + 1e-9, "{x}: {low} to {high}");
-            }
-        }
-    }
-
-    #[test]
-    fn an_exr_that_deflates_well_is_no_short_file() {
-        use exr::prelude::*;
-        let (width, height) = (512, 512);
-        let black = SpecificChannels::rgb(|_: Vec2<usize>| (0.0_f32, 0.0_f32, 0.0_f32));
-        for compression in [Compression::ZIP1, Compression::ZIP16] {
-            let encoding = Encoding { compression, ..Encoding::FAST_LOSSLESS };
-            let layer = Layer::new((width, height), LayerAttributes::default(), encoding, black.clone());
-            let mut file = io::Cursor::new(Vec::new());
-            Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
-            let bytes = file.into_inner();
-            assert!(compression == Compression::ZIP1 || bytes.len() * 300 < width * height * 12);
-            let (found_width, found_height, pixels) =
-                read_exr(io::Cursor::new(&bytes), bytes.len() as u64).unwrap();
-            assert_eq!((found_width as usize, found_height as usize), (width, height));
-            assert!(pixels.iter().flatten().all(|x| *x == 0.0), "{compression:?}");
-        }
-    }
-
-    #[test]
-    fn sixteen_bits_have_as_many_levels() {
-        let file = b"P6 1 1 65535 \xff\xff\x80\x00\x00\x00";
-        let encoding = Encoding::Book(Transfer::Linear);
-        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
-        let [end, middle, zero] = read.pixels[0];
-        assert!(end.is_nan());
-        assert_eq!([middle, zero, read.limit], [32_768.5, 0.5, 65_535.0].map(|level| level / 65_536.0));
-    }
-}
+mod tests;

@@ -4,7 +4,7 @@ use super::error::PlanError;
 use super::frames::Frames;
 use super::manifest::{MANIFEST, Plan, Work, read_value};
 use super::samples::Samples;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A plan, by what it divides.
 #[derive(Clone, Debug)]
@@ -27,11 +27,7 @@ impl AnyPlan {
     /// # Errors
     /// [`PlanError`].
     pub fn load(path: &Path) -> Result<AnyPlan, PlanError> {
-        let manifest = path.join(MANIFEST);
-        if path.is_dir() && !manifest.exists() {
-            return Err(PlanError::NoManifest { path: path.to_owned() });
-        }
-        let path = if path.is_dir() { manifest } else { path.to_owned() };
+        let path = AnyPlan::manifest_at(path)?;
         let (version, value) = read_value(&path)?;
         match version {
             Samples::VERSION => Plan::of(path, value).map(|plan| AnyPlan::Samples(Box::new(plan))),
@@ -44,6 +40,16 @@ impl AnyPlan {
                 );
                 Err(PlanError::Damaged { path, what })
             }
+        }
+    }
+
+    /// The manifest that `path` names: itself, or the one in the directory `path`.
+    pub(super) fn manifest_at(path: &Path) -> Result<PathBuf, PlanError> {
+        let manifest = path.join(MANIFEST);
+        match path.is_dir() {
+            true if !manifest.exists() => Err(PlanError::NoManifest { path: path.to_owned() }),
+            true => Ok(manifest),
+            false => Ok(path.to_owned()),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::manifest::{Plan, Work};
 use crate::shell;
+use std::borrow::Cow;
 
 /// Makes the commands of a plan.
 #[derive(Clone, Debug)]
@@ -9,7 +10,7 @@ pub struct Commands<'a> {
     /// How the commands call this program.
     pub program: &'a str,
     /// How they name the manifest.
-    pub manifest: &'a str,
+    pub manifest: Cow<'a, str>,
     /// Flags of every part.
     pub flags: &'a [String],
 }
@@ -17,18 +18,18 @@ pub struct Commands<'a> {
 impl<'a> Commands<'a> {
     /// The commands of `plan`, which name its manifest as `manifest`.
     pub fn new<W: Work>(program: &'a str, manifest: &'a str, plan: &'a Plan<W>) -> Self {
-        Commands { program, manifest, flags: &plan.manifest.flags }
+        Commands { program, manifest: shell::operand(manifest), flags: &plan.manifest.flags }
     }
 
     /// The words of the command that renders a part. `part` is its number, or what stands for it.
     pub fn part(&self, part: &str) -> Vec<String> {
-        let words = [self.program, "render-part", self.manifest, "--part", part];
+        let words = [self.program, "render-part", &self.manifest, "--part", part];
         words.into_iter().map(str::to_owned).chain(self.flags.iter().cloned()).collect()
     }
 
     /// The words of the command that merges the parts into `out`.
     pub fn merge(&self, out: &str) -> Vec<String> {
-        [self.program, "merge", self.manifest, "--out", out].map(str::to_owned).to_vec()
+        [self.program, "merge", &self.manifest, "--out", &shell::operand(out)].map(str::to_owned).to_vec()
     }
 
     /// The command line that renders a part.

@@ -2,6 +2,7 @@
 
 use super::MANIFEST;
 use crate::files::{InputError, ShownPath, WriteError};
+use crate::film::SOFTWARE;
 use crate::film::checkpoint::SAMPLE_VERSION;
 use crate::recipe::file;
 use crate::render::JobError;
@@ -50,7 +51,7 @@ pub enum PlanError {
     /// The plan is for another version of the program.
     #[error(
         "{} is a plan for samples of version {version}, made by {program}, but this program ({}) traces version {SAMPLE_VERSION}; use {program} on every machine, or plan into another directory with this one",
-        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), SOFTWARE
     )]
     SampleVersion {
         /// The manifest.
@@ -67,6 +68,15 @@ pub enum PlanError {
     )]
     Taken {
         /// The manifest that is there.
+        path: PathBuf,
+    },
+    /// A file that is not of the plan has the name of one that would be written.
+    #[error(
+        "{} is in the way: the plan would replace it; move it away, or plan into another directory",
+        path.shown()
+    )]
+    InTheWay {
+        /// The file that is there.
         path: PathBuf,
     },
     /// There is no such part.

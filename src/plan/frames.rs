@@ -74,8 +74,13 @@ impl Work for Frames {
             }
             next = *end;
         }
-        if next != self.frames[1] || self.parts.is_empty() || next > FRAME_LIMIT {
+        if next != self.frames[1] || self.parts.is_empty() {
             return Err(format!("its parts end at frame {next}, but it has {}", self.frames[1]));
+        }
+        if next > FRAME_LIMIT {
+            return Err(format!(
+                "its parts end at frame {next}, but an animation ends at {FRAME_LIMIT} at most"
+            ));
         }
         let is_turning = match self.turntable {
             Some(Turn::FramesPerTurn(frames)) => frames > 0,
@@ -145,7 +150,9 @@ mod tests {
     #[test]
     fn no_frames_and_frames_beyond_the_limit_are_refused() {
         let last = |end: u32| Frames::new(&(end - 2..end), None, RATE, 2).unwrap().check();
-        assert!(last(FRAME_LIMIT).is_ok() && last(FRAME_LIMIT + 1).is_err());
+        assert_eq!(last(FRAME_LIMIT), Ok(()));
+        let told = "its parts end at frame 100001, but an animation ends at 100000 at most";
+        assert_eq!(last(FRAME_LIMIT + 1), Err(told.to_owned()));
         let none = Frames { frames: [3, 3], turntable: None, rate: RATE, parts: Vec::new() };
         assert!(none.check().is_err());
     }

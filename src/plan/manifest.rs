@@ -2,20 +2,21 @@
 
 use super::error::PlanError;
 use crate::files::{self, write_text};
-use crate::film::Checksum;
 use crate::film::checkpoint::SAMPLE_VERSION;
+use crate::film::{Checksum, SOFTWARE};
 use crate::recipe::{Recipe, file};
 use crate::render::RenderJob;
 use crate::stages::Stage;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Name of the manifest in the directory of a plan.
 pub const MANIFEST: &str = "plan.json";
 
 /// Name of the scene file.
-const SCENE: &str = "scene.toml";
+pub(super) const SCENE: &str = "scene.toml";
 
 /// Longest manifest that is read, bytes.
 const LENGTH_LIMIT: u64 = 256 << 20;
@@ -75,7 +76,7 @@ impl<W: Work> Manifest<W> {
         Manifest {
             plan_version: W::VERSION,
             sample_version: SAMPLE_VERSION,
-            program: concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned(),
+            program: SOFTWARE.to_owned(),
             command: String::new(),
             scene: String::new(),
             stage: None,
@@ -89,10 +90,17 @@ impl<W: Work> Manifest<W> {
 
     fn check(&self) -> Result<(), String> {
         self.work.check()?;
+        let mut names = HashSet::from([MANIFEST.to_owned()]);
         for name in self.work.files().into_iter().chain([self.scene_file.as_str(), &self.result]) {
             let path = Path::new(name);
             if path.file_name().is_none_or(|file| file != path.as_os_str()) {
                 return Err(format!("{name:?} is not the name of a file beside it"));
+            }
+            // Some file systems ignore the letter case.
+            if !names.insert(name.to_lowercase()) {
+                return Err(format!(
+                    "{name:?} is the name of two of its files; the plan, its scene, each part and the result need one each"
+                ));
             }
         }
         Ok(())
@@ -132,7 +140,8 @@ impl<W: Work> Plan<W> {
     /// Writes a plan of `recipe` into `directory`, which must exist. An equal plan that is there stays.
     ///
     /// # Errors
-    /// [`PlanError::Taken`] if the directory holds another plan; those of reading it; [`PlanError::Write`].
+    /// [`PlanError::Taken`] if the directory holds another plan, [`PlanError::InTheWay`] if it holds a scene file of
+    /// another origin; those of reading the plan that is there; [`PlanError::Write`].
     pub fn write(
         directory: &Path,
         recipe: &Recipe,
@@ -143,10 +152,14 @@ impl<W: Work> Plan<W> {
         let text = file::to_toml(recipe);
         let manifest =
             Manifest { scene_file: SCENE.to_owned(), scene_checksum: checksum(text.as_bytes()), ..manifest };
-        if path.symlink_metadata().is_ok() {
-            check_same(&path, recipe, job, &manifest)?;
+        let scene = path.with_file_name(&manifest.scene_file);
+        let is_own = path.symlink_metadata().is_ok()
+            && same_plan(&path, recipe, job, &manifest)?.scene_file == manifest.scene_file;
+        // A run that was ended between the two files has left the same text.
+        if !is_own && !is_free(&scene, |there| there == text) {
+            return Err(PlanError::InTheWay { path: scene });
         }
-        write_text(&path.with_file_name(&manifest.scene_file), &text)?;
+        write_text(&scene, &text)?;
         // The manifest comes last: whoever finds it finds its scene.
         let json = serde_json::to_string_pretty(&manifest)
             .map_err(|error| PlanError::Damaged { path: path.clone(), what: error.to_string() })?;
@@ -181,21 +194,28 @@ impl<W: Work> Plan<W> {
     }
 }
 
-/// Checks that the plan whose manifest is at `path` is of this recipe and has the same work as `manifest`. Its scene file
-/// may have been changed or removed, because it is written again.
-fn check_same<W: Work>(
+/// Whether nothing is lost if a file is written to `path`: nothing is there, or a text that `may_go`.
+pub(super) fn is_free(path: &Path, may_go: impl FnOnce(&str) -> bool) -> bool {
+    path.symlink_metadata().is_err()
+        || files::read(path, "a file of the plan", LENGTH_LIMIT * 8)
+            .is_ok_and(|bytes| std::str::from_utf8(&bytes).is_ok_and(may_go))
+}
+
+/// The manifest at `path`, if its plan is of this recipe and has the same work as `manifest`. Its scene file may have been
+/// changed or removed, because it is written again.
+fn same_plan<W: Work>(
     path: &Path,
     recipe: &Recipe,
     job: &RenderJob,
     manifest: &Manifest<W>,
-) -> Result<(), PlanError> {
+) -> Result<Manifest<W>, PlanError> {
     let (version, value) = read_value(path)?;
     if version == W::VERSION {
         let is_of_same = |theirs: &Manifest<W>| {
             theirs.scene_checksum == manifest.scene_checksum && theirs.work == manifest.work
         };
-        if parse(value.clone()).is_ok_and(|theirs| is_of_same(&theirs)) {
-            return Ok(());
+        if let Some(theirs) = parse(value.clone()).ok().filter(is_of_same) {
+            return Ok(theirs);
         }
         let theirs = Plan::<W>::of(path.to_owned(), value)?;
         if theirs.job == *job
@@ -203,7 +223,7 @@ fn check_same<W: Work>(
             && theirs.recipe.keyframes == recipe.keyframes
             && theirs.manifest.work == manifest.work
         {
-            return Ok(());
+            return Ok(theirs.manifest);
         }
     }
     Err(PlanError::Taken { path: path.to_owned() })
@@ -232,7 +252,7 @@ pub(super) fn read_value(path: &Path) -> Result<(u32, serde_json::Value), PlanEr
 }
 
 /// The manifest of this JSON, or what is wrong with it, in words.
-fn parse<W: Work>(value: serde_json::Value) -> Result<Manifest<W>, String> {
+pub(super) fn parse<W: Work>(value: serde_json::Value) -> Result<Manifest<W>, String> {
     let manifest: Manifest<W> = serde_json::from_value(value.clone()).map_err(|error| error.to_string())?;
     // serde cannot refuse unknown keys beside flattened ones.
     let known = serde_json::to_value(&manifest).map_err(|error| error.to_string())?;

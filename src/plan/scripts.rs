@@ -3,10 +3,10 @@
 
 use super::commands::Commands;
 use super::error::PlanError;
-use super::manifest::{MANIFEST, Plan, Work};
+use super::manifest::{MANIFEST, Plan, Work, is_free};
 use crate::files::write_text;
 use crate::shell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What runs the parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,39 @@ pub enum ScriptKind {
     Parallel,
     /// make.
     Make,
+}
+
+impl ScriptKind {
+    const ALL: [ScriptKind; 3] = [ScriptKind::Slurm, ScriptKind::Parallel, ScriptKind::Make];
+
+    /// The names of all scripts.
+    pub(super) fn names() -> impl Iterator<Item = &'static str> {
+        Self::ALL.into_iter().flat_map(|kind| kind.templates()).map(|(name, _)| *name)
+    }
+
+    /// The scripts, each with its text, in which [`KEYS`] are filled in. The one to start comes first.
+    fn templates(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            ScriptKind::Slurm => &[("submit.sh", SUBMIT), ("parts.sbatch", PARTS), ("merge.sbatch", MERGE)],
+            ScriptKind::Parallel => &[("run.sh", PARALLEL)],
+            ScriptKind::Make => &[("Makefile", MAKE)],
+        }
+    }
+}
+
+/// Checks that [`write_scripts`] would replace no file of another origin in `directory`. A script of an earlier plan may
+/// go, whatever its values are, but not one that was changed by hand.
+///
+/// # Errors
+/// [`PlanError::InTheWay`].
+pub fn check_scripts(kind: ScriptKind, directory: &Path) -> Result<(), PlanError> {
+    for (name, template) in kind.templates() {
+        let path = directory.join(name);
+        if !is_free(&path, |text| is_filled_from(template, text)) {
+            return Err(PlanError::InTheWay { path });
+        }
+    }
+    Ok(())
 }
 
 /// Writes the scripts of a plan, whose commands call this program `program`. Returns the files; the one to start comes
@@ -33,16 +66,12 @@ pub fn write_scripts<W: Work>(
     let last = plan.manifest.work.count() - 1;
     let (part, merge) =
         (commands.part_line_of("SLURM_ARRAY_TASK_ID"), commands.merge_line(&plan.manifest.result));
-    let files = match kind {
-        ScriptKind::Slurm => vec![
-            ("submit.sh", SUBMIT.to_owned()),
-            ("parts.sbatch", filled(PARTS, &[("LAST", &last.to_string()), ("COMMAND", &part)])),
-            ("merge.sbatch", filled(MERGE, &[("COMMAND", &merge)])),
-        ],
+    let last_number = last.to_string();
+    let values: [String; 4] = match kind {
+        ScriptKind::Slurm => [last_number, String::new(), part, merge],
         ScriptKind::Parallel => {
             let part = shell::quoted(&shell::line(commands.part("{}")).replace("'{}'", "{}")).into_owned();
-            let values = [("LAST", last.to_string()), ("COMMAND", part), ("MERGE", merge)];
-            vec![("run.sh", filled(PARALLEL, &values.each_ref().map(|(key, value)| (*key, value.as_str()))))]
+            [last_number, String::new(), part, merge]
         }
         ScriptKind::Make => {
             let numbers: Vec<String> = (0..=last).map(|part| part.to_string()).collect();
@@ -50,21 +79,38 @@ pub fn write_scripts<W: Work>(
             let dollars = |line: String| line.replace('$', "$$");
             let part = dollars(shell::line(commands.part("\u{1}")));
             let part = part.replace("'\u{1}'", "$@").replace('\u{1}', "$@");
-            let values = [("PARTS", numbers.join(" ")), ("COMMAND", part), ("MERGE", dollars(merge))];
-            vec![("Makefile", filled(MAKE, &values.each_ref().map(|(key, value)| (*key, value.as_str()))))]
+            [last_number, numbers.join(" "), part, dollars(merge)]
         }
     };
-    let write = |(name, text): (&str, String)| {
+    let write = |(name, template): &(&str, &str)| {
         let path = plan.path.with_file_name(name);
-        write_text(&path, &text)?;
+        write_text(&path, &filled(template, &values))?;
         Ok(path)
     };
-    files.into_iter().map(write).collect()
+    kind.templates().iter().map(write).collect()
 }
 
-/// The text with each `@KEY@` replaced.
-fn filled(text: &str, values: &[(&str, &str)]) -> String {
-    values.iter().fold(text.to_owned(), |text, (key, value)| text.replace(&format!("@{key}@"), value))
+/// What is filled into a template: the number of the last part, the numbers of all parts, the command of a part, and the
+/// command that merges.
+const KEYS: [&str; 4] = ["@LAST@", "@PARTS@", "@COMMAND@", "@MERGE@"];
+
+/// The template with the values of [`KEYS`].
+fn filled(template: &str, values: &[String; 4]) -> String {
+    KEYS.iter().zip(values).fold(template.to_owned(), |text, (key, value)| text.replace(*key, value))
+}
+
+/// Whether `text` is the template with some values of one line each.
+fn is_filled_from(template: &str, text: &str) -> bool {
+    const GAP: &str = "\0";
+    let gaps = filled(template, &KEYS.map(|_| GAP.to_owned()));
+    let pieces: Vec<&str> = gaps.split(GAP).collect();
+    let [first, middle @ .., last] = pieces.as_slice() else { return text == template };
+    let inner = text.strip_prefix(*first).and_then(|rest| rest.strip_suffix(*last));
+    let after_middle = middle.iter().try_fold(inner, |rest, piece| {
+        let (value, rest) = rest?.split_once(*piece)?;
+        (!value.contains('\n')).then_some(Some(rest))
+    });
+    after_middle.flatten().is_some_and(|value| !value.contains('\n'))
 }
 
 const SUBMIT: &str = r#"#!/bin/sh
@@ -108,7 +154,7 @@ const MERGE: &str = r#"#!/bin/bash
 #SBATCH --output=merge.log
 #SBATCH --open-mode=append
 #SBATCH --requeue
-@COMMAND@
+@MERGE@
 "#;
 
 const PARALLEL: &str = r#"#!/bin/sh
@@ -132,3 +178,51 @@ picture: $(parts)
 $(parts):
 	@COMMAND@
 "#;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(kind: ScriptKind) -> [String; 4] {
+        let part = if kind == ScriptKind::Make { "w render-part 'a $$b'" } else { "w render-part 'a b'" };
+        ["7", "0 1 2", part, "w merge plan.json --out picture.exr"].map(str::to_owned)
+    }
+
+    #[test]
+    fn a_script_is_known_by_all_but_its_values() {
+        for kind in ScriptKind::ALL {
+            for (name, template) in kind.templates() {
+                let text = filled(template, &values(kind));
+                assert!(!text.contains("@LAST@") && is_filled_from(template, &text), "{name}");
+                for other in [
+                    String::new(),
+                    format!("{text}# mine\n"),
+                    format!("# mine\n{text}"),
+                    text.replacen('\n', "\n# mine\n", 2),
+                    text.replace(" in", ""),
+                    text.replace("w merge", "module load w\nw merge"),
+                    text.replace("w render-part", "module load w\nw render-part"),
+                ] {
+                    assert!(other == text || !is_filled_from(template, &other), "{name}: {other}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_file_of_another_origin_is_in_the_way_of_a_script() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("Makefile");
+        let check = |kind| check_scripts(kind, directory.path());
+        check(ScriptKind::Make).unwrap();
+        std::fs::write(&path, filled(MAKE, &values(ScriptKind::Make))).unwrap();
+        check(ScriptKind::Make).unwrap();
+        std::fs::write(&path, "all:\n\ttrue\n").unwrap();
+        let told = check(ScriptKind::Make).unwrap_err().to_string();
+        assert!(told.contains("Makefile is in the way"), "{told}");
+        check(ScriptKind::Slurm).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        std::fs::create_dir(&path).unwrap();
+        assert!(check(ScriptKind::Make).is_err());
+    }
+}

@@ -9,6 +9,10 @@ use crate::scene::Sphere;
 /// 4e-6 at this limit, which other views inside the glass reach, too.
 const IN_LINE: f64 = 0.01;
 
+/// Most glass spheres around the eye that are examined, those with the nearest surfaces first: each is compared with all
+/// spheres, again after each move of the camera.
+const CANDIDATE_LIMIT: usize = 64;
+
 /// Whether the eye is inside glass and in line with the centre and a point where the glass touches another sphere.
 ///
 /// Light that is reflected inside a sphere stays in a plane through the eye and the centre. In line, every such plane
@@ -16,10 +20,14 @@ const IN_LINE: f64 = 0.01;
 /// precision, and a path may hit the one behind.
 pub(super) fn warning(job: &RenderJob) -> Option<String> {
     let (spheres, eye) = (&job.scene().spheres, Eye::of(job.camera()));
-    let is_around =
-        |sphere: &Sphere| job.scene().material_of(sphere).is_transparent() && eye.height(sphere) < 0.0;
-    let mut around = spheres.iter().enumerate().filter(|(_, sphere)| is_around(sphere));
-    around.find_map(|(a, glass)| {
+    let glass = spheres.iter().enumerate().filter(|(_, s)| job.scene().material_of(s).is_transparent());
+    let mut around: Vec<(usize, f64)> =
+        glass.map(|(index, s)| (index, eye.height(s))).filter(|(_, height)| *height < 0.0).collect();
+    around.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+    around.truncate(CANDIDATE_LIMIT);
+    around.sort_by_key(|(index, _)| *index);
+    around.into_iter().find_map(|(a, _)| {
+        let glass = &spheres[a];
         let to_eye = (eye.position - glass.center).normalize_or_zero();
         let is_in_line = |other: &Sphere| {
             let to_other = (other.center - glass.center).normalize_or_zero();
@@ -52,8 +60,29 @@ mod tests {
         scene.add_sphere(DVec3::new(0.0, -3.0 - gap, 0.0), 3.0, ground);
         let ball = scene.add_material("ball", material);
         scene.add_sphere(DVec3::Y, 1.0, ball);
+        warning_of(scene, eye)
+    }
+
+    fn warning_of(scene: Scene, eye: DVec3) -> Option<String> {
         let camera = Camera { look_from: eye, look_at: eye + DVec3::X, ..Camera::default() };
         warning(&RenderJob::new(scene, camera, RenderSettings::default(), Rules::default()).unwrap())
+    }
+
+    #[test]
+    fn of_a_crowd_around_the_eye_the_nearest_are_examined() {
+        // Concentric shells, of which only that of radius 1 touches the ball below.
+        let told = |radii: Vec<f64>| {
+            let mut scene = Scene::default();
+            let glass = scene.add_material("glass", GLASS);
+            radii.into_iter().for_each(|radius| scene.add_sphere(DVec3::Y, radius, glass));
+            scene.add_sphere(DVec3::Y, 1.0, glass);
+            scene.add_sphere(DVec3::NEG_Y * 3.0, 3.0, glass);
+            warning_of(scene, DVec3::Y * 0.1)
+        };
+        let (outer, inner) = (|i: u32| 10.0 + f64::from(i), |i: u32| 0.91 + 1e-4 * f64::from(i));
+        assert!(told((0..200).map(outer).collect()).is_some());
+        assert!(told((0..63).map(inner).chain((0..200).map(outer)).collect()).is_some());
+        assert!(told((0..64).map(inner).collect()).is_none());
     }
 
     #[test]

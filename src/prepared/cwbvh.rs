@@ -14,6 +14,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 pub use obvhs::cwbvh::node::CwBvhNode;
+use std::sync::atomic::AtomicBool;
 
 /// Most spheres in a leaf: a node's marks have room for 3.
 const LEAF_SPHERES: u32 = 3;
@@ -41,7 +42,8 @@ impl Cwbvh {
             let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
             Cwbvh { nodes: wide.nodes, order: wide.primitive_indices }
         };
-        let mut built = build_tree(&bounded, 1, Effort::Quick, wide, |built| built.depth() <= DEPTH_LIMIT);
+        let fits = |built: &Cwbvh| built.depth() <= DEPTH_LIMIT;
+        let mut built = build_tree(&bounded, 1, Effort::Quick, wide, fits, &AtomicBool::new(false));
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         debug_assert_eq!(built.validate(&bounded), Ok(()));

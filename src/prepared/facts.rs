@@ -1,10 +1,13 @@
 //! Properties of a scene that do not depend on the camera: spheres that others cover, and layers so thin that rounding
 //! may be visible.
 
+mod nearest;
+
 use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
 use crate::scene::{Scene, Sphere};
 use glam::DVec3;
+use nearest::{Nearest, thickness};
 use rayon::prelude::*;
 
 /// Two spheres form a layer if their surfaces are everywhere closer than this share of their radius.
@@ -26,8 +29,8 @@ const CLOSING_RATIO: f64 = 100.0;
 /// way out of glass, or gets out of an opaque sphere, becomes a different path.
 const TRAPPING_CLOSING_RATIO: f64 = 1e4;
 
-/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with the next larger
-/// one.
+/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with those that are
+/// nearest to it in place and size.
 const CELL_LIMIT: usize = 64;
 
 /// Covered spheres and thin layers of a scene.
@@ -111,14 +114,30 @@ impl Facts {
         let mut cells: Vec<(u64, u32)> =
             spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
         cells.par_sort_unstable();
+        let mut full: Vec<(u64, Nearest<'_>)> = Vec::new();
         for cell in cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > 1) {
             let mut members: Vec<u32> = cell.iter().map(|(_, index)| *index).collect();
             self.drop_covered(spheres, &mut members);
-            let reach = if members.len() <= CELL_LIMIT { members.len() } else { 1 };
-            for (place, a) in members.iter().enumerate() {
-                for b in members.iter().skip(place + 1).take(reach) {
-                    self.note_layer(spheres, *a, *b);
+            if members.len() <= CELL_LIMIT {
+                for (place, a) in members.iter().enumerate() {
+                    for b in &members[place + 1..] {
+                        self.note_layer(spheres, *a, *b);
+                    }
                 }
+            }
+            if cell.len() > CELL_LIMIT {
+                full.push((cell[0].0, Nearest::new(spheres, members)));
+            }
+        }
+        // What is nearest to a sphere in one of the full cells.
+        let nearest_to = |index: u32, cell: &Nearest<'_>| {
+            cell.to(index, LAYER_SHARE * spheres[index as usize].radius).into_iter().map(move |b| [index, b])
+        };
+        for (_, cell) in full.iter().filter(|(_, cell)| cell.members().len() > CELL_LIMIT) {
+            let pairs: Vec<[u32; 2]> =
+                cell.members().par_iter().flat_map_iter(|index| nearest_to(*index, cell)).collect();
+            for [a, b] in pairs {
+                self.note_layer(spheres, a, b);
             }
         }
         let occupied = Occupied::by(&cells);
@@ -126,10 +145,17 @@ impl Facts {
             .par_iter()
             .enumerate()
             .flat_map_iter(|(index, sphere)| {
-                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
-                let beyond = marks.flat_map(|mark| members_of(&cells, mark));
+                let index = index as u32;
+                let mut pairs: Vec<[u32; 2]> = Vec::new();
+                for mark in marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark)) {
+                    match full.binary_search_by_key(&mark, |cell| cell.0) {
+                        Ok(place) => pairs.extend(nearest_to(index, &full[place].1)),
+                        Err(_) => pairs.extend(members_of(&cells, mark).map(|other| [index, other])),
+                    }
+                }
                 // Where coordinates are huge for the radius, the next cell has the same number.
-                beyond.map(move |other| [index as u32, other]).filter(|[a, b]| a != b)
+                pairs.retain(|[a, b]| a != b);
+                pairs
             })
             .collect();
         for [a, b] in beyond_borders {
@@ -163,7 +189,7 @@ impl Facts {
         let [first, second] = [a, b].map(|index| spheres[index as usize]);
         let spheres = [a.min(b), a.max(b)];
         let apart = first.center.distance(second.center);
-        let thickness = apart + (first.radius - second.radius).abs();
+        let thickness = thickness(&first, &second);
         // Where surfaces cross, they differ by no more than this either.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
             let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
@@ -199,10 +225,10 @@ fn worst(all: &[Unresolved]) -> Option<Unresolved> {
     all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
 }
 
-/// At most [`CELL_LIMIT`] spheres of the cell with this mark.
+/// The spheres of the cell with this mark, which is not a full one.
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     let first = cells.partition_point(|cell| cell.0 < mark);
-    cells[first..].iter().take_while(move |cell| cell.0 == mark).take(CELL_LIMIT).map(|(_, index)| *index)
+    cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
 }
 
 /// Rules out most empty cells without a search: one bit for all marks with the same low bits.

@@ -13,6 +13,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Most levels of a tree, limited by the traversal's stack.
@@ -52,8 +53,19 @@ pub struct Hierarchy<R> {
 impl<R: Real> Hierarchy<R> {
     /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
     pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3, effort: Effort) -> Self {
+        Hierarchy::build_unless(&AtomicBool::new(false), spheres, origin, effort)
+    }
+
+    /// Like [`Hierarchy::build`]. Once `cancel` is set, it hurries, and the hierarchy is a poor one.
+    pub fn build_unless<'a>(
+        cancel: &AtomicBool,
+        spheres: impl IntoIterator<Item = &'a Sphere>,
+        origin: DVec3,
+        effort: Effort,
+    ) -> Self {
         let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
-        let tree = build_tree(&Bounded::all(spheres, &origin), LEAF_SPHERES, effort, |tree| tree, fits);
+        let spheres = Bounded::all(spheres, &origin);
+        let tree = build_tree(&spheres, LEAF_SPHERES, effort, |tree| tree, fits, cancel);
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree
@@ -77,23 +89,26 @@ impl<R: Real> Hierarchy<R> {
 }
 
 /// Builds and lays out a tree over at least one sphere, with at most `leaf_spheres` per leaf. obvhs builds it, unless
-/// that would take long for these spheres or its tree has more levels than a traversal supports.
+/// that would take long for these spheres or its tree has more levels than a traversal supports. Once `cancel` is set, any
+/// tree that fits will do; obvhs itself cannot be interrupted.
 pub(super) fn build_tree<T>(
     spheres: &[Bounded<'_, '_>],
     leaf_spheres: u32,
     effort: Effort,
     lay_out: impl Fn(Bvh2) -> T,
     fits: impl Fn(&T) -> bool,
+    cancel: &AtomicBool,
 ) -> T {
-    if !parted::is_crowded(spheres) {
+    if !parted::is_crowded(spheres) && !cancel.load(Ordering::Relaxed) {
         let params = params(spheres.len(), leaf_spheres, effort);
         let tree = lay_out(build_bvh2(spheres, params, &mut Duration::default()));
         if fits(&tree) {
             return tree;
         }
     }
-    let tree = lay_out(parted::build(spheres, leaf_spheres as usize, false));
-    if fits(&tree) { tree } else { lay_out(parted::build(spheres, leaf_spheres as usize, true)) }
+    let top_down = |halved| lay_out(parted::build(spheres, leaf_spheres as usize, halved, cancel));
+    let tree = top_down(false);
+    if fits(&tree) { tree } else { top_down(true) }
 }
 
 /// The number of nodes on the longest path from the root to a leaf.
@@ -235,8 +250,10 @@ mod tests {
         let spheres: Vec<Sphere> = (0..64).map(sphere).collect();
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         const LEVELS: usize = 7;
-        assert!(depth(&parted::build(&bounded, 1, false).nodes) > LEVELS);
-        let tree = build_tree(&bounded, 1, Effort::Quick, |tree| tree, |tree| depth(&tree.nodes) <= LEVELS);
+        let go_on = AtomicBool::new(false);
+        assert!(depth(&parted::build(&bounded, 1, false, &go_on).nodes) > LEVELS);
+        let fits = |tree: &Bvh2| depth(&tree.nodes) <= LEVELS;
+        let tree = build_tree(&bounded, 1, Effort::Quick, |tree| tree, fits, &go_on);
         assert_eq!(depth(&tree.nodes), LEVELS);
         let mut order = tree.primitive_indices;
         order.sort_unstable();

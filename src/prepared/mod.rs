@@ -23,6 +23,7 @@ use glam::DVec3;
 use groups::{Anchored, Groups};
 use hierarchy::{Effort, Hierarchy};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// From this many spheres on, a hierarchy is built. On generated fields with 8 lanes, the list was a tenth faster with
@@ -71,21 +72,32 @@ pub struct PreparedScene<R> {
 impl<R: Real> PreparedScene<R> {
     /// Sorts, anchors and rounds the scene, and builds a hierarchy if there are enough spheres.
     pub fn new(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick)
+        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, &AtomicBool::new(false))
     }
 
     /// Like [`PreparedScene::new`], with the best hierarchy that can be built, which may take many times as long. Both
     /// render the same bits.
     pub fn thorough(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Thorough)
+        PreparedScene::with_hierarchy_from(
+            job,
+            HIERARCHY_MIN_SPHERES,
+            Effort::Thorough,
+            &AtomicBool::new(false),
+        )
     }
 
     /// Like [`PreparedScene::new`], but never builds a hierarchy, for comparisons.
     pub fn as_list(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, usize::MAX, Effort::Quick)
+        PreparedScene::with_hierarchy_from(job, usize::MAX, Effort::Quick, &AtomicBool::new(false))
     }
 
-    fn with_hierarchy_from(job: &RenderJob, least_spheres: usize, effort: Effort) -> Self {
+    /// Once `cancel` is set, the hierarchy is built in haste.
+    fn with_hierarchy_from(
+        job: &RenderJob,
+        least_spheres: usize,
+        effort: Effort,
+        cancel: &AtomicBool,
+    ) -> Self {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
         let has_hierarchy = job.rules().surface == SurfaceRule::Exact
@@ -94,7 +106,7 @@ impl<R: Real> PreparedScene<R> {
         let (mut listed, mut hierarchy) = (groups.in_list_order(), None);
         if has_hierarchy {
             let spheres = listed.iter().map(|index| &job.scene().spheres[*index as usize]);
-            let built = Hierarchy::build(spheres, groups.origin, effort);
+            let built = Hierarchy::build_unless(cancel, spheres, groups.origin, effort);
             listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
         }
@@ -140,12 +152,30 @@ impl<R: Real> PreparedScene<R> {
     /// Prepares the scene of `job`. If `old` is the prepared scene of a job that differs only in camera and settings,
     /// its hierarchy is reused.
     pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
+        PreparedScene::followed_or_built(old, job, &AtomicBool::new(false))
+    }
+
+    /// Like [`PreparedScene::renewed`], but returns `None` soon once `cancel` is set.
+    pub fn renewed_unless(
+        cancel: &AtomicBool,
+        old: Option<(Self, RenderJob)>,
+        job: &RenderJob,
+    ) -> Option<Self> {
+        let is_cancelled = || cancel.load(Ordering::Relaxed);
+        if is_cancelled() {
+            return None;
+        }
+        let prepared = PreparedScene::followed_or_built(old, job, cancel);
+        (!is_cancelled()).then_some(prepared)
+    }
+
+    fn followed_or_built(old: Option<(Self, RenderJob)>, job: &RenderJob, cancel: &AtomicBool) -> Self {
         if let Some((mut prepared, before)) = old
             && prepared.follow(&before, job)
         {
             return prepared;
         }
-        PreparedScene::new(job)
+        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel)
     }
 
     /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can

@@ -1,6 +1,6 @@
-//! A top-down tree builder for spheres that bottom-up clustering would chain: nested shells, copies, and crowds around
-//! one place. For these, obvhs takes time quadratic in the number of spheres and builds a tree as deep as there are
-//! spheres.
+//! A top-down tree builder for spheres that bottom-up clustering would chain: nested shells, copies, straight rows, and
+//! spheres over many scales. For these, obvhs takes time quadratic in the number of spheres and builds a tree as deep as
+//! there are spheres.
 
 use super::bounded::Bounded;
 use glam::DVec3;
@@ -9,6 +9,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Levels that are split at the lowest cost. Below them nodes are halved, so that the depth of a tree is at most this
 /// plus the logarithm of the number of spheres.
@@ -23,6 +24,12 @@ const FEW_SPHERES: usize = 2048;
 /// Number of spheres in nested runs from which on a scene counts as crowded.
 const CROWD: usize = 1024;
 
+/// Most clusters that [`ROUNDS`] of pairing may leave.
+const LEFT_ALONE: usize = 256;
+
+/// Rounds of pairing. Of millions of spheres that are strewn about, they leave one cluster.
+const ROUNDS: usize = 64;
+
 /// Shorter runs of nested spheres are hollow balls and the like.
 const NESTED_RUN: usize = 32;
 
@@ -34,11 +41,17 @@ struct Open {
     depth: usize,
 }
 
-/// Whether enough spheres are nested in each other that clustering them would take long.
+/// Whether clustering these spheres would take long: enough of them are nested in each other, or pair one by one.
 pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
     }
+    let order = along_a_curve(spheres);
+    has_nested_runs(spheres, &order) || pairs_slowly(spheres, &order)
+}
+
+/// The spheres in the order of a curve on which neighbours in space are mostly neighbours.
+fn along_a_curve(spheres: &[Bounded<'_, '_>]) -> Vec<u32> {
     let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
     let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
     let size = (highest - lowest).max_element().max(f64::MIN_POSITIVE);
@@ -48,9 +61,13 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
         .map(|(index, sphere)| (morton_code(((sphere.center() - lowest) / size).to_array()), index as u32))
         .collect();
     order.par_sort_unstable();
+    order.into_iter().map(|(_, index)| index).collect()
+}
+
+fn has_nested_runs(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
     let (mut nested, mut run) = (0, 0);
     for pair in order.windows(2) {
-        let [a, b] = [0, 1].map(|i| &spheres[pair[i].1 as usize]);
+        let [a, b] = [0, 1].map(|i| &spheres[pair[i] as usize]);
         // Being inside the box is enough here.
         let apart = (a.center() - b.center()).abs().max_element();
         if apart <= (a.radius() - b.radius()).abs() {
@@ -61,6 +78,34 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
         }
     }
     nested >= CROWD
+}
+
+/// Whether many clusters are left after [`ROUNDS`] of pairing neighbours. If sizes or distances grow along a line, each
+/// sphere is nearest to the one before it, so that only one pair forms in a round.
+fn pairs_slowly(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
+    let mut clusters: Vec<Aabb> = order.par_iter().map(|index| spheres[*index as usize].aabb()).collect();
+    for _ in 0..ROUNDS {
+        if clusters.len() <= LEFT_ALONE {
+            return false;
+        }
+        clusters = paired(&clusters);
+    }
+    clusters.len() > LEFT_ALONE
+}
+
+/// Unites two neighbours if neither has a nearer neighbour, as obvhs does among more neighbours.
+fn paired(clusters: &[Aabb]) -> Vec<Aabb> {
+    let costs: Vec<f32> = clusters.par_windows(2).map(|pair| pair[0].union(&pair[1]).half_area()).collect();
+    let cost = |place: usize| costs.get(place).copied().unwrap_or(f32::INFINITY);
+    let mut pairs = Vec::with_capacity(clusters.len());
+    let (mut place, mut before) = (0, f32::INFINITY);
+    while let Some(cluster) = clusters.get(place) {
+        let next = clusters.get(place + 1).filter(|_| cost(place) <= before && cost(place) < cost(place + 1));
+        pairs.push(next.map_or(*cluster, |next| cluster.union(next)));
+        place += if next.is_some() { 2 } else { 1 };
+        before = cost(place - 1);
+    }
+    pairs
 }
 
 /// Interleaves 21 bits of each coordinate; coordinates are between 0 and 1.
@@ -82,8 +127,9 @@ fn morton_code(place: [f64; 3]) -> u64 {
 
 /// Builds a tree over at least one box, with at most `leaf_size` per leaf. With `halved`, every node is split in the
 /// middle, which gives the lowest tree; otherwise the split with the smallest sum of area times spheres is chosen (Wald
-/// 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
-pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) -> Bvh2 {
+/// 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"). Once `cancel` is set, what is left is split
+/// at random, for a tree that will not be used.
+pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool, cancel: &AtomicBool) -> Bvh2 {
     let chosen_levels = if halved { 0 } else { CHOSEN_LEVELS };
     let mut order: Vec<u32> = (0..spheres.len() as u32).collect();
     let mut nodes = vec![Bvh2Node::default()];
@@ -95,8 +141,12 @@ pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) 
             nodes[node] = Bvh2Node::new(aabb, count as u32, first as u32);
             continue;
         }
-        let chosen = if depth < chosen_levels { part_where_it_pays(spheres, part) } else { None };
-        let left = chosen.unwrap_or_else(|| part_in_the_middle(spheres, part));
+        let left = if cancel.load(Ordering::Relaxed) {
+            count / 2
+        } else {
+            let chosen = if depth < chosen_levels { part_where_it_pays(spheres, part) } else { None };
+            chosen.unwrap_or_else(|| part_in_the_middle(spheres, part))
+        };
         let children = nodes.len();
         nodes[node] = Bvh2Node::new(aabb, 0, children as u32);
         nodes.extend([Bvh2Node::default(); 2]);
@@ -176,138 +226,4 @@ fn part_in_the_middle(spheres: &[impl Boundable], part: &mut [u32]) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::Sphere;
-
-    fn ball(x: f64, radius: f64) -> Sphere {
-        Sphere { center: DVec3::X * x, radius, material: 0 }
-    }
-
-    fn crowded(spheres: &[Sphere]) -> bool {
-        is_crowded(&Bounded::all(spheres, &DVec3::ZERO))
-    }
-
-    /// So many shells around the origin, the largest first.
-    fn shells(count: u32) -> impl Iterator<Item = Sphere> {
-        (0..count).map(|index| ball(0.0, 1.0 - 1e-5 * f64::from(index)))
-    }
-
-    /// So many balls beside each other, which are nested in nothing.
-    fn row(count: u32) -> impl Iterator<Item = Sphere> {
-        (1..=count).map(|place| ball(3.0 * f64::from(place), 0.1))
-    }
-
-    #[test]
-    fn a_thousand_spheres_in_runs_of_nested_ones_are_a_crowd() {
-        // The first 31 pairs of a run do not count.
-        let of = |nested: u32, apart: u32| crowded(&shells(nested).chain(row(apart)).collect::<Vec<_>>());
-        assert!(of(1056, 1000) && !of(1055, 1001));
-        // Few spheres are never a crowd.
-        assert!(of(2048, 0) && !of(2047, 0) && of(1100, 948) && !of(1100, 947));
-        assert!(!of(0, 3000));
-        let hollow = |size: u32, count: u32| -> Vec<Sphere> {
-            let of =
-                |place: u32| move |index: u32| ball(3.0 * f64::from(place), 1.0 - 0.01 * f64::from(index));
-            (0..count).flat_map(|place| (0..size).map(of(place))).collect()
-        };
-        assert!(!crowded(&hollow(32, 100)), "hollow balls");
-        // Each run of 64 pairs counts 33.
-        let apart: Vec<Sphere> = (0..40).map(|place| ball(1e3 + 3.0 * f64::from(place), 0.1)).collect();
-        assert!(crowded(&hollow(65, 32)) && !crowded(&[hollow(65, 31), apart].concat()));
-    }
-
-    #[test]
-    fn neighbours_in_space_have_neighbouring_codes() {
-        assert_eq!(morton_code([0.0; 3]), 0);
-        assert_eq!(morton_code([1.0; 3]), (1 << 63) - 1);
-        let unit = 1.0 / f64::from((1 << 21) - 1);
-        for (number, code) in [(1, 0b1), (2, 0b1000), (3, 0b1001), (5, 0b100_0001), (1 << 20, 1 << 60)] {
-            // A little more, so that rounding does not take the number below.
-            let x = (f64::from(number) + 0.5) * unit;
-            for axis in 0..3 {
-                let mut place = [0.0; 3];
-                place[axis] = x;
-                assert_eq!(morton_code(place), code << axis, "{number} on axis {axis}");
-            }
-        }
-    }
-
-    /// The numbers on either side of the best split, in order.
-    fn sides(spheres: &[Sphere]) -> Option<[Vec<u32>; 2]> {
-        let mut part: Vec<u32> = (0..spheres.len() as u32).collect();
-        let left = part_where_it_pays(&Bounded::all(spheres, &DVec3::ZERO), &mut part)?;
-        let (a, b) = part.split_at(left);
-        Some([a, b].map(|side| {
-            let mut side = side.to_vec();
-            side.sort_unstable();
-            side
-        }))
-    }
-
-    #[test]
-    fn a_split_pays_most_where_area_times_spheres_is_least() {
-        // One ball in each of the sixteen bins.
-        let even: Vec<Sphere> = (0..16).map(|place| ball(f64::from(place), 0.25)).collect();
-        let all: Vec<u32> = (0..16).collect();
-        assert_eq!(sides(&even), Some([all[..8].to_vec(), all[8..].to_vec()]));
-        let backwards: Vec<Sphere> = even.iter().rev().copied().collect();
-        assert_eq!(sides(&backwards), Some([all[8..].to_vec(), all[..8].to_vec()]));
-        for axis in [DVec3::Y, DVec3::Z] {
-            let turned = even.iter().map(|ball| Sphere { center: ball.center.x * axis, ..*ball });
-            assert_eq!(sides(&turned.collect::<Vec<_>>()), sides(&even), "{axis}");
-        }
-        // Many balls at one end draw the split towards them.
-        let heavy: Vec<Sphere> = even.iter().copied().chain([even[1]; 30]).collect();
-        let [left, _] = sides(&heavy).unwrap();
-        assert_eq!(left, [0, 1].into_iter().chain(16..46).collect::<Vec<u32>>());
-        // Balls around the same place are parted by size, the small ones first.
-        let nested: Vec<Sphere> = (0..6).map(|index| ball(0.0, [8.0, 1.0][index % 2])).collect();
-        assert_eq!(sides(&nested), Some([vec![1, 3, 5], vec![0, 2, 4]]));
-        assert_eq!(sides(&[ball(1.0, 2.0); 5]), None, "copies cannot be parted");
-    }
-
-    #[test]
-    fn a_half_is_taken_along_the_widest_key() {
-        let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
-        let spheres: Vec<Sphere> =
-            (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();
-        let mut part: Vec<u32> = (0..7).collect();
-        let left = part_in_the_middle(&Bounded::all(&spheres, &DVec3::ZERO), &mut part);
-        part[..left].sort_unstable();
-        assert_eq!((left, &part[..left]), (3, &[4, 5, 6][..]));
-        // Of equal keys, the first of the scene come first.
-        let mut part: Vec<u32> = (0..4).rev().collect();
-        let left = part_in_the_middle(&Bounded::all(&[ball(0.0, 1.0); 4], &DVec3::ZERO), &mut part);
-        part[..left].sort_unstable();
-        assert_eq!(part[..left], [0, 1]);
-    }
-
-    #[test]
-    fn a_tree_holds_every_sphere_once_in_leaves_that_are_not_too_full() {
-        let spheres: Vec<Sphere> = row(100).chain(shells(30)).collect();
-        let bounded = Bounded::all(&spheres, &DVec3::ZERO);
-        for (leaf_size, halved) in [(1, false), (1, true), (4, false), (4, true), (130, false)] {
-            let tree = build(&bounded, leaf_size, halved);
-            let mut order = tree.primitive_indices.clone();
-            order.sort_unstable();
-            assert!(order.into_iter().eq(0..130));
-            let mut places = Vec::new();
-            for node in &tree.nodes {
-                let places_of = node.first_index..node.first_index + node.prim_count;
-                if node.is_leaf() {
-                    assert!(node.prim_count as usize <= leaf_size);
-                    places.extend(places_of.clone());
-                }
-                for place in places_of {
-                    let inner = bounded[tree.primitive_indices[place as usize] as usize].aabb();
-                    assert_eq!(node.aabb().union(&inner), *node.aabb(), "a box holds its spheres");
-                }
-            }
-            places.sort_unstable();
-            assert!(places.into_iter().eq(0..130), "leaves of {leaf_size}");
-            assert!(leaf_size < 130 || tree.nodes.len() == 1, "no more nodes than are needed");
-            assert!(leaf_size > 1 || tree.nodes.len() == 2 * 130 - 1, "each node has two children");
-        }
-    }
-}
+mod tests;

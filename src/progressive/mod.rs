@@ -5,6 +5,7 @@
 //! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`], [`Progressive::finish`] and dropping
 //! the handle wait for the renderer; no other call blocks.
 
+mod cancel;
 mod guard;
 mod passes;
 mod pending;
@@ -24,10 +25,10 @@ pub use view::{FilmIdentity, ReferenceMeans, View, luminance, standard_error};
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
 use crate::render::{RenderJob, Renderer};
+use cancel::Cancel;
 use shared::Shared;
 use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -62,7 +63,7 @@ pub struct Progressive {
     commands: Sender<RenderCommand>,
     shared: Arc<Shared>,
     run: u64,
-    cancel: Arc<AtomicBool>,
+    cancel: Arc<Cancel>,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -84,19 +85,13 @@ impl Progressive {
         let shared = Arc::new(Shared::default());
         let worker = Worker::new(receiver, Arc::clone(&shared), factory);
         let thread = thread::Builder::new().name("render".to_owned()).spawn(move || worker.run())?;
-        Ok(Progressive {
-            commands,
-            shared,
-            run: 0,
-            cancel: Arc::new(AtomicBool::new(false)),
-            thread: Some(thread),
-        })
+        Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: Some(thread) })
     }
 
     /// Starts what `request` asks for. A render in progress is abandoned in the middle of its pass.
     pub fn start(&mut self, request: RenderRequest) {
-        self.cancel.store(true, Ordering::Relaxed);
-        self.cancel = Arc::new(AtomicBool::new(false));
+        self.cancel.abandon();
+        self.cancel = Arc::default();
         self.run += 1;
         self.shared.publish(&Status { run: self.run, phase: Phase::Preparing, ..Status::default() });
         self.send(RenderCommand::Start {
@@ -124,7 +119,7 @@ impl Progressive {
 
     /// Abandons the render in progress.
     pub fn abandon(&mut self) {
-        self.cancel.store(true, Ordering::Relaxed);
+        self.cancel.abandon();
         self.send(RenderCommand::Abandon);
     }
 
@@ -138,8 +133,9 @@ impl Progressive {
         self.send(RenderCommand::Resume);
     }
 
-    /// Ends the render at the end of the pass.
+    /// Ends the render at the end of the pass, or while it prepares.
     pub fn stop(&self) {
+        self.cancel.stop();
         self.send(RenderCommand::Stop);
     }
 
@@ -230,7 +226,7 @@ impl Progressive {
 impl Drop for Progressive {
     fn drop(&mut self) {
         if let Some(thread) = self.thread.take() {
-            self.cancel.store(true, Ordering::Relaxed);
+            self.cancel.abandon();
             self.send(RenderCommand::Finish);
             let _ = thread.join();
         }

@@ -1,9 +1,9 @@
 //! A pending backend, which is prepared on its own thread while the old one continues to render.
 
 use super::Factory;
+use super::cancel::Cancel;
 use crate::backends::BackendChoice;
 use crate::render::{RenderJob, Renderer};
-use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{self, Receiver};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -27,7 +27,7 @@ impl Pending {
         choice: BackendChoice,
         job: &RenderJob,
         factory: &Arc<Mutex<Factory>>,
-        cancel: &Arc<AtomicBool>,
+        cancel: &Arc<Cancel>,
     ) -> Option<Self> {
         let (sender, outcome) = mpsc::channel();
         let (wanted, job, factory) = (choice.clone(), job.clone(), Arc::clone(factory));
@@ -36,7 +36,7 @@ impl Pending {
             let begin = Instant::now();
             let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&wanted);
             let ready = made.map_err(|error| error.to_string()).and_then(|mut renderer| {
-                renderer.prepare(&job, &cancel).map_err(|error| error.to_string())?;
+                renderer.prepare(&job, &cancel.pass).map_err(|error| error.to_string())?;
                 Ok(Ready { renderer, took: begin.elapsed() })
             });
             // If another backend was chosen meanwhile, nobody receives this.

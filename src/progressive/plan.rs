@@ -1,6 +1,5 @@
 //! The plan of a progressive render: what to render, and when to stop.
 
-use crate::film::ErrorEstimate;
 use crate::render::SAMPLE_LIMIT;
 use std::ops::Range;
 use std::time::Duration;
@@ -15,7 +14,8 @@ pub struct Stop {
     pub samples: Option<u64>,
     /// Time limit in seconds, including preparation but not pauses. At least one pass is always rendered.
     pub seconds: Option<f64>,
-    /// Target RMSE in linear radiance, as estimated from the halves. Needs a film with two halves.
+    /// Target RMSE in linear radiance, as estimated from the halves: see [`crate::film::Film::meets`]. Needs a film with
+    /// two halves.
     pub noise: Option<f64>,
 }
 
@@ -32,13 +32,6 @@ impl Stop {
     pub fn time_limit(&self) -> Option<Duration> {
         // Seconds that a duration cannot hold count as no limit.
         self.seconds.map(|seconds| Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(Duration::MAX))
-    }
-
-    pub(super) fn noise_reached(&self, samples: u64, error: Option<ErrorEstimate>) -> bool {
-        match (self.noise, error) {
-            (Some(target), Some(error)) => samples >= NOISE_TARGET_FIRST_SAMPLES && error.rmse <= target,
-            _ => false,
-        }
     }
 }
 

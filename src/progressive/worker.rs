@@ -1,5 +1,6 @@
 //! The render thread: it alternates between obeying commands and rendering passes.
 
+use super::cancel::Cancel;
 use super::guard::Backend;
 use super::guard::{dismiss, guarded};
 use super::render::Render;
@@ -9,14 +10,13 @@ use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// What [`super::Progressive`] can ask of the render thread.
 pub(super) enum RenderCommand {
-    Start { run: u64, request: Box<RenderRequest>, cancel: Arc<AtomicBool> },
+    Start { run: u64, request: Box<RenderRequest>, cancel: Arc<Cancel> },
     Abandon,
     Pause,
     Resume,
@@ -127,6 +127,9 @@ impl Worker {
             self.collect();
         }
         let Some(render) = &mut self.render else { return };
+        if matches!(command, RenderCommand::Stop) {
+            render.stop_is_obeyed();
+        }
         let is_stopped = render.status.phase == Phase::Done(EndReason::Stopped);
         match command {
             RenderCommand::Abandon => {
@@ -152,7 +155,7 @@ impl Worker {
         self.shared.publish(&render.status);
     }
 
-    fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<AtomicBool>) {
+    fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<Cancel>) {
         // Drop the old film before the new one is made, so that both need not fit into memory.
         self.render = None;
         let RenderRequest { job, backend: choice, renderer, plan, film } = request;

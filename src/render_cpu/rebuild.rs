@@ -88,8 +88,11 @@ impl Rebuild {
     /// another scene is dropped.
     pub fn take_built(&mut self, job: &RenderJob) -> Option<PreparedScene<f32>> {
         let (job_then, thread) = self.building.take_if(|(_, thread)| thread.is_finished())?;
-        // A panic there has been reported; the first hierarchy does.
-        let mut prepared = thread.join().ok()?;
+        let Ok(mut prepared) = thread.join() else {
+            // The panic has been reported. Another try would end alike, and the first hierarchy does.
+            self.is_settled |= job_then.scene() == job.scene();
+            return None;
+        };
         if self.is_settled || !prepared.follow(&job_then, job) {
             return None;
         }
@@ -208,6 +211,24 @@ mod tests {
         wait(&renderer.rebuild);
         PASSES.skip(1).for_each(|index| pass(&mut renderer, &other, &mut film, index));
         assert!(film == expected(&other));
+    }
+
+    #[test]
+    fn a_builder_that_panics_is_not_started_again() {
+        let job = field(21_000);
+        let mut renderer = renderer(2);
+        renderer.rebuild.patience = 0;
+        let mut film = job.new_film();
+        pass(&mut renderer, &job, &mut film, 0);
+        let first = nodes(&renderer);
+        wait(&renderer.rebuild);
+        let panics = std::thread::spawn(|| -> PreparedScene<f32> { panic!("injected fault") });
+        renderer.rebuild.building = Some((job.clone(), panics));
+        wait(&renderer.rebuild);
+        PASSES.skip(1).for_each(|index| pass(&mut renderer, &job, &mut film, index));
+        assert!(renderer.rebuild.is_settled && renderer.rebuild.building.is_none());
+        assert_eq!(nodes(&renderer), first);
+        assert!(film == expected(&job));
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl Renderer for CpuRenderer {
         }
     }
 
-    fn prepare(&mut self, job: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         if self.prepared.is_some() && self.job.as_ref() == Some(job) {
             return Ok(());
         }
@@ -149,7 +149,8 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
+                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
                 self.messages = prepared.warnings().to_vec();
                 self.rebuild.note_prepared(&prepared);
                 let wanted = self.wanted_parts(&prepared);
@@ -165,7 +166,8 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
+                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
                 Prepared::Double(Box::new(BroadcastScene::new(prepared)), kernels::reference_kernel())
             }
         });

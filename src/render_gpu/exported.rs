@@ -45,3 +45,34 @@ impl Exported {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::RenderSettings;
+    use crate::scene::{Camera, Material, Scene};
+    use crate::stages::Rules;
+
+    #[test]
+    fn the_buffers_are_relative_to_the_origin() {
+        for away in [DVec3::ZERO, DVec3::new(4096.0, 0.0, -65_536.0)] {
+            let mut scene = Scene::default();
+            let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
+            for x in [-1.5, 0.0, 1.5] {
+                scene.add_sphere(away + DVec3::new(x, 0.0, -1.0), 0.5, matte);
+            }
+            let book = Camera::BOOK;
+            let camera = Camera { look_from: away + book.look_from, look_at: away + book.look_at, ..book };
+            let job = RenderJob::new(scene, camera, RenderSettings::default(), Rules::default()).unwrap();
+            let exported = Exported::new(&job).unwrap();
+            assert_eq!(exported.origin == DVec3::ZERO, away == DVec3::ZERO, "{}", exported.origin);
+            let rows: Vec<[f32; 4]> =
+                exported.buffers[1].chunks_exact(16).map(bytemuck::pod_read_unaligned).collect();
+            assert_eq!(rows.len(), 3);
+            for ([x, y, z, _], index) in rows.into_iter().zip(&exported.scene_index) {
+                let center = exported.origin + DVec3::from([x, y, z].map(f64::from));
+                assert_eq!(center, job.scene().spheres[*index as usize].center);
+            }
+        }
+    }
+}

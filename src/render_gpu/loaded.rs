@@ -72,7 +72,7 @@ impl GpuRenderer {
             other => {
                 // The device may not have room for both.
                 drop(other);
-                self.scene_on_device(job)?
+                self.scene_on_device(job, cancel)?
             }
         };
         let features = self.features(&scene.prepared);
@@ -105,8 +105,13 @@ impl GpuRenderer {
     }
 
     /// Builds the prepared scene and its hierarchy while the kernel compiles, and uploads them to the device.
-    fn scene_on_device(&mut self, job: &RenderJob) -> Result<SceneOnDevice, RenderError> {
-        let prepared = PreparedScene::<f32>::new(job);
+    fn scene_on_device(
+        &mut self,
+        job: &RenderJob,
+        cancel: &AtomicBool,
+    ) -> Result<SceneOnDevice, RenderError> {
+        let made = PreparedScene::<f32>::renewed_unless(cancel, None, job);
+        let prepared = made.ok_or(RenderError::Cancelled)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
         let begin = Instant::now();
         let data = SceneData::new(job, &prepared, self.options.hierarchy).map_err(failed)?;

@@ -80,7 +80,7 @@ pub struct GpuOptions {
     pub adapter: Option<String>,
     /// Whether a software adapter is acceptable.
     pub allow_software: bool,
-    /// Target time of a dispatch.
+    /// Target time of a dispatch on a GPU. On a software adapter, dispatches last ten times as long.
     pub dispatch_target: Duration,
     /// Whether kernels contain only what the job needs. Turned off to measure the gain.
     pub specialise: bool,

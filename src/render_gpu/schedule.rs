@@ -16,17 +16,42 @@ const GROWTH_LIMIT: f64 = 4.0;
 /// Most blocks in a dispatch, which is the capacity of their buffer.
 pub const BLOCK_LIMIT: usize = 1024;
 
+/// A dispatch takes at least this many times its overhead, so that most of its time is spent on paths.
+const TIMES_OVERHEAD: f64 = 3.0;
+
+/// Longest time in seconds that a dispatch is given because of its overhead.
+const LONGEST_GOAL: f64 = 0.12;
+
+/// Growth of the shortest time from one dispatch to the next, so that it is forgotten in the end.
+const FORGETTING: f64 = 1.002;
+
+/// Share of the overhead that remains from one dispatch to the next, so that the budget moves and it is measured anew.
+const KEPT_OVERHEAD: f64 = 0.995;
+
+/// Two dispatches tell the overhead if their numbers of paths differ by this factor.
+const TELLING_FACTOR: f64 = 1.25;
+
+/// Weight of a new measurement of the overhead.
+const OVERHEAD_WEIGHT: f64 = 0.3;
+
 /// The number of paths that a dispatch should have, learnt from earlier dispatches.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     paths: f64,
     target: Duration,
+    /// Seconds that a dispatch takes however few paths it has. A driver that runs on a busy processor can need longer for
+    /// that than the target, and smaller dispatches would only add to it.
+    overhead: f64,
+    /// The shortest dispatch, in seconds; no overhead is longer.
+    shortest: f64,
+    /// Paths and seconds of an earlier dispatch, with which later ones are compared.
+    earlier: Option<(f64, f64)>,
 }
 
 impl Budget {
     /// Starts with a small budget. `target` is the target time of a dispatch.
     pub fn new(target: Duration) -> Self {
-        Budget { paths: FIRST_PATHS, target }
+        Budget { paths: FIRST_PATHS, target, overhead: 0.0, shortest: f64::INFINITY, earlier: None }
     }
 
     /// Number of paths for the next dispatch.
@@ -34,19 +59,42 @@ impl Budget {
         self.paths as u64
     }
 
-    /// Learns from a dispatch: halves the budget if the dispatch took more than twice the target, otherwise moves it
-    /// gradually towards the target.
+    /// Learns from a dispatch: halves the budget if the dispatch took more than twice its goal, otherwise moves it
+    /// gradually towards the goal.
     pub fn learn(&mut self, paths: u64, took: Duration) {
-        let ratio = self.target.as_secs_f64() / took.as_secs_f64().max(1e-9);
-        let fitting = paths as f64 * ratio;
+        let (paths, took) = (paths as f64, took.as_secs_f64().max(1e-9));
+        self.learn_overhead(paths, took);
+        let ratio = self.goal() / took;
+        let fitting = paths * ratio;
         // A dispatch far below the budget measures the cost of starting one, not the device's throughput.
-        let least = if 2.0 * (paths as f64) < self.paths { self.paths } else { self.paths / 2.0 };
+        let least = if 2.0 * paths < self.paths { self.paths } else { self.paths / 2.0 };
         self.paths = if ratio < 0.5 {
-            self.paths.min(paths as f64) / 2.0
+            self.paths.min(paths) / 2.0
         } else {
             fitting.clamp(least, self.paths * GROWTH_LIMIT)
         }
         .clamp(64.0, 1e12);
+    }
+
+    /// The time that a dispatch should take, in seconds: the target, or more where most of it would be overhead.
+    fn goal(&self) -> f64 {
+        self.target.as_secs_f64().max((TIMES_OVERHEAD * self.overhead).min(LONGEST_GOAL))
+    }
+
+    /// Takes the time for a straight line over the paths; the overhead is where it begins.
+    fn learn_overhead(&mut self, paths: f64, took: f64) {
+        self.shortest = (FORGETTING * self.shortest).min(took);
+        self.overhead *= KEPT_OVERHEAD;
+        match self.earlier {
+            Some((earlier, time)) if earlier.max(paths) >= TELLING_FACTOR * earlier.min(paths) => {
+                let found = (took * earlier - time * paths) / (earlier - paths);
+                self.overhead += OVERHEAD_WEIGHT * (found.clamp(0.0, self.shortest) - self.overhead);
+                self.earlier = Some((paths, took));
+            }
+            Some(_) => {}
+            None => self.earlier = Some((paths, took)),
+        }
+        self.overhead = self.overhead.min(self.shortest);
     }
 }
 
@@ -182,6 +230,46 @@ mod tests {
             budget.learn(paths, Duration::from_millis(milliseconds));
             assert_eq!(budget.paths(), expected, "{paths} paths in {milliseconds} ms");
         }
+    }
+
+    /// Dispatches of a device that needs `overhead` seconds for each, and `per_path` for each path.
+    fn dispatches(budget: &mut Budget, count: usize, overhead: f64, per_path: f64) -> Vec<f64> {
+        let one = |_| {
+            let took = overhead + budget.paths() as f64 * per_path;
+            budget.learn(budget.paths(), Duration::from_secs_f64(took));
+            took
+        };
+        (0..count).map(one).collect()
+    }
+
+    #[test]
+    fn an_overhead_beyond_the_target_does_not_shrink_the_budget_to_nothing() {
+        for overhead in [0.003, 0.007, 0.012, 0.02, 0.035] {
+            for per_path in [1e-7, 5e-6, 2e-5] {
+                let mut budget = Budget::new(Duration::from_millis(8));
+                dispatches(&mut budget, 100, overhead, per_path);
+                let last = dispatches(&mut budget, 50, overhead, per_path);
+                let share = overhead / last.iter().copied().fold(f64::INFINITY, f64::min);
+                assert!((0.2..0.6).contains(&share), "{overhead} {per_path}: {share}");
+                // Once the processor has time again, the dispatches are as short as they should be.
+                let later = dispatches(&mut budget, 1000, 1e-4, per_path);
+                assert!((later[999] - 0.008).abs() < 5e-4, "{overhead} {per_path}: {}", later[999]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_slow_device_without_overhead_keeps_to_the_target() {
+        for per_path in [1e-9, 1e-6, 2e-5, 1e-4] {
+            let mut budget = Budget::new(Duration::from_millis(8));
+            for took in &dispatches(&mut budget, 200, 0.0, per_path)[20..] {
+                assert!((took - 0.008).abs() < 1e-3, "{per_path}: {took}");
+            }
+        }
+        // Even if the overhead were a second, a dispatch would not be given three.
+        let mut budget = Budget::new(Duration::from_millis(8));
+        dispatches(&mut budget, 100, 1.0, 1e-6);
+        assert_eq!((budget.goal(), budget.paths()), (LONGEST_GOAL, 64));
     }
 
     #[test]

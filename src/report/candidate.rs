@@ -213,6 +213,7 @@ fn by_baseline(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::PixelSum;
     use crate::recipe::Recipe;
     use crate::render::{BackendInfo, RenderError, Stats};
     use std::ops::Range;
@@ -289,6 +290,7 @@ mod tests {
         (recipe.settings.width, recipe.settings.height) = (16, 9);
         let job = recipe.job().unwrap();
         let mut film = job.new_film();
+        film.halves_mut()[0][0] = PixelSum([1; 3]);
         film.record(0..2, 0).unwrap();
         let reference = ReferencePicture::of_film("metals", "", &film, recipe.rules.transfer).unwrap();
         let mut clocked = Clocked { clock: Duration::from_secs(60), ..Clocked::default() };

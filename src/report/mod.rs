@@ -7,6 +7,7 @@ mod data;
 mod figure;
 mod progress;
 mod reference;
+mod rendered;
 mod rounding;
 mod summary;
 mod table;
@@ -20,7 +21,7 @@ use crate::console;
 use crate::failure::Failure;
 use crate::files;
 use crate::files::{check_writable, write_text};
-use crate::film::Film;
+use crate::film::{Film, SOFTWARE};
 use crate::interrupt::Interrupt;
 use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
@@ -80,7 +81,7 @@ impl<'a> Report<'a> {
         let candidates = candidates(options)?;
         if let ReferenceChoice::File(path) = &options.reference {
             for recipe in &options.scenes {
-                reference::read(path, recipe)?;
+                reference::read(path, recipe, &options.samplers, options.seeds)?;
             }
         }
         let out = &options.out;
@@ -140,11 +141,13 @@ impl<'a> Report<'a> {
     fn reference(&mut self, recipe: &Recipe) -> Result<Option<ReferencePicture>> {
         let (interrupt, progress) = (&self.interrupt, &mut self.progress);
         let reference = match &self.options.reference {
-            ReferenceChoice::File(path) => Some(reference::read(path, recipe)?),
+            ReferenceChoice::File(path) => {
+                Some(reference::read(path, recipe, &self.options.samplers, self.options.seeds)?)
+            }
             ReferenceChoice::Make { choice, samples, .. } => {
                 let path = self.options.out.join(format!("reference-{}.exr", plain_name(&recipe.name)));
                 let what = format!("reference of {}", recipe.name);
-                reference::make(&path, recipe, choice, *samples, |share| {
+                rendered::make(&path, recipe, choice, *samples, |share| {
                     progress.at(&what, share * EXPECTED_SECONDS);
                     !interrupt.is_set()
                 })?
@@ -275,7 +278,7 @@ fn settings(options: &ReportOptions) -> Settings {
         ReferenceChoice::Make { name, samples, .. } => (name.clone(), *samples),
     };
     Settings {
-        software: concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned(),
+        software: SOFTWARE.to_owned(),
         size: options.size,
         seeds: options.seeds,
         time_limit: options.time_limit,

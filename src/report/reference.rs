@@ -1,21 +1,20 @@
 //! The reference pictures against which errors are measured, and the errors.
 
 use super::data::ReferenceUsed;
-use crate::backends::{self, BackendChoice};
-use crate::film::{Description, Film, checkpoint, key};
-use crate::progressive::PassSizer;
-use crate::recipe::{Recipe, file};
-use crate::render::{RenderJob, RenderSettings, SamplerKind};
+use crate::film::Film;
+use crate::recipe::Recipe;
+use crate::render::{RenderSettings, SamplerKind};
 use crate::saved;
 use crate::stages::Transfer;
 use crate::statistics::flip::Appearance;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
 
 /// Seed of the references. No picture of a report uses it, so none shares random numbers with its reference.
 const SEED: u32 = 0x5EED_0000;
+
+/// A seed to recommend for a reference film.
+const FREE_SEED: u32 = 900;
 
 /// A picture relative to which errors are measured.
 pub struct ReferencePicture {
@@ -47,7 +46,9 @@ impl ReferencePicture {
     pub fn of_film(scene: &str, about: &str, film: &Film, transfer: Transfer) -> Result<Self> {
         let Some(own) = film.error() else {
             bail!(
-                "the reference of {scene} has only one half, so its own error is unknown; render it with --estimate-error on"
+                "the error of the reference of {scene} is unknown, because {}; render it with --estimate-error on, and with \
+                 more samples if it is black",
+                film.why_no_error()
             );
         };
         let means = film_means(film);
@@ -111,11 +112,12 @@ pub fn recipe_of(recipe: &Recipe) -> Recipe {
     Recipe { settings, ..recipe.clone() }
 }
 
-/// Reads an existing film as the reference of a scene.
+/// Reads an existing film as the reference of a scene, whose measured pictures have these samplers, each with the seeds
+/// from 0 up to `seeds`.
 ///
 /// # Errors
-/// If it is the film of another picture.
-pub fn read(path: &Path, recipe: &Recipe) -> Result<ReferencePicture> {
+/// If it is the film of another picture, or has the random numbers of a measured one.
+pub fn read(path: &Path, recipe: &Recipe, samplers: &[SamplerKind], seeds: u32) -> Result<ReferencePicture> {
     let (theirs, read) = saved::open_film(path)?;
     let mine = recipe_of(recipe).job()?;
     let is_same = theirs.scene() == mine.scene()
@@ -132,98 +134,37 @@ pub fn read(path: &Path, recipe: &Recipe) -> Result<ReferencePicture> {
             recipe.settings.height
         );
     }
+    let RenderSettings { seed, sampler, .. } = *theirs.settings();
+    if seed < seeds && samplers.contains(&sampler) {
+        bail!(
+            "{} has seed {seed} and sampler {}, as has a picture to measure (seeds 0 to {}), so their errors would \
+             cancel; render the reference with --seed {}, or leave out --reference",
+            path.display(),
+            sampler.name(),
+            seeds - 1,
+            seeds.max(FREE_SEED)
+        );
+    }
     let about = read.backend.as_deref().unwrap_or("unknown");
     ReferencePicture::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
 }
 
-/// Duration of a pass of a reference; progress is shown and Ctrl-C is noticed between passes.
-const PASS: Duration = Duration::from_millis(500);
-
-/// Renders the reference, or continues the part of it in `path`. `go_on` receives the fraction that is done; if it
-/// returns false, the result is `None` and the film is kept.
-///
-/// # Errors
-/// If the backend fails, in which case the film is kept, or if the film cannot be written.
-pub fn make(
-    path: &Path,
-    recipe: &Recipe,
-    choice: &BackendChoice,
-    samples: u64,
-    mut go_on: impl FnMut(f64) -> bool,
-) -> Result<Option<ReferencePicture>> {
-    let recipe = recipe_of(recipe);
-    let job = recipe.job()?;
-    let mut renderer = backends::create(choice)?;
-    let info = renderer.info();
-    let about = format!("{} {}", info.name, info.device);
-    let mut film = kept(path, &job, &about).unwrap_or_else(|| job.new_film());
-    let mut sizer = PassSizer::new(job.settings().half_count());
-    let before = film.sample_count();
-    let mut outcome = Ok(());
-    while let Some(pass) = sizer.next(film.samples(), 0..samples, None) {
-        if !go_on(film.sample_count() as f64 / samples as f64) {
-            break;
-        }
-        let begin = Instant::now();
-        let count = pass.end - pass.start;
-        if let Err(error) = renderer.accumulate(&job, pass, &mut film, &AtomicBool::new(false)) {
-            outcome = Err(error);
-            break;
-        }
-        sizer.measured(count, begin.elapsed(), PASS);
-    }
-    if film.sample_count() > before {
-        let mut description = Description::new(&file::to_picture_toml(&recipe));
-        description.set(key::SCENE, &recipe.name);
-        description.set(key::SAMPLES, film.sample_count());
-        description.set(key::BACKEND, &about);
-        checkpoint::save(path, &film, &description).context("cannot save the reference")?;
-    }
-    outcome?;
-    if film.sample_count() < samples {
-        return Ok(None);
-    }
-    ReferencePicture::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
-}
-
-/// The film in `path`, if it is of this job and backend.
-fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
-    let (theirs, read) = saved::open_film(path).ok()?;
-    let is_same = theirs == *job && read.backend.as_deref() == Some(about);
-    is_same.then_some(read.film)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::rendered::make;
+    use super::super::tests::{cpu, place, small};
     use super::*;
-    use crate::film::fixed_point;
-    use crate::render_cpu::CpuOptions;
+    use crate::film::{Description, checkpoint, fixed_point};
+    use crate::recipe::file;
     use glam::DVec3;
-    use std::path::PathBuf;
-    use tempfile::TempDir;
-
-    fn small() -> Recipe {
-        let mut recipe = Recipe::find("metals").unwrap();
-        (recipe.settings.width, recipe.settings.height) = (16, 9);
-        recipe
-    }
-
-    fn cpu(panics_after: Option<u64>) -> BackendChoice {
-        BackendChoice::Cpu(CpuOptions { threads: Some(1), panics_after, ..CpuOptions::default() })
-    }
-
-    fn place() -> (TempDir, PathBuf) {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("reference.exr");
-        (directory, path)
-    }
 
     #[test]
     fn only_a_film_of_the_same_paths_is_a_reference() {
         let (_directory, path) = place();
         let recipe = small();
         make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
-        assert_eq!(read(&path, &recipe).unwrap().used.samples, 2);
+        let read = |recipe: &Recipe| read(&path, recipe, &[SamplerKind::Sobol], 8);
+        assert_eq!(read(&recipe).unwrap().used.samples, 2);
         let mut moved = recipe.clone();
         moved.camera.look_from += DVec3::new(0.25, 0.5, 1.0);
         let mut other = Recipe::find("three-spheres").unwrap();
@@ -234,19 +175,42 @@ mod tests {
         let mut shorter = recipe.clone();
         shorter.settings.max_depth -= 1;
         for (what, recipe) in [("camera", moved), ("scene", other), ("size", wider), ("depth", shorter)] {
-            let error = read(&path, &recipe).err().map(|error| error.to_string()).unwrap_or_default();
+            let error = read(&recipe).err().map(|error| error.to_string()).unwrap_or_default();
             assert!(error.contains("is not a picture of"), "{what}: {error}");
         }
     }
 
     #[test]
-    fn a_backend_that_fails_is_an_error_and_the_film_is_kept() {
+    fn a_film_with_the_random_numbers_of_a_measured_picture_is_no_reference() {
+        use SamplerKind::{Independent, Sobol};
         let (_directory, path) = place();
         let recipe = small();
-        make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
-        let error = make(&path, &recipe, &cpu(Some(0)), 8, |_| true).err().unwrap();
-        assert!(error.to_string().contains("panicked"), "{error}");
-        assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), 2);
+        let told = |seed, sampler, samplers: &[SamplerKind], seeds| {
+            let settings = RenderSettings { seed, sampler, estimate_error: true, ..recipe.settings };
+            let theirs = Recipe { settings, ..recipe.clone() };
+            let mut film = theirs.job().unwrap().new_film();
+            film.halves_mut()[0][0].add(fixed_point([0.5; 3]).unwrap());
+            film.record(0..2, 0).unwrap();
+            checkpoint::save(&path, &film, &Description::new(&file::to_picture_toml(&theirs))).unwrap();
+            read(&path, &recipe, samplers, seeds).err().map(|error| error.to_string())
+        };
+        for (seed, sampler, samplers, seeds) in [
+            (8, Sobol, &[Sobol, Independent][..], 8),
+            (0, Independent, &[Sobol], 8),
+            (0, Sobol, &[Independent], 8),
+            (900, Sobol, &[Sobol], 900),
+        ] {
+            assert_eq!(told(seed, sampler, samplers, seeds), None, "{seed} {sampler:?}");
+        }
+        for (seed, sampler, samplers, seeds, remedy) in [
+            (0, Sobol, &[Sobol][..], 1, "--seed 900"),
+            (7, Independent, &[Sobol, Independent], 8, "--seed 900"),
+            (900, Sobol, &[Sobol], 901, "--seed 901"),
+        ] {
+            let told = told(seed, sampler, samplers, seeds).unwrap();
+            assert!(told.contains(&format!("seed {seed} and sampler {}", sampler.name())), "{told}");
+            assert!(told.contains(remedy), "{told}");
+        }
     }
 
     #[test]
@@ -285,27 +249,6 @@ mod tests {
         // A picture that is nearer than the reference can be has a negative error.
         let errors = reference.errors(&film_means(&film));
         assert!(near(errors.mse, -0.0625) && near(errors.rel_mse, -0.0625 / 0.26), "{errors:?}");
-    }
-
-    #[test]
-    fn passes_grow_and_progress_is_told_between_them() {
-        let (_directory, path) = place();
-        let mut told = Vec::new();
-        let go_on = |share: f64| {
-            told.push(share);
-            true
-        };
-        make(&path, &small(), &cpu(None), 512, go_on).unwrap().unwrap();
-        assert!(told.len() < 64, "{told:?}");
-        assert_eq!((told[0], told[1]), (0.0, 2.0 / 512.0));
-        assert!(told.is_sorted_by(|a, b| a < b) && told.iter().all(|share| *share < 1.0), "{told:?}");
-        // A film that is large enough is not rendered again.
-        let mut calls = 0;
-        let again = make(&path, &small(), &cpu(None), 512, |_| {
-            calls += 1;
-            true
-        });
-        assert_eq!((again.unwrap().unwrap().used.samples, calls), (512, 0));
     }
 
     #[test]

@@ -1,8 +1,12 @@
 //! Everything that a report makes of measurements, which are made up.
 
 use super::*;
+use crate::backends::BackendChoice;
 use crate::kept;
+use crate::render_cpu::CpuOptions;
 use data::{Measured, ReferenceUsed, Rounding, Run};
+use std::path::PathBuf;
+use tempfile::TempDir;
 
 /// Numbers of 0 to 1 that are the same in every run.
 fn noise(index: u64) -> f64 {
@@ -30,6 +34,25 @@ fn measured(scene: u32, curve: u32, seed: u32, samples: u64) -> Measured {
         mse_estimate: (curve > 0 && samples > 1).then_some(mse.abs() * (0.9 + 0.2 * noise(3))),
         rejected: u64::from(seed == 1),
     }
+}
+
+/// A small picture.
+pub(super) fn small() -> Recipe {
+    let mut recipe = Recipe::find("metals").unwrap();
+    (recipe.settings.width, recipe.settings.height) = (16, 9);
+    recipe
+}
+
+/// One thread of the CPU, which panics after so many tiles.
+pub(super) fn cpu(panics_after: Option<u64>) -> BackendChoice {
+    BackendChoice::Cpu(CpuOptions { threads: Some(1), panics_after, ..CpuOptions::default() })
+}
+
+/// A place for a reference in a directory of its own.
+pub(super) fn place() -> (TempDir, PathBuf) {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("reference.exr");
+    (directory, path)
 }
 
 /// The settings of small, made-up reports.

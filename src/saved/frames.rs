@@ -3,7 +3,7 @@
 use super::difference::same_job;
 use crate::files::ShownPath;
 use crate::film::{Description, key};
-use crate::output::{check_frame, read_description};
+use crate::output::{check_frame, length_of_missing, read_description, recipe_in_picture};
 use crate::recipe::{Recipe, file};
 use std::path::Path;
 
@@ -32,8 +32,9 @@ impl FrameState {
         let wanted = Description::new(&file::to_picture_toml(recipe));
         let samples = recipe.samples_per_pixel.to_string();
         let is_of = |value: &str| format!("{} is {value}", path.shown());
-        if found.recipe() != wanted.recipe() {
-            let difference = same_job(wanted.recipe(), found.recipe()).err();
+        if found.recipe() != recipe_in_picture(wanted.recipe()) {
+            let is_told = length_of_missing(found.recipe()).is_none();
+            let difference = is_told.then(|| same_job(wanted.recipe(), found.recipe()).err()).flatten();
             let difference = difference.map_or_else(String::new, |words| format!(": {words}"));
             return FrameState::Wrong(is_of(&format!("of another picture{difference}")));
         }
@@ -55,7 +56,9 @@ impl FrameState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::write_image;
+    use crate::output::{RECIPE_LIMIT, write_image};
+    use crate::saved::Saved;
+    use std::sync::Arc;
 
     #[test]
     fn a_frame_is_whole_if_all_that_made_it_is_the_same() {
@@ -90,5 +93,36 @@ mod tests {
         told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
         std::fs::write(&path, "no picture").unwrap();
         told(&recipe, "Weekender 1", "frame.png");
+    }
+
+    #[test]
+    fn a_frame_whose_recipe_is_too_long_for_a_picture_is_whole_too() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("frame.png");
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(0..2, 0).unwrap();
+        let scene = Arc::make_mut(&mut recipe.scene);
+        let mut long = scene.materials[0].clone();
+        long.name = "x".repeat(RECIPE_LIMIT);
+        scene.materials.push(long);
+
+        let text = file::to_picture_toml(&recipe);
+        let mut description = Description::new(&text);
+        description.set(key::SOFTWARE, "Weekender 1");
+        description.set(key::SAMPLES, 2);
+        write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
+        assert_eq!(FrameState::of(&path, &recipe, "Weekender 1"), FrameState::Whole);
+        recipe.settings.seed = 5;
+        let told = FrameState::of(&path, &recipe, "Weekender 1");
+        assert_eq!(told, FrameState::Wrong(format!("{} is of another picture", path.shown())));
+
+        let told = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
+        let numbers = [text.len(), RECIPE_LIMIT].map(|bytes| bytes.to_string());
+        for part in ["frame.png", "open the scene file"].into_iter().chain(numbers.iter().map(String::as_str))
+        {
+            assert!(told.contains(part), "{told} should say {part}");
+        }
     }
 }

@@ -13,7 +13,7 @@ pub use rescue::rescue;
 
 use crate::files::ShownPath;
 use crate::film::{CheckpointError, Description, Film, checkpoint, key};
-use crate::output::{OutputError, OutputFormat, read_description};
+use crate::output::{OutputError, OutputFormat, RECIPE_LIMIT, length_of_missing, read_description};
 use crate::recipe::{Recipe, file};
 use crate::render::{JobError, RenderJob};
 use crate::stages::Stage;
@@ -34,6 +34,18 @@ pub enum OpenError {
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
     Picture(OutputError),
+    /// The picture was written without its recipe, which is too long for a picture.
+    #[error(
+        "{} does not hold its recipe, which has {length} bytes; a picture holds at most {RECIPE_LIMIT}; open the scene \
+         file, or a film (.exr) of the picture",
+        path.shown()
+    )]
+    NoRecipe {
+        /// The file.
+        path: PathBuf,
+        /// The length of the recipe in bytes.
+        length: u64,
+    },
     /// The recipe in the file cannot be parsed.
     #[error("the recipe in {} cannot be read: {reason}", path.shown())]
     Recipe {
@@ -116,8 +128,11 @@ impl Saved {
     /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
     ///
     /// # Errors
-    /// [`OpenError::Recipe`].
+    /// [`OpenError::Recipe`] or [`OpenError::NoRecipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
+        if let Some(length) = length_of_missing(self.description.recipe()) {
+            return Err(OpenError::NoRecipe { path: self.path.clone(), length });
+        }
         let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
             .map_err(|reason| OpenError::Recipe { path: self.path.clone(), reason: Box::new(reason) })?;

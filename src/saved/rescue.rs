@@ -1,6 +1,6 @@
 //! Rescues samples whose file cannot be written, by saving them wherever there is room.
 
-use crate::files::{ShownPath, home_directory, state_directory};
+use crate::files::{self, ShownPath, home_directory, state_directory};
 use crate::film::{Description, Film, checkpoint, key};
 use crate::recipe::plain_name;
 use std::env;
@@ -8,9 +8,6 @@ use std::path::{Path, PathBuf};
 
 /// Most characters of the picture's name in the name of the file.
 const NAME_LENGTH: usize = 60;
-
-/// Largest number that is appended to find a free name.
-const NAME_LIMIT: u32 = 1000;
 
 /// Saves the film of the picture `name` at the first place that works, and returns its path: the directories `first`,
 /// then those for temporary files, for the state of programs, and the home directory.
@@ -70,16 +67,18 @@ fn places(first: &[PathBuf]) -> Vec<PathBuf> {
 fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
     let picture: String = plain_name(picture).chars().take(NAME_LENGTH).collect();
     let process = std::process::id();
-    let names = (1..NAME_LIMIT).map(|number| match number {
-        1 => format!("weekender-{picture}-{process}.exr"),
-        number => format!("weekender-{picture}-{process}-{number}.exr"),
-    });
-    names.map(|name| directory.join(name)).find(|path| path.symlink_metadata().is_err())
+    files::free_name(|number| {
+        directory.join(match number {
+            1 => format!("weekender-{picture}-{process}.exr"),
+            number => format!("weekender-{picture}-{process}-{number}.exr"),
+        })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::files::NAME_LIMIT;
 
     #[test]
     fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
@@ -125,7 +124,7 @@ mod tests {
         }
         let process = std::process::id();
         std::fs::write(full.join(format!("weekender-a-{process}.exr")), "").unwrap();
-        for number in 2..NAME_LIMIT {
+        for number in 2..=NAME_LIMIT {
             std::fs::write(full.join(format!("weekender-a-{process}-{number}.exr")), "").unwrap();
         }
         let (mut film, description) = (Film::new(4, 3, 2), Description::new("r"));

@@ -34,6 +34,24 @@ pub enum Material {
     },
 }
 
+/// Which of the book's ways to scatter a material follows, or comes closest to. Explanations, drawings and comparisons of
+/// paths, and the plain tracer of `check`, know materials only by this.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Light leaves in all directions. (Section 9.)
+    Matte,
+    /// Light is reflected. (Section 10.)
+    Mirror {
+        /// The fuzz in effect, `0..=1`.
+        fuzz: f64,
+    },
+    /// Light is refracted or reflected. (Section 11.)
+    Glass {
+        /// Refraction index relative to the surroundings.
+        refraction_index: f64,
+    },
+}
+
 /// A material with its name in the scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMaterial {
@@ -79,6 +97,15 @@ impl Material {
         match *self {
             Material::Lambertian { albedo } | Material::Metal { albedo, .. } => Some(albedo),
             Material::Dielectric { .. } => None,
+        }
+    }
+
+    /// What the material looks like.
+    pub fn look(&self) -> Look {
+        match *self {
+            Material::Lambertian { .. } => Look::Matte,
+            Material::Metal { .. } => Look::Mirror { fuzz: self.effective_fuzz() },
+            Material::Dielectric { refraction_index } => Look::Glass { refraction_index },
         }
     }
 
@@ -154,9 +181,23 @@ mod tests {
         let fuzzy = Material::Metal { albedo: DVec3::ONE, fuzz: 5.0 };
         fuzzy.validate("m").expect("as in the book");
         assert_eq!(fuzzy.effective_fuzz(), 1.0);
+        assert_eq!(fuzzy.look(), Look::Mirror { fuzz: 1.0 });
         let refused = refusal(Material::Metal { albedo: DVec3::ONE, fuzz: -0.5 });
         assert!(refused.starts_with("materials.m.fuzz is -0.5, but must be 0 or more"), "{refused}");
         assert!(refusal(Material::Metal { albedo: DVec3::ONE, fuzz: f64::NAN }).contains("fuzz is NaN"));
+    }
+
+    #[test]
+    fn what_rays_can_enter_looks_like_glass() {
+        let albedo = DVec3::ONE;
+        for (material, look) in [
+            (Material::Lambertian { albedo }, Look::Matte),
+            (Material::Metal { albedo, fuzz: 0.3 }, Look::Mirror { fuzz: 0.3 }),
+            (Material::Dielectric { refraction_index: 1.5 }, Look::Glass { refraction_index: 1.5 }),
+        ] {
+            assert_eq!(material.look(), look);
+            assert_eq!(material.is_transparent(), matches!(look, Look::Glass { .. }), "{material:?}");
+        }
     }
 
     #[test]

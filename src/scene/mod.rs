@@ -13,7 +13,7 @@ mod sphere;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_LIMITS_DEGREES};
 pub use error::{LENGTH_LIMIT, SceneError};
-pub use material::{Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
+pub use material::{Look, Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
 pub use pick::{NearestHit, Pick};
 pub use sphere::{RADIUS_LIMITS, Sphere};
 

@@ -5,7 +5,6 @@
 
 mod rules;
 mod sight;
-mod sights;
 mod table;
 
 pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
@@ -40,6 +39,8 @@ pub struct Stage {
     pub look_for: &'static str,
     /// How the thing to look for is shown.
     pub sight: Sight,
+    /// The picture in words, for those who cannot see it.
+    pub alt: &'static str,
     /// The stage that the wipe compares with this one by default.
     pub pair: Option<&'static str>,
     /// The scene and settings of the picture.

@@ -29,10 +29,3 @@ pub enum Means {
     /// picture's width.
     Wipe(f32),
 }
-
-impl Sight {
-    /// A sight from its parts.
-    pub(super) const fn new(means: Means, part: Option<[f64; 4]>, caption: &'static str) -> Self {
-        Sight { means, part, caption }
-    }
-}

@@ -1,38 +1,38 @@
 //! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
 
 mod camera;
+mod diffuse;
 mod materials;
 mod rays;
 mod setups;
 
 use super::Stage;
 
-pub(super) const STAGES: &[Stage] = &[
-    rays::PPM_TINY,
-    rays::PPM_GRADIENT,
-    rays::SKY,
-    rays::RED_SPHERE,
-    rays::NORMALS,
-    rays::NORMALS_WORLD,
-    rays::ALIASED,
-    rays::ANTIALIASED,
-    materials::DIFFUSE,
-    materials::DIFFUSE_LIMITED,
-    materials::SHADOW_ACNE,
-    materials::LAMBERTIAN_LINEAR,
-    materials::LAMBERTIAN_GAMMA,
-    materials::GAMUT,
-    materials::METAL,
-    materials::METAL_FUZZY,
-    materials::GLASS_REFRACT,
-    materials::GLASS_TIR,
-    materials::GLASS_SCHLICK,
-    materials::HOLLOW_GLASS,
-    materials::THREE_SPHERES,
-    camera::FOV_WIDE,
-    camera::FOV_NARROW,
-    camera::VIEW_DISTANT,
-    camera::VIEW_CLOSE,
-    camera::DEFOCUS,
-    camera::BOOK,
-];
+/// All stages, file by file.
+const FILES: [&[Stage]; 4] = [rays::STAGES, diffuse::STAGES, materials::STAGES, camera::STAGES];
+
+pub(super) const STAGES: &[Stage] = &chained::<{ count() }>();
+
+const fn count() -> usize {
+    let (mut count, mut file) = (0, 0);
+    while file < FILES.len() {
+        count += FILES[file].len();
+        file += 1;
+    }
+    count
+}
+
+const fn chained<const COUNT: usize>() -> [Stage; COUNT] {
+    let mut stages = [FILES[0][0]; COUNT];
+    let (mut next, mut file) = (0, 0);
+    while file < FILES.len() {
+        let mut index = 0;
+        while index < FILES[file].len() {
+            stages[next] = FILES[file][index];
+            next += 1;
+            index += 1;
+        }
+        file += 1;
+    }
+    stages
+}

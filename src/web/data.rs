@@ -170,6 +170,9 @@ impl CameraData {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Material, Scene};
+    use crate::stages::{Setup, Transfer};
+    use glam::DVec3;
 
     #[test]
     fn only_a_picture_that_traces_no_rays_does_not_depend_on_the_camera() {
@@ -182,5 +185,49 @@ mod tests {
             let stage = Stage::ALL.iter().find(|stage| stage.setup.rules.shading == shading).unwrap();
             assert_eq!(StageData::new(stage).unwrap().has_rays, has_rays, "{}", stage.id);
         }
+    }
+
+    #[test]
+    fn a_stage_has_the_numbers_of_its_recipe() {
+        for transfer in Transfer::ALL {
+            let stage = Stage::ALL.iter().find(|stage| stage.setup.rules.transfer == *transfer).unwrap();
+            let (data, setup) = (StageData::new(stage).unwrap(), stage.setup);
+            assert_eq!(data.transfer, transfer.tag(), "{}", stage.id);
+            assert_eq!((data.width, data.height), (setup.width, setup.height), "{}", stage.id);
+            assert_eq!(
+                (data.samples, data.depth),
+                (setup.samples_per_pixel, setup.max_depth),
+                "{}",
+                stage.id
+            );
+        }
+    }
+
+    #[test]
+    fn a_stage_has_its_camera() {
+        let stage = Stage::find("defocus").unwrap();
+        let (data, camera) = (StageData::new(stage).unwrap().camera, stage.setup.camera);
+        let vectors = [camera.look_from, camera.look_at, camera.vup].map(|vector| vector.to_array());
+        assert_eq!([data.from, data.at, data.up], vectors);
+        assert_eq!((data.vfov, data.defocus), (camera.vfov_degrees, camera.defocus_angle_degrees));
+        assert_eq!(data.focus, camera.focus_distance);
+        assert!(data.focus.is_some() && data.defocus > 0.0);
+    }
+
+    #[test]
+    fn a_scene_far_away_has_an_origin_of_its_own() {
+        const AWAY: DVec3 = DVec3::new(4096.0, 0.0, -65_536.0);
+        let near = Stage::find("normals").unwrap();
+        assert_eq!(StageData::new(near).unwrap().origin, [0.0; 3]);
+        let scene = || {
+            let mut scene = Scene::default();
+            let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
+            scene.add_sphere(AWAY + DVec3::NEG_Z, 0.5, matte);
+            scene
+        };
+        let book = Camera::BOOK;
+        let camera = Camera { look_from: AWAY + book.look_from, look_at: AWAY + book.look_at, ..book };
+        let far = Stage { setup: Setup { scene, camera, ..near.setup }, ..*near };
+        assert_eq!(StageData::new(&far).unwrap().origin, AWAY.to_array());
     }
 }

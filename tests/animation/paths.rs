@@ -3,6 +3,7 @@
 use glam::DVec3;
 use std::f64::consts::TAU;
 use weekender::animation::{CameraPath, FrameNames, Keyframe, Turn};
+use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 
 fn camera() -> Camera {
@@ -220,5 +221,41 @@ fn names_have_at_least_the_digits_of_the_pattern() {
     assert_eq!(FrameNames::in_directory("a".as_ref()).path(42), std::path::Path::new("a/frame-0042.png"));
     for pattern in ["turn.png", "turn-#-#.png", "#/turn.png"] {
         assert_eq!(FrameNames::of_pattern(pattern.as_ref()), None, "{pattern}");
+    }
+}
+
+#[test]
+fn names_keep_the_whole_directory_of_the_pattern() {
+    for (pattern, name) in [
+        ("turn-##.png", "turn-05.png"),
+        ("./turn-##.png", "./turn-05.png"),
+        ("../a/turn-##.png", "../a/turn-05.png"),
+        ("a/b/turn-##.png", "a/b/turn-05.png"),
+        ("/a/b/turn-##.png", "/a/b/turn-05.png"),
+        ("a#b/turn-##.png", "a#b/turn-05.png"),
+    ] {
+        let names = FrameNames::of_pattern(pattern.as_ref()).unwrap();
+        assert_eq!(names.path(5).to_str(), Some(name), "{pattern}");
+    }
+}
+
+#[test]
+fn frames_go_to_the_directory_that_out_names() {
+    for (out, frame, animation) in [
+        ("a/b", "a/b/frame-0003.png", None),
+        ("/no/such/place", "/no/such/place/frame-0003.png", None),
+        ("a/b/turn-#.png", "a/b/turn-3.png", None),
+        ("/no/such/turn-#.png", "/no/such/turn-3.png", None),
+        ("turn.png", "turn-frames/frame-0003.png", Some("turn.png")),
+        ("a/b/turn.png", "a/b/turn-frames/frame-0003.png", Some("a/b/turn.png")),
+        ("/no/such/turn.apng", "/no/such/turn-frames/frame-0003.png", Some("/no/such/turn.apng")),
+    ] {
+        let words = ["weekender", "--batch", "--size", "24x14", "--turntable=4", "--out", out];
+        let Request::Frames(options) = cli::parse(words.into_iter().map(Into::into)).unwrap() else {
+            unreachable!("no frames: {out}")
+        };
+        assert_eq!(options.names.path(3).to_str(), Some(frame), "{out}");
+        let file = options.animation.as_ref().map(|(file, _)| file.to_str().unwrap());
+        assert_eq!(file, animation, "{out}");
     }
 }

@@ -7,11 +7,12 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("files", &["memory", "console"]),
     ("suggest", &[]),
     ("number", &[]),
+    ("threads", &[]),
     ("shell", &[]),
     ("scene", &["number"]),
     ("stages", &["scene", "suggest"]),
     ("animation", &["scene"]),
-    ("film", &["memory", "files", "number", "stages"]),
+    ("film", &["memory", "files", "number", "threads", "stages"]),
     ("render", &["memory", "scene", "stages", "film"]),
     ("record", &[]),
     ("heat", &[]),
@@ -28,7 +29,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("explain", &["scene", "stages", "render", "record", "sampling"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),
     ("web", &["scene", "stages", "render", "kernel", "render_gpu"]),
-    ("backends", &["film", "render", "render_cpu", "render_gpu"]),
+    ("backends", &["threads", "film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("baseline", &["scene", "render"]),
@@ -112,8 +113,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "info",
         &[
-            "memory", "console", "files", "film", "recipe", "saved", "plan", "describe", "failure", "cli",
-            "terminal",
+            "memory", "console", "files", "film", "recipe", "output", "saved", "plan", "describe", "failure",
+            "cli", "terminal",
         ],
     ),
     (

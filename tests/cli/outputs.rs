@@ -229,6 +229,14 @@ fn the_list_names_scenes_stages_and_devices() {
     for part in ["three-spheres", "book", "glass-schlick", "11.4", "portable", "reference", "(auto)"] {
         assert!(list.contains(part), "{list}");
     }
+    // What is said of each name begins in the same column.
+    let (_, stages) = list.split_once("Stages (--stage)").unwrap();
+    let column = |stage: &weekender::stages::Stage| {
+        let line = stages.lines().find(|line| line.split_whitespace().next() == Some(stage.id));
+        line.and_then(|line| line.find(stage.title))
+    };
+    let columns: Vec<_> = weekender::stages::Stage::ALL.iter().map(column).collect();
+    assert!(columns.iter().all(|column| column.is_some() && *column == columns[0]), "{columns:?}: {list}");
 }
 
 #[test]

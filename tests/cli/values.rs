@@ -50,6 +50,22 @@ fn values_out_of_range_are_refused_with_value_and_limit() {
 }
 
 #[test]
+fn help_promises_every_stage_only_where_it_can_be_rendered() {
+    let help = |command: &[&str]| {
+        let said = text(&run(temp().path(), &[command, &["--help"]].concat()).stdout);
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for command in ["plan", "diff", "compare"] {
+        let said = help(&[command]);
+        assert!(said.contains("--stage <ID>") && !said.contains("\"all\""), "{command}: {said}");
+        assert!(!said.contains("--stage all"), "{command}: {said}");
+    }
+    assert!(help(&[]).contains("--stage all"));
+    let check = help(&["check"]);
+    assert!(check.contains("16 x 9") && check.contains("4 million"), "{check}");
+}
+
+#[test]
 fn names_that_do_not_exist_are_refused() {
     refused(&["--batch", "--scene", "three-spheeres"], &["three-spheeres", "three-spheres"]);
     refused(&["--batch", "--scene", "field:0"], &["0"]);

@@ -59,6 +59,8 @@ fn faults_of_a_chapter_name_its_line() {
         ("[x](book:6.99)", "no section \"6.99\""),
         ("[x](page:no-such)", "no chapter \"no-such\""),
         ("[x](page:normals#no-such)", "#normals-no-such"),
+        ("[9.3](page:diffuse)", "names section 9.3"),
+        ("[x](page:diffuse#9.9)", "#diffuse-9.9"),
         ("[x](#no-such)", "#no-such"),
         ("[x](source:somewhere.rs)", "no source \"somewhere.rs\""),
         ("[x](06-normals.md)", "is no link of the page"),

@@ -1,6 +1,6 @@
 //! Full disks, limits on files and memory, and other runs.
 
-use super::common::{PICTURE, PROGRAM, batch, film, names, rounds, succeeds, text, wait};
+use super::common::{PICTURE, PROGRAM, batch, film, names, rounds, succeeds, text, wait, weekender};
 use std::fs::{self};
 use std::io::Read;
 use std::os::unix::fs::symlink;
@@ -72,6 +72,24 @@ fn little_memory_is_an_error() {
         let code = output.status.code();
         assert!(matches!(code, Some(0..=3)), "{kilobytes} kB: {}: {}", output.status, text(&output.stderr));
     }
+}
+
+/// A stack that is larger than any address space makes every start of a thread fail, as a limit on processes does.
+#[test]
+fn films_are_read_and_written_where_no_thread_starts() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for (range, name) in [("0..4", "a.exr"), ("4..8", "b.exr"), ("0..8", "whole.exr")] {
+        succeeds(&mut batch(at, "off", &["--sample-range", range, "--out", name]));
+    }
+    for arguments in [
+        &["merge", "a.exr", "b.exr", "--out", "sum.exr"][..],
+        &["merge", "--check", "a.exr", "b.exr"],
+        &["compare", "sum.exr", "whole.exr"],
+    ] {
+        succeeds(weekender(at, arguments).env("RUST_MIN_STACK", (1_u64 << 50).to_string()));
+    }
+    assert!(film(&at.join("sum.exr")) == film(&at.join("whole.exr")));
 }
 
 #[test]

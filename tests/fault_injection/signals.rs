@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
@@ -216,4 +216,35 @@ fn a_signal_ends_the_gallery_of_stages_with_the_present_one() {
         serde_json::from_slice(&fs::read(at.join("figures.json")).unwrap()).unwrap();
     assert_eq!(figures["stages"].as_array().map(Vec::len), Some(1), "{figures}");
     assert_eq!(figures["stages"][0]["ended_by"], "stopped");
+}
+
+/// What nohup does for SIGHUP, and a shell without job control for SIGINT.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_that_was_ignored_at_the_start_stays_ignored() {
+    for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let render = batch(at, "off", &ENDLESS);
+        let mut command = Command::new("sh");
+        command.args(["-c", "trap '' \"$0\" && exec \"$@\"", ignored]);
+        command.arg(render.get_program()).args(render.get_args()).current_dir(at);
+        let mut child =
+            command.stdin(Stdio::null()).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+        let path = at.join("g.exr");
+        until("the film is not written", || path.exists());
+        signal(&child, ignored);
+        // Twice, because the film is also written at the end.
+        for _ in 0..2 {
+            let before = film(&path).sample_count();
+            let begin = Instant::now();
+            while film(&path).sample_count() == before {
+                assert_eq!(child.try_wait().unwrap(), None, "SIG{ignored} has ended it");
+                assert!(begin.elapsed() < PATIENCE, "the film does not grow");
+                sleep(Duration::from_millis(5));
+            }
+        }
+        signal(&child, heard);
+        assert_eq!(wait(&mut child).code(), Some(code), "SIG{ignored} was ignored, SIG{heard} was not");
+    }
 }

@@ -42,12 +42,37 @@ fn the_estimate_knows_how_far_off_it_may_be() {
     let said = mean(&|k| errors[k].rmse_deviation);
     assert!((said / spread - 1.0).abs() < 0.15, "said {said}, was {spread}");
     assert_eq!(Film::new(4, 3, 2).error(), None);
-    let mut same = Film::new(4, 3, 2);
-    same.record(0..2, 0).unwrap();
-    let estimate = same.error().unwrap();
-    assert_eq!(estimate.rmse_deviation, 0.0);
-    let doubt = same.doubt(Some(&estimate), 1.0).unwrap();
-    assert!(doubt.contains("no path has found any light in 2 samples"), "{doubt}");
+}
+
+#[test]
+fn a_film_without_light_has_no_estimate() {
+    let mut black = Film::new(4, 3, 2);
+    black.record(0..1, 0).unwrap();
+    assert_eq!((black.error(), black.why_no_error()), (None, "only one half has samples"));
+    assert!(!black.meets(1.0, None, 0.0));
+    black.record(1..64, 0).unwrap();
+    assert_eq!((black.error(), black.why_no_error()), (None, "no path has found any light"));
+    let doubt = black.doubt(None, 1.0).unwrap();
+    assert!(doubt.contains("no path has found any light in 64 samples"), "{doubt}");
+    // The picture cannot be brighter than the light.
+    assert!(!black.meets(0.01, None, 1.0) && black.meets(0.01, None, 0.01) && black.meets(0.01, None, 0.0));
+    assert_eq!(Film::new(4, 3, 1).why_no_error(), "the film has one half");
+    // One sample in one pixel is enough to tell that there is light.
+    add(&mut black, 5, 0, [0.0, 0.0, 0.5]);
+    assert!(black.error().is_some());
+}
+
+#[test]
+fn few_pixels_meet_a_target_with_room_to_spare() {
+    for (noisy, meets_its_error) in [(1000, true), (50, false)] {
+        let film = film_with_noise_in(1000, noisy);
+        let error = film.error().unwrap();
+        let meets = |target: f64| film.meets(target, Some(&error), 1.0);
+        assert_eq!(meets(error.rmse), meets_its_error, "{noisy}");
+        let room = 3.0 * error.rmse_deviation;
+        assert!(!meets(0.99 * error.rmse) && meets(1.01 * (error.rmse + room)), "{noisy}");
+        assert_eq!(meets(error.rmse + 0.9 * room), meets_its_error, "{noisy}");
+    }
 }
 
 #[test]
@@ -96,7 +121,7 @@ fn even_film(radiance: f64, samples: u64, black: usize) -> Film {
 /// Samples that are alike are rounded alike, and the halves do not show it.
 #[test]
 fn the_error_includes_what_rounding_costs() {
-    for radiance in [1e-7, 2.9e-8, 1e-6, 0.3] {
+    for radiance in [1e-7, 3.1e-8, 1e-6, 0.3] {
         for samples in [2, 1 << 20] {
             let film = even_film(radiance, samples, 0);
             let error = film.error().unwrap();
@@ -107,8 +132,41 @@ fn the_error_includes_what_rounding_costs() {
             assert_eq!(error.words(), "3e-8 RMSE, by rounding alone");
         }
     }
+    // Equal means of an odd number of samples.
+    for (radiance, samples) in [(0.3, 5), (0.7, 1001)] {
+        let error = uneven_film(radiance, samples).error().unwrap();
+        assert_eq!((error.rmse, error.rmse_deviation), (ROUNDING_LIMIT, 0.0), "{radiance}, {samples}");
+    }
     let noisy = noisy_film(200, 100, 2, &[0..8]).error().unwrap();
     assert!(!noisy.is_without_noise() && noisy.words().ends_with(" % RMSE"), "{}", noisy.words());
+}
+
+/// A film of samples that are all alike, more of them in the first half.
+fn uneven_film(radiance: f64, samples: u64) -> Film {
+    let mut film = Film::new(4, 3, 2);
+    let PixelSum(one) = fixed_point([radiance; 3]).unwrap();
+    for (half, of_half) in film.halves_mut().iter_mut().zip([samples.div_ceil(2), samples / 2]) {
+        half.fill(PixelSum(one.map(|k| k * of_half)));
+    }
+    film.record(0..samples, 0).unwrap();
+    film
+}
+
+#[test]
+fn noise_that_is_less_than_rounding_is_told_apart_from_none() {
+    let mut film = even_film(0.3, 64, 0);
+    film.halves_mut()[1][7].0[2] += 1;
+    let error = film.error().unwrap();
+    assert!(!error.is_without_noise() && error.rmse < 1.000_001 * ROUNDING_LIMIT, "{error:?}");
+    assert!(error.rmse_deviation > 0.0 && error.rmse_deviation < ROUNDING_LIMIT, "{error:?}");
+    assert_eq!(error.words(), "3e-8 RMSE, by rounding; the noise is below that");
+    assert_eq!(film.doubt(Some(&error), 1.0), None);
+    // A single pixel has no deviation.
+    let mut one = Film::new(1, 1, 2);
+    one.halves_mut()[0][0] = PixelSum([1 << 24, 1 << 24, (1 << 24) + 1]);
+    one.halves_mut()[1][0] = PixelSum([1 << 24; 3]);
+    one.record(0..2, 0).unwrap();
+    assert!(!one.error().unwrap().is_without_noise());
 }
 
 #[test]
@@ -144,6 +202,9 @@ fn a_black_picture_says_whether_samples_can_help() {
         let told = told(brightest);
         assert!(parts.iter().all(|part| told.contains(part)) && !told.contains("more samples"), "{told}");
     }
-    assert_eq!(black.doubt(None, 1.0), None);
+    // A film of one half has no estimate to doubt.
+    let mut single = Film::new(1, 1, 1);
+    single.record(0..1, 0).unwrap();
+    assert_eq!(single.doubt(None, 1.0), None);
     assert_eq!(Film::new(4, 3, 2).doubt(None, 0.0), None);
 }

@@ -1,12 +1,12 @@
 //! Film files: what is read back, and what is refused.
 
-use super::common::{description, noisy_film};
+use super::common::{description, noisy_film, same_recipe_text};
 use proptest::prelude::*;
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{CheckpointError, Film, checkpoint, merge_files, same_recipe_text};
+use weekender::film::{CheckpointError, Film, checkpoint, merge_files};
 use weekender::output::decode_description;
 
 proptest! {

@@ -1,11 +1,9 @@
 //! The set of samples that a film holds.
 
-use super::common::description;
+use super::common::{description, same_recipe_text};
 use proptest::prelude::*;
 use std::collections::HashSet;
-use weekender::film::{
-    Film, FilmError, SAMPLE_LIMIT, SampleRanges, checkpoint, merge_files, same_recipe_text,
-};
+use weekender::film::{Film, FilmError, SAMPLE_LIMIT, SampleRanges, checkpoint, merge_files};
 
 proptest! {
     #[test]

@@ -60,6 +60,15 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
     for name in ["part-1.exr", "picture.exr"] {
         refused(name, &format!("../{name}"), &[&format!("../{name}")]);
     }
+    for (name, other) in [
+        ("part-1.exr", "part-0.exr"),
+        ("part-1.exr", "scene.toml"),
+        ("picture.exr", "PART-0.exr"),
+        ("picture.exr", "scene.toml"),
+        ("picture.exr", "plan.json"),
+    ] {
+        refused(name, other, &["is the name of two of its files", other]);
+    }
     refused("        4\n", "        5\n", &["5", "comes next"]);
     refused("{", "", &["plan.json"]);
     fs::write(&scene, good_scene.replace("vfov_degrees = 90", "vfov_degrees = 91") + "\n").unwrap();
@@ -91,6 +100,48 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
 }
 
 #[test]
+fn files_of_another_origin_in_the_way_of_a_plan_are_named_and_stay() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    fs::create_dir(at.join("p")).unwrap();
+    let common = [&["plan"], &PICTURE[..], &["--samples", "8", "--parts", "2", "--out", "p"]].concat();
+    let with = |more: &[&'static str]| [&common[..], more].concat();
+    for (name, format) in [
+        ("scene.toml", "text"),
+        ("Makefile", "make"),
+        ("run.sh", "parallel"),
+        ("submit.sh", "slurm"),
+        ("parts.sbatch", "slurm"),
+        ("merge.sbatch", "slurm"),
+    ] {
+        let path = at.join("p").join(name);
+        fs::write(&path, "# mine\n").unwrap();
+        let (_, told) = ends(at, 2, &with(&["--format", format]));
+        assert!(told.contains(&format!("p/{name} is in the way")), "{told}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "# mine\n");
+        assert_eq!(fs::read_dir(at.join("p")).unwrap().count(), 1, "nothing else is written");
+        fs::remove_file(&path).unwrap();
+    }
+    // What a plan has written may be written again, also with other values.
+    for format in ["text", "make", "parallel", "slurm"] {
+        succeeds(at, &with(&["--format", format]));
+        succeeds(at, &with(&["--format", format, "--every", "5s", "--program", "an other"]));
+    }
+    fs::remove_file(at.join("p/plan.json")).unwrap();
+    succeeds(at, &with(&["--format", "slurm"]));
+    // But not if it was changed by hand.
+    let submit = at.join("p/submit.sh");
+    fs::write(&submit, fs::read_to_string(&submit).unwrap() + "# mine\n").unwrap();
+    let (_, told) = ends(at, 2, &with(&["--format", "slurm"]));
+    assert!(told.contains("p/submit.sh is in the way"), "{told}");
+    fs::remove_file(at.join("p/plan.json")).unwrap();
+    fs::write(at.join("p/scene.toml"), "# mine\n").unwrap();
+    let (_, told) = ends(at, 2, &with(&[]));
+    assert!(told.contains("p/scene.toml is in the way"), "{told}");
+    assert!(!at.join("p/plan.json").exists());
+}
+
+#[test]
 fn what_cannot_be_planned_is_refused_with_the_limit() {
     let at = TempDir::new().unwrap();
     let at = at.path();
@@ -111,6 +162,19 @@ fn what_cannot_be_planned_is_refused_with_the_limit() {
     assert!(told.contains("cannot create the directory file"), "{told}");
     let (_, told) = ends(at, 2, &["plan", "--parts", "2", "--out", "a\nb"]);
     assert!(told.contains("control characters"), "{told}");
+    fs::create_dir(at.join("deep%")).unwrap();
+    #[allow(unused_mut, reason = "only Unix has more")]
+    let mut outs = vec!["shots%a", "deep%/p", "./deep%/../x%/y"];
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("deep%", at.join("link")).unwrap();
+        outs.extend(["link/p", "a\\b"]);
+    }
+    for out in outs {
+        let (_, told) = ends(at, 2, &["plan", "--parts", "2", "--format", "slurm", "--out", out]);
+        assert!(told.contains("Slurm takes % and \\"), "{told}");
+    }
+    plan(at, "shots%a", &["--samples", "8", "--parts", "2", "--format", "make"]);
 
     plan(at, "p", &["--samples", "8", "--parts", "2"]);
     let (_, told) = ends(at, 2, &["render-part", "p", "--part", "2"]);

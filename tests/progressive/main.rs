@@ -7,6 +7,7 @@ mod common;
 mod failures;
 mod handover;
 mod preview;
+mod requests;
 mod stopping;
 mod together;
 mod told;

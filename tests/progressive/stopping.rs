@@ -5,9 +5,10 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
-use weekender::film::Film;
+use weekender::backends::{BackendChoice, BackendError};
+use weekender::film::{Film, PixelSum};
 use weekender::progressive::{
-    EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
+    EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Status, Stop,
 };
 use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
@@ -57,6 +58,87 @@ fn the_noise_target_ends_it() {
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert!(status.error.unwrap().rmse <= target);
     assert_eq!(status.error, progressive.finish().unwrap().error());
+}
+
+/// Adds samples of this value to every pixel, with `is_late` each pass when the next one comes or is waited for, as a GPU
+/// does.
+struct Valued {
+    value: fn(u64) -> u64,
+    is_late: bool,
+    held: Option<Range<u64>>,
+}
+
+impl Renderer for Valued {
+    fn info(&self) -> BackendInfo {
+        Fake::new("cpu").info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        _: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        for index in range.clone() {
+            let half = &mut film.halves_mut()[index as usize % 2];
+            half.iter_mut().for_each(|sum| sum.add(PixelSum([(self.value)(index); 3])));
+        }
+        film.record(range, 0)?;
+        Ok(Stats::default())
+    }
+
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        let due = if self.is_late { self.held.replace(range) } else { Some(range) };
+        due.map_or(Ok(Stats::default()), |due| self.accumulate(job, due, film, cancel))
+    }
+
+    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        let due = self.held.take();
+        due.map_or(Ok(Stats::default()), |due| self.accumulate(&job(2), due, film, &AtomicBool::new(false)))
+    }
+}
+
+/// A render of up to 256 samples of this value that ends at an error of .01.
+fn ended(value: fn(u64) -> u64, is_late: bool) -> (Status, Film) {
+    let factory = move |_: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
+        Ok(Box::new(Valued { value, is_late, held: None }))
+    };
+    let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
+    let stop = Stop { noise: Some(0.01), ..Stop::at_samples(256) };
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::until(stop)));
+    (progressive.wait_until_over(), progressive.finish().unwrap())
+}
+
+#[test]
+fn a_picture_without_light_meets_no_noise_target() {
+    let (status, film) = ended(|_| 0, false);
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
+    assert_eq!((status.error, film.error()), (None, None));
+    assert!(status.history.is_empty(), "{:?}", status.history);
+    assert!(status.messages.iter().any(|message| message.contains("cannot be estimated")));
+    let (status, _) = ended(|index| u64::from(index >= 64) << 24, false);
+    assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
+    assert!(status.samples_per_pixel > 64 && status.history[0].samples_per_pixel > 64, "{status:?}");
+}
+
+#[test]
+fn samples_that_come_late_are_heard_before_a_noise_target_ends_it() {
+    let (status, _) = ended(|index| if index < 16 { 1 << 24 } else { (1 - index % 2) << 25 }, true);
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
+    assert!(status.error.unwrap().rmse > 0.01);
+    let (status, _) = ended(|_| 1 << 24, true);
+    assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
 }
 
 /// At the end, the error is that of all samples, even if estimates take so long that none is due.
@@ -171,6 +253,67 @@ fn abandoning_and_dropping_cancel_the_pass() {
         }
         assert!(has_ended.recv_timeout(PATIENCE).unwrap(), "dropped: {is_dropped}");
     }
+}
+
+/// The first time, it prepares until it is cancelled.
+struct SlowToPrepare {
+    fake: Fake,
+    begun: Option<Sender<()>>,
+}
+
+impl Renderer for SlowToPrepare {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        let Some(begun) = self.begun.take() else { return Ok(()) };
+        begun.send(()).unwrap();
+        let begin = Instant::now();
+        while !cancel.load(Ordering::Relaxed) && begin.elapsed() < PATIENCE {
+            std::thread::yield_now();
+        }
+        if cancel.load(Ordering::Relaxed) { Err(RenderError::Cancelled) } else { Ok(()) }
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        assert!(!cancel.load(Ordering::Relaxed), "a stop does not cancel a pass");
+        self.fake.accumulate(job, range, film, cancel)
+    }
+}
+
+#[test]
+fn a_stop_does_not_wait_for_preparation() {
+    let (begun, has_begun) = channel();
+    let mut progressive = Progressive::with_factory(Box::new(move |_| {
+        Ok(Box::new(SlowToPrepare { fake: Fake::new("cpu"), begun: Some(begun.clone()) }))
+    }))
+    .unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(8)));
+    has_begun.recv_timeout(PATIENCE).unwrap();
+    progressive.stop();
+    let status = progressive.wait_until_over();
+    assert!(status.messages.is_empty() && status.given_up.is_empty(), "{status:?}");
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Stopped), 0));
+    progressive.resume();
+    wait_until(&progressive, |status| status.phase == Phase::Done(EndReason::Samples));
+    assert_eq!(progressive.finish(), Some(expected(8)));
+}
+
+#[test]
+fn a_preparation_that_was_cancelled_can_begin_again() {
+    let mut renderer = weekender::backends::create(&CPU).unwrap();
+    let outcome = renderer.prepare(&job(2), &AtomicBool::new(true));
+    assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
+    assert_eq!(renderer.kernel(), "");
+    renderer.prepare(&job(2), &AtomicBool::new(false)).unwrap();
+    assert_ne!(renderer.kernel(), "");
 }
 
 #[test]

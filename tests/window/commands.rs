@@ -141,6 +141,8 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
         Command::NextRay | Command::PreviousRay | Command::ListPaths => true,
+        // See paths.rs, and perform_scene_file.rs of the window.
+        Command::ClearPaths | Command::Reload => true,
         Command::NextPanel | Command::GoOn => true,
         // See recent.rs and first_steps.rs.
         Command::CopyPicture | Command::Recent(_) | Command::FirstSteps => true,

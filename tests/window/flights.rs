@@ -16,7 +16,7 @@ fn camera(harness: &Harness<'_, Window>) -> Camera {
 /// Eyes of three bookmarks; the last one is where the camera is.
 const EYES: [DVec3; 3] = [DVec3::new(-2.0, 2.0, 1.0), DVec3::new(3.0, 1.0, 2.0), DVec3::new(4.0, 2.0, -3.0)];
 
-/// A window with three bookmarks that are called "12.2 Another place to stand 1" and so on.
+/// A window with three bookmarks that are called "12.2 view 1" and so on.
 fn bookmarked() -> Harness<'static, Window> {
     let mut harness = open("--stage view-distant --size 64x36");
     until(&mut harness, "a picture", has_samples(1));
@@ -40,7 +40,7 @@ fn a_bookmark_is_flown_to_in_one_undo_step() {
     let start = camera(&harness);
     let target = Camera { look_from: EYES[0], ..start };
     let eye = |harness: &Harness<'_, Window>| camera(harness).look_from;
-    harness.get_by_label("Go to 12.2 Another place to stand 1").click();
+    harness.get_by_label("Go to 12.2 view 1").click();
     harness.run_steps(3);
     let (begin, whole) = (eye(&harness), start.look_from.distance(EYES[0]));
     assert!(begin.distance(start.look_from) < 0.1 * whole, "it begins slowly");
@@ -131,7 +131,7 @@ fn with_shift_or_without_flights_the_camera_jumps() {
     assert_ne!(camera(&harness).look_from, EYES[1]);
     harness.run_steps(60);
     assert_eq!(camera(&harness).look_from, EYES[1]);
-    let at = harness.get_by_label("Go to 12.2 Another place to stand 3").rect().center();
+    let at = harness.get_by_label("Go to 12.2 view 3").rect().center();
     harness.event_modifiers(eframe::egui::Event::PointerMoved(at), Modifiers::SHIFT);
     harness.step();
     for pressed in [true, false] {
@@ -212,35 +212,26 @@ fn bookmarks_are_renamed_ordered_replaced_and_forgotten() {
         control(harness, item).click();
         harness.run_steps(5);
     };
-    choose(&mut harness, "12.2 Another place to stand 3", "Earlier");
-    assert_eq!(
-        names(&mut harness),
-        ["12.2 Another place to stand 1", "12.2 Another place to stand 3", "12.2 Another place to stand 2"]
-    );
-    choose(&mut harness, "12.2 Another place to stand 1", "Later");
-    assert_eq!(
-        names(&mut harness),
-        ["12.2 Another place to stand 3", "12.2 Another place to stand 1", "12.2 Another place to stand 2"]
-    );
-    choose(&mut harness, "12.2 Another place to stand 1", "Name of the bookmark");
+    choose(&mut harness, "12.2 view 3", "Earlier");
+    assert_eq!(names(&mut harness), ["12.2 view 1", "12.2 view 3", "12.2 view 2"]);
+    choose(&mut harness, "12.2 view 1", "Later");
+    assert_eq!(names(&mut harness), ["12.2 view 3", "12.2 view 1", "12.2 view 2"]);
+    choose(&mut harness, "12.2 view 1", "Name of the bookmark");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
     control(&harness, "Name of the bookmark").type_text("above");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert_eq!(
-        names(&mut harness),
-        ["12.2 Another place to stand 3", "above", "12.2 Another place to stand 2"]
-    );
+    assert_eq!(names(&mut harness), ["12.2 view 3", "above", "12.2 view 2"]);
     choose(&mut harness, "above", "Replace");
     let replaced = harness.state_mut().remembered_mut().bookmarks[1].camera();
     assert_eq!(replaced.look_from, EYES[2]);
-    choose(&mut harness, "12.2 Another place to stand 3", "Forget");
-    assert_eq!(names(&mut harness), ["above", "12.2 Another place to stand 2"]);
+    choose(&mut harness, "12.2 view 3", "Forget");
+    assert_eq!(names(&mut harness), ["above", "12.2 view 2"]);
     // A new bookmark gets a name that is free.
     send(&mut harness, Command::AddBookmark);
-    assert_eq!(names(&mut harness).last().unwrap(), "12.2 Another place to stand 1");
+    assert_eq!(names(&mut harness).last().unwrap(), "12.2 view 1");
     send(&mut harness, Command::AddBookmark);
-    assert_eq!(names(&mut harness).last().unwrap(), "12.2 Another place to stand 3");
+    assert_eq!(names(&mut harness).last().unwrap(), "12.2 view 3");
 }

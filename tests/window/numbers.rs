@@ -196,3 +196,49 @@ fn an_up_vector_without_a_direction_is_refused() {
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("which has no direction").is_none());
 }
+
+/// As in every form, Tab takes what was typed and goes on to the next number.
+#[test]
+fn tab_goes_through_the_numbers_of_a_panel() {
+    let mut harness = open("--stage view-distant --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    edit(&mut harness, "Width", "64");
+    harness.key_press(Key::Tab);
+    harness.run_steps(3);
+    for letter in ["3", "0"] {
+        harness.event(eframe::egui::Event::Text(letter.to_owned()));
+        harness.run_steps(3);
+    }
+    harness.key_press(Key::Tab);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().size(), [64, 30]);
+    edit(&mut harness, "Look from y", "7.1");
+    harness.key_press(Key::Tab);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().camera.look_from.y, 7.1);
+}
+
+/// The focus follows what is looked at, also when that goes through the eye on its way.
+#[test]
+fn numbers_that_nobody_touches_stay() {
+    let mut harness = open("--stage metal --size 32x18 --time-limit 0.05 --noise-target 5e-8");
+    until(&mut harness, "a picture", has_samples(1));
+    send(&mut harness, Command::Plot);
+    let before = harness.state().document().clone();
+    let eye = before.camera.look_from;
+    for (axis, to) in [("x", eye.x), ("y", eye.y), ("z", eye.z)] {
+        control(&harness, &format!("Look at {axis}")).set_value_accesskit(to);
+        harness.run_steps(3);
+    }
+    assert_eq!(harness.state().document().camera.effective_focus_distance(), 0.0);
+    assert_eq!(harness.state().document().camera.focus_distance, None);
+    for (axis, to) in
+        [("x", before.camera.look_at.x), ("y", before.camera.look_at.y), ("z", before.camera.look_at.z)]
+    {
+        control(&harness, &format!("Look at {axis}")).set_value_accesskit(to);
+        harness.run_steps(3);
+    }
+    assert_eq!(harness.state().document().camera, before.camera);
+    assert_eq!(harness.state().document().stop, before.stop);
+    assert_eq!((before.stop.seconds, before.stop.noise), (Some(0.05), Some(5e-8)));
+}

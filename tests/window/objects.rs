@@ -1,6 +1,6 @@
 //! The spheres of the scene: selecting and dragging them.
 
-use crate::common::{drag_from, has_samples, open, send, until};
+use crate::common::{drag_from, has_samples, open, painted, send, until};
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -243,4 +243,33 @@ fn the_ground_is_not_dragged() {
     drag_from(&mut harness, at, egui::vec2(30.0, -10.0));
     assert_eq!(spheres(&harness), before);
     assert_ne!(harness.state().document().camera, camera);
+}
+
+#[test]
+fn a_click_with_ctrl_tells_the_distance_that_is_then_in_focus() {
+    for (stage, note) in [("defocus", ""), ("glass-schlick", " (a pinhole is sharp everywhere)")] {
+        let mut harness = open(&format!("--stage {stage} --size 64x36"));
+        until(&mut harness, "a picture", has_samples(1));
+        // The words are there for a moment, so they are read in the frame of the click.
+        let click = |harness: &mut Harness<'_, Window>, x, y| {
+            let pos = harness.state().picture_rect().lerp_inside(egui::vec2(x, y));
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::COMMAND);
+            harness.run_steps(40);
+            harness.event(egui::Event::PointerMoved(pos));
+            harness.step();
+            for pressed in [true, false] {
+                let event = egui::Event::PointerButton { pos, button, pressed, modifiers };
+                harness.event_modifiers(event, modifiers);
+                harness.step();
+            }
+            harness.state().document().camera
+        };
+        let before = harness.state().document().camera;
+        for (x, y) in [(0.5, 0.5), (0.93, 0.93), (0.07, 0.9)] {
+            let camera = click(&mut harness, x, y);
+            let words = format!("focus {:.3}{note}", camera.focus_distance.unwrap());
+            assert!(painted(&harness, &words), "{stage} at {x}, {y}: {words}");
+            assert_eq!((camera.look_from, camera.look_at), (before.look_from, before.look_at));
+        }
+    }
 }

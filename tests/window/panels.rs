@@ -117,7 +117,7 @@ fn bookmarks_bring_the_camera_back() {
     send(&mut harness, Command::AddBookmark);
     harness.state_mut().document_mut().camera.vfov_degrees = 12.0;
     harness.run_steps(2);
-    harness.get_by_label("Go to 11.4 Windows at a slant 1").click();
+    harness.get_by_label("Go to 11.4 view 1").click();
     harness.run_steps(60);
     assert_eq!(harness.state().document().camera, before);
 }

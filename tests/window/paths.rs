@@ -89,3 +89,19 @@ fn paths_of_an_earlier_camera_are_told_to_be_so() {
     harness.run_steps(3);
     assert!(is_told(&harness));
 }
+
+#[test]
+fn escape_clears_the_paths_and_t_lists_them_again() {
+    let mut harness = listed();
+    for _ in 0..2 {
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+        assert_eq!(harness.state().listed_paths(), 0);
+        assert_eq!(harness.state().performed(), Some(Command::ClearPaths));
+        send(&mut harness, Command::ListPaths);
+        until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+    }
+    send(&mut harness, Command::ClearPaths);
+    assert_eq!(harness.state().listed_paths(), 0);
+    assert!(harness.state().disabled_reason(Command::ClearPaths).is_some());
+}

@@ -4,7 +4,7 @@ use crate::common::{SMALL, drag, has_samples, middle, open, open_sized, send, un
 use eframe::egui::{self, Key, Modifiers, PointerButton, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use weekender::app::{Command, Show, Window};
+use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::stages::Stage;
 
 /// Screens that a presentation is made for.
@@ -294,4 +294,65 @@ fn tab_leaves_the_picture_alone() {
     for command in [Command::Plot, Command::Info, Command::NextPanel, Command::Stages] {
         assert!(harness.state().disabled_reason(command).is_some(), "{command:?}");
     }
+}
+
+/// What the lens tells at this share of the picture: the place, the byte of the red channel, and its linear radiance if
+/// that is told. The window has been asked for the pixel by then.
+fn told_by_lens(harness: &mut Harness<'_, Window>, share: [f32; 2]) -> (String, u8, Option<String>) {
+    let picture = harness.state().picture_rect();
+    harness.event(egui::Event::PointerMoved(picture.lerp_inside(vec2(share[0], share[1]))));
+    harness.run_steps(3);
+    let size = harness.state().document().size();
+    let pixel = [0, 1].map(|axis| (share[axis] * size[axis] as f32) as u32);
+    until(harness, "its numbers", |window| window.inspected().is_some_and(|(at, _)| at == pixel));
+    harness.run_steps(2);
+    let texts = drawn(harness);
+    let line = |begin: &str| texts.iter().find(|(text, ..)| text.starts_with(begin)).unwrap().0.clone();
+    let red = line("R ");
+    let mut words = red.split_whitespace().skip(1);
+    let byte = words.next().unwrap().parse().unwrap();
+    (line("x "), byte, words.next().map(str::to_owned))
+}
+
+/// A presentation with a finished picture.
+fn finished() -> Harness<'static, Window> {
+    let mut harness = present("--stage glass-schlick --size 64x36 --samples 16", [1280.0, 720.0]);
+    until(&mut harness, "the end", is_finished);
+    harness
+}
+
+fn is_finished(window: &Window) -> bool {
+    has_samples(16)(window) && window.status().phase.is_over()
+}
+
+#[test]
+fn the_lens_over_another_stage_does_not_tell_the_radiance_of_this_one() {
+    let mut harness = finished();
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "the other picture", |window| window.has_other_picture());
+    // The other stage is an earlier one, which is at the left of the divider.
+    for (x, is_told) in [(0.05, false), (0.95, true), (0.05, false)] {
+        let (_, _, radiance) = told_by_lens(&mut harness, [x, 0.74]);
+        assert_eq!(radiance.is_some(), is_told, "at {x}");
+    }
+}
+
+#[test]
+fn the_lens_over_a_kept_picture_shows_its_own_pixels() {
+    let mut harness = finished();
+    let theirs = harness.state().shown_pixel([3, 27]).unwrap();
+    send(&mut harness, Command::Slot(SlotCommand::Keep));
+    until(&mut harness, "a kept picture", |window| window.slot(SlotNumber::ALL[0]).is_some());
+    let document = harness.state_mut().document_mut();
+    document.give_size([32, 18]);
+    document.camera.vfov_degrees = 25.0;
+    harness.run_steps(2);
+    until(&mut harness, "a smaller picture", is_finished);
+    send(&mut harness, Command::Slot(SlotCommand::Wipe));
+    until(&mut harness, "the other picture", |window| window.has_other_picture());
+    // The kept picture is at the left. It has two pixels for one of the live picture.
+    assert_eq!(told_by_lens(&mut harness, [0.05, 0.74]), ("x 3   y 27".to_owned(), theirs[0], None));
+    let (place, byte, radiance) = told_by_lens(&mut harness, [0.95, 0.74]);
+    let mine = harness.state().shown_pixel([30, 13]).unwrap();
+    assert_eq!((place.as_str(), byte, radiance.is_some()), ("x 30   y 13", mine[0], true));
 }

@@ -4,6 +4,7 @@ use crate::common::{has_samples, opened, save, send, until};
 use crate::session::{
     ENDLESS, SOON, close, files, held, kept_in, options, until_film, until_offered, window,
 };
+use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::fs;
@@ -217,4 +218,16 @@ fn a_paused_render_is_paused_in_the_next_window() {
     close(first);
     let next = opened(Window::new(options("", state.path(), LONG)).unwrap());
     assert!(next.state().is_paused());
+}
+
+#[test]
+fn escape_closes_the_card_and_deletes_nothing() {
+    let state = tempfile::tempdir().unwrap();
+    leave_film(state.path(), ENDLESS);
+    let mut next = kept_in(state.path(), "--stage sky --size 32x18", LONG);
+    until_offered(&mut next);
+    next.key_press(Key::Escape);
+    next.run_steps(3);
+    assert!(!next.state().has_offer());
+    assert_eq!(files(state.path(), "exr").len(), 1);
 }

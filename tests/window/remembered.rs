@@ -52,7 +52,7 @@ fn settings_are_written_soon_and_by_several_windows() {
     let mut second = remembering("--stage glass-schlick --size 16x9", &path);
     send(&mut first, Command::AddBookmark);
     until(&mut first, "the bookmark is written", |_| {
-        fs::read_to_string(&path).unwrap().contains("10.5 Mirrors 1")
+        fs::read_to_string(&path).unwrap().contains("10.5 view 1")
     });
     send(&mut second, Command::AddBookmark);
     for harness in [&mut second, &mut first] {
@@ -61,7 +61,7 @@ fn settings_are_written_soon_and_by_several_windows() {
     let mut third = remembering("--stage metal --size 16x9", &path);
     let names: Vec<String> =
         third.state_mut().remembered_mut().bookmarks.iter().map(|bookmark| bookmark.name.clone()).collect();
-    assert_eq!(names, ["11.4 Windows at a slant 1", "10.5 Mirrors 1"]);
+    assert_eq!(names, ["11.4 view 1", "10.5 view 1"]);
 }
 
 #[test]

@@ -42,7 +42,8 @@ pub fn close(mut harness: Harness<'_, Window>) {
 
 /// The files of this ending, by name.
 pub fn files(state: &Path, ending: &str) -> Vec<PathBuf> {
-    let entries = fs::read_dir(state).unwrap().map(|entry| entry.unwrap().path());
+    // A folder of kept pictures comes and goes.
+    let entries = fs::read_dir(state).into_iter().flatten().map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> =
         entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
     files.sort();

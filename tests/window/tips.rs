@@ -1,7 +1,7 @@
 //! Tips stand beside what they explain and never cover the next control.
 
 use crate::common::{SMALL, control, has_samples, open_sized, send, until};
-use eframe::egui::{Pos2, Rect, Role, pos2};
+use eframe::egui::{Key, Pos2, Rect, Role, pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, SlotCommand, SlotNumber, Window};
@@ -117,5 +117,27 @@ fn tips_of_the_title_bar_cover_none_of_its_controls() {
                 assert!(!tip.intersects(covered), "{size:?}: the tip of {name} covers {other}");
             }
         }
+    }
+}
+
+#[test]
+fn a_dialog_covers_the_tips_of_what_is_behind_it() {
+    let mut harness = open_sized(SMALL, SIZES[0]);
+    until(&mut harness, "a picture", has_samples(1));
+    harness.run_steps(5);
+    let button = control(&harness, "Previous stage").rect().center();
+    for command in [Command::Help, Command::Palette, Command::Open] {
+        assert!(tip_at(&mut harness, button).is_some());
+        harness.state_mut().send(command);
+        for _ in 0..60 {
+            harness.step();
+            assert!(harness.query_all_by_role(Role::Tooltip).next().is_none(), "{command:?}");
+        }
+        assert!(harness.state().has_dialog());
+        harness.key_press(Key::Escape);
+        harness.run_steps(5);
+        assert!(!harness.state().has_dialog());
+        harness.hover_at(pos2(5.0, 5.0));
+        harness.run_steps(5);
     }
 }

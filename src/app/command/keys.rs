@@ -25,6 +25,7 @@ impl Command {
     pub fn shortcut(self) -> Option<KeyboardShortcut> {
         match self {
             Command::Open => ctrl(Key::O),
+            Command::Reload => ctrl(Key::R),
             Command::Save(OutputFormat::Png) => ctrl(Key::S),
             Command::Save(OutputFormat::P6) => ctrl_shift(Key::S),
             Command::Save(OutputFormat::Exr) => ctrl(Key::E),

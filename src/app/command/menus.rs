@@ -9,6 +9,7 @@ impl Command {
             Command::Fresh
             | Command::Open
             | Command::Recent(_)
+            | Command::Reload
             | Command::Save(_)
             | Command::SaveScene
             | Command::CopyPicture

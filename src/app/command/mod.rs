@@ -28,6 +28,8 @@ pub enum Command {
     Open,
     /// Open this file of those opened or saved last, counted from 0.
     Recent(usize),
+    /// Read the scene file again.
+    Reload,
     /// Save the picture, in this format.
     Save(OutputFormat),
     /// Save the scene file.
@@ -116,6 +118,8 @@ pub enum Command {
     NextPanel,
     /// List the paths of the pixel under the pointer.
     ListPaths,
+    /// Remove the listed paths from the picture.
+    ClearPaths,
     /// Show or hide all panels.
     Panels,
     /// Show or hide the left panel.
@@ -184,8 +188,14 @@ impl Command {
     /// All commands, in the order of the menus, except those for bookmarks and for the files opened or saved last.
     pub fn all() -> Vec<Command> {
         use Command::*;
-        let mut all =
-            vec![Fresh, Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
+        let mut all = vec![
+            Fresh,
+            Open,
+            Reload,
+            Save(OutputFormat::Png),
+            Save(OutputFormat::P6),
+            Save(OutputFormat::Exr),
+        ];
         all.extend([
             SaveScene,
             CopyPicture,
@@ -210,6 +220,7 @@ impl Command {
             ListPaths,
             NextRay,
             PreviousRay,
+            ClearPaths,
             Panels,
             Controls,
             Info,

@@ -11,6 +11,7 @@ impl Command {
             Command::Fresh => "Start fresh".into(),
             Command::Open => "Open…".into(),
             Command::Recent(place) => format!("Open recent {}", place + 1),
+            Command::Reload => "Reload the scene file".into(),
             Command::Save(OutputFormat::Png) => "Save as PNG…".into(),
             Command::Save(OutputFormat::P6) => "Save as PPM (P6)…".into(),
             Command::Save(OutputFormat::Exr) => "Save film (EXR checkpoint)…".into(),
@@ -66,6 +67,7 @@ impl Command {
             Command::FullScreen => "Full screen".into(),
             Command::NextRay => "Next ray of the path".into(),
             Command::PreviousRay => "Previous ray of the path".into(),
+            Command::ClearPaths => "Clear the paths".into(),
             Command::Slot(command) => command.name(),
             Command::Theme(theme) => format!("{} theme", theme.name()),
             Command::Pause => "Pause or go on".into(),
@@ -107,6 +109,9 @@ impl Command {
                 "Linear picture with the exact sums, which can be resumed and merged"
             }
             Command::Recent(_) => "Open a file that was opened or saved before",
+            Command::Reload => {
+                "After another program has changed it; what you have changed stays, except for spheres"
+            }
             Command::SaveScene => "Scene, camera and settings as text",
             Command::CopyPicture => "To the clipboard at full size, with 8 bits per channel as it is saved",
             Command::Crop => {
@@ -170,6 +175,7 @@ impl Command {
             Command::FullScreen => "Fill the whole screen with the window",
             Command::NextRay => "Go on along the highlighted path, with the reason for the next direction",
             Command::PreviousRay => "Go back along the highlighted path, towards the camera",
+            Command::ClearPaths => "Remove their rays from the picture and their list from the panel",
             Command::Slot(command) => command.help(),
             Command::Theme(_) => "Colours of the window",
             Command::Pause => "Pause or resume tracing; no samples are lost",

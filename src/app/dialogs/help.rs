@@ -21,7 +21,7 @@ const MOUSE: [(&str, &str); 17] = [
     ("Click an end of the axes", "look from that side; drag them to orbit"),
     ("Shift", "jump to a view or bookmark instead of flying"),
     ("Drop a file", "open a picture, film or scene"),
-    ("Escape", "leave a control, a crop, a comparison, a view, a slot, full screen"),
+    ("Escape", "leave a control, the code, a crop, listed paths, a comparison, a view, a slot, full screen"),
 ];
 
 /// Windows narrower than this many points get only one column.

@@ -13,7 +13,7 @@ pub use purpose::Purpose;
 use super::answers::Answers;
 use super::command::Command;
 use super::facts::Facts;
-use eframe::egui::{Id, Modal, Ui};
+use eframe::egui::{Context, Id, Modal, PointerState, Ui};
 use outcome::Outcome;
 use path_box::Chosen;
 use std::path::PathBuf;
@@ -32,6 +32,8 @@ pub enum Dialog {
 #[derive(Default)]
 pub struct Dialogs {
     open: Option<Dialog>,
+    /// The pointer, while what is behind a dialog is drawn.
+    pointer: Option<PointerState>,
     browsed: Answers<(Purpose, Chosen)>,
 }
 
@@ -46,6 +48,14 @@ impl Dialogs {
         self.open = Some(dialog);
     }
 
+    /// Hides the pointer from what is drawn behind a dialog: a tip that was shown there would stay above the dialog as long as
+    /// the pointer rests.
+    pub fn begin(&mut self, context: &Context) {
+        if self.is_open() {
+            self.pointer = Some(context.input_mut(|input| std::mem::take(&mut input.pointer)));
+        }
+    }
+
     /// Draws the dialog. Returns the chosen file and its purpose, if one was chosen.
     pub fn ui(
         &mut self,
@@ -53,6 +63,9 @@ impl Dialogs {
         facts: &Facts,
         commands: &mut Vec<Command>,
     ) -> Option<(Purpose, PathBuf)> {
+        if let Some(pointer) = self.pointer.take() {
+            ui.ctx().input_mut(|input| input.pointer = pointer);
+        }
         let dialog = self.open.as_mut()?;
         let room = ui.ctx().content_rect().size();
         let modal = Modal::new(Id::unique("dialog")).show(ui.ctx(), |ui| {
@@ -88,7 +101,7 @@ impl Dialogs {
                 match PathBox::chosen(purpose, path) {
                     Ok(path) => Some(Ok((purpose, path))),
                     Err(asks) => {
-                        self.open = Some(Dialog::Path(asks));
+                        self.open(Dialog::Path(asks));
                         None
                     }
                 }
@@ -101,7 +114,6 @@ impl Dialogs {
 mod tests {
     use super::*;
     use crate::output::OutputFormat;
-    use eframe::egui::Context;
     use std::path::Path;
 
     const PNG: Purpose = Purpose::Save(OutputFormat::Png);

@@ -187,7 +187,7 @@ impl PathBox {
     /// Opens the system's dialog on its own thread, because it can block for any time.
     fn browse(&mut self, browsed: &Answers<(Purpose, Chosen)>, context: &egui::Context) {
         let (purpose, path) = (self.purpose, in_home(self.text.trim(), home_directory().as_deref()));
-        let answer = browsed.answer(context);
+        let answer = browsed.answer_or(context, move |_| (purpose, Chosen::NoDialog));
         let browsing = Arc::new(());
         self.browsing = Arc::downgrade(&browsing);
         let choose = move || {

@@ -225,6 +225,24 @@ fn every_disabled_command_says_why() {
     kept::check("reasons", &text);
 }
 
+#[test]
+fn a_slot_is_not_brought_back_while_there_is_no_place_for_it() {
+    let mut facts = early(stage("metal"), ViewState::default());
+    let reason = |facts: &Facts| facts.disabled_reason(Command::Slot(SlotCommand::BringBack));
+    for number in SlotNumber::ALL {
+        facts.model.view.slots.put(number, slot([4, 2], "mine"));
+    }
+    facts.model.view.slots.delete(ONE);
+    assert_eq!(reason(&facts), None);
+    let (name, id) = ("mine".to_owned(), "1".to_owned());
+    let coming = Coming { name, id, size: [4, 2], samples: 1, has_own_size: true };
+    facts.model.view.slots.expect(ONE, coming);
+    let told = "Slot 1 is still being read from disk, and no other slot is free; try again in a moment";
+    assert_eq!(reason(&facts).as_deref(), Some(told));
+    facts.model.view.slots.arrive("1", None);
+    assert_eq!(reason(&facts), None);
+}
+
 fn bookmarks(count: usize) -> Vec<Bookmark> {
     (0..count).map(|number| Bookmark::new(format!("place {number}"), &Camera::BOOK)).collect()
 }

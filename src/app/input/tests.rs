@@ -8,6 +8,7 @@ const KEYBOARD: Keyboard = Keyboard {
     has_code: false,
     is_other_view: false,
     is_cropping: false,
+    has_paths: false,
     is_at_slot: false,
     has_selection: false,
     is_full_screen: false,
@@ -81,6 +82,7 @@ fn escape_leaves_one_thing_after_the_other() {
         has_code: true,
         is_other_view: true,
         is_cropping: true,
+        has_paths: true,
         is_at_slot: false,
         has_selection: true,
         is_full_screen: true,
@@ -99,6 +101,10 @@ fn escape_leaves_one_thing_after_the_other() {
     (keyboard.is_presenting, keyboard.has_first_steps) = (false, false);
     assert_eq!(escape(&keyboard), [Command::Crop]);
     keyboard.is_cropping = false;
+    assert_eq!(escape(&keyboard), [Command::ClearPaths]);
+    (keyboard.is_at_slot, keyboard.has_sight) = (true, false);
+    assert_eq!(escape(&keyboard), [Command::Show(Show::Picture)], "a slot has no paths");
+    (keyboard.is_at_slot, keyboard.has_sight, keyboard.has_paths) = (false, true, false);
     assert_eq!(escape(&keyboard), [Command::Deselect]);
     keyboard.is_at_slot = true;
     assert_eq!(escape(&keyboard), [Command::ShowMe], "no sphere is selected in a slot");
@@ -229,4 +235,41 @@ fn held_keys_fly_as_fast_as_the_scene_is_large() {
     assert_eq!(flown(&[(Key::D, none)], Modifiers::ALT), None);
     assert_eq!(flown(&[(Key::D, Modifiers::COMMAND)], none), None, "D is still held after Ctrl+D");
     assert_eq!(flown(&[(Key::F, none)], none), None);
+}
+
+#[test]
+fn what_is_typed_before_and_after_tab_comes_in_frames_of_its_own() {
+    let text = |text: &str| egui::Event::Text(text.to_owned());
+    let tab = || key(Key::Tab, Modifiers::NONE);
+    let moved = || egui::Event::PointerMoved(egui::Pos2::ZERO);
+    let released = egui::Event::Key {
+        key: Key::Tab,
+        physical_key: None,
+        pressed: false,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    let frames = |events: Vec<egui::Event>| {
+        let (mut late, mut next, mut frames) = (Vec::new(), events, Vec::new());
+        loop {
+            part_at_tab(&mut late, &mut next);
+            frames.push(std::mem::take(&mut next));
+            if late.is_empty() {
+                return frames;
+            }
+        }
+    };
+    assert_eq!(frames(vec![]), [Vec::<egui::Event>::new()]);
+    assert_eq!(frames(vec![moved(), text("6"), text("4")]), [vec![moved(), text("6"), text("4")]]);
+    assert_eq!(frames(vec![moved(), tab(), released.clone()]), [vec![moved(), tab(), released.clone()]]);
+    assert_eq!(
+        frames(vec![text("6"), tab(), released.clone(), text("3"), text("6"), tab(), tab(), moved()]),
+        [
+            vec![text("6")],
+            vec![tab(), released],
+            vec![text("3"), text("6")],
+            vec![tab()],
+            vec![tab(), moved()]
+        ]
+    );
 }

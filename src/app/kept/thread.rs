@@ -1,5 +1,6 @@
 //! A thread for work on kept films, which may take longer than a frame.
 
+use crate::app::answers::caught;
 use std::sync::OnceLock;
 use std::sync::mpsc::{SendError, Sender, channel};
 
@@ -18,17 +19,18 @@ impl KeptThread {
         match self.sender.get_or_init(start) {
             Some(sender) => {
                 if let Err(SendError(work)) = sender.send(work) {
-                    work();
+                    let _ = caught(work);
                 }
             }
-            None => work(),
+            None => _ = caught(work),
         }
     }
 }
 
 fn start() -> Option<Sender<Work>> {
     let (sender, orders) = channel::<Work>();
-    let work = move || orders.iter().for_each(|work| work());
+    // Whoever asked learns of a panic from the answer that never came.
+    let work = move || orders.iter().for_each(|work| _ = caught(work));
     std::thread::Builder::new().name("slots".to_owned()).spawn(work).is_ok().then_some(sender)
 }
 
@@ -42,6 +44,14 @@ mod tests {
         let (answer, answers) = channel();
         of.run(move || answer.send(thread::current().id()).unwrap());
         answers.recv().unwrap()
+    }
+
+    #[test]
+    fn work_that_panics_does_not_end_the_thread() {
+        let kept = KeptThread::default();
+        let first = worker(&kept);
+        kept.run(|| panic!("on purpose"));
+        assert_eq!(worker(&kept), first);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A scene that is checked once, for any number of cameras and sizes.
 
+use crate::files::Stamp;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::Rules;
@@ -13,8 +14,8 @@ pub struct CheckedScene {
     rules: Rules,
     /// The job of the scene, or why there is none; usable for any camera and size.
     base: OnceLock<Result<RenderJob, JobError>>,
-    /// The scene file that the scene was last saved in.
-    file: Mutex<Option<PathBuf>>,
+    /// The scene file that the scene was last saved in, and how it was then.
+    file: Mutex<Option<(PathBuf, Option<Stamp>)>>,
 }
 
 impl CheckedScene {
@@ -48,13 +49,19 @@ impl CheckedScene {
         })
     }
 
-    /// The scene file that contains the scene, if it was saved.
+    /// The scene file that contains the scene, if it was saved and nobody has changed the file since.
     pub fn file(&self) -> Option<PathBuf> {
-        self.file.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        let (path, stamp) = self.file.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
+        (stamp_of(&path) == stamp).then_some(path)
     }
 
     /// Notes that the scene was saved in this file.
     pub fn note_file(&self, path: &Path) {
-        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some(path.to_owned());
+        *self.file.lock().unwrap_or_else(PoisonError::into_inner) = Some((path.to_owned(), stamp_of(path)));
     }
+}
+
+/// The stamp of a file; `None` if there is no such file, or it cannot be examined.
+pub(crate) fn stamp_of(path: &Path) -> Option<Stamp> {
+    Stamp::of(path).ok().flatten()
 }

@@ -10,6 +10,9 @@ use crate::stages::{Rules, Shading, Stage};
 use crate::stress::Case;
 use std::sync::Arc;
 
+/// What the names of files of changed scenes end in.
+const CHANGED: &str = "-changed";
+
 const NO_RAYS: &str = "This stage traces no rays: its picture depends only on the position of each pixel";
 
 /// The picture in the window, with the user's changes.
@@ -123,10 +126,16 @@ impl Document {
 
     /// The name for files: a changed scene has its own, so that it does not replace the file that it came from.
     pub fn name(&self) -> String {
-        const CHANGED: &str = "-changed";
         let name = &self.origin.recipe.name;
         let is_new = self.has_changed_scene() && !name.ends_with(CHANGED);
         if is_new { format!("{name}{CHANGED}") } else { name.clone() }
+    }
+
+    /// The name for its scene file, which is not that of a file that holds something else by now.
+    pub fn scene_name(&self) -> String {
+        let is_from_file = matches!(self.origin.source, Source::File(_)) && !self.has_changed_scene();
+        let name = self.name();
+        if is_from_file && !self.origin.is_in_file() { format!("{name}{CHANGED}") } else { name }
     }
 
     /// Width divided by height.

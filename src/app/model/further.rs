@@ -101,4 +101,18 @@ mod tests {
         let tiny = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(tiny.further(&done(EndReason::Samples, 0.0)), None, "nothing in it is random");
     }
+
+    #[test]
+    fn the_other_ends_stay_when_a_render_goes_on() {
+        let all = Stop { samples: Some(100), seconds: Some(10.0), noise: Some(0.002) };
+        for (reason, expected) in [
+            (EndReason::NoiseTarget, Stop { noise: Some(0.001), ..all }),
+            (EndReason::Samples, Stop { samples: Some(200), ..all }),
+            (EndReason::TimeLimit, Stop { seconds: Some(20.0), ..all }),
+        ] {
+            let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
+            document.stop = all;
+            assert_eq!(document.further(&done(reason, 0.00195)).unwrap().stop, expected, "{reason:?}");
+        }
+    }
 }

@@ -16,6 +16,7 @@ pub mod kept;
 pub mod kept_view;
 pub mod origin;
 pub mod presentation;
+pub mod reload;
 pub mod remembered;
 #[cfg(test)]
 mod saved_fields;

@@ -1,13 +1,14 @@
 //! The origin of a picture.
 
-use super::checked::CheckedScene;
+use super::checked::{CheckedScene, stamp_of};
 use crate::cli::DEFAULT_SCENE;
+use crate::files::Stamp;
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::stages::{Shading, Stage, SurfaceRule};
 use crate::stress::{Case, by_the_book};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where a picture comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,13 +36,38 @@ pub struct Origin {
     pub source: Source,
     /// The scene of the recipe.
     pub scene: Arc<CheckedScene>,
+    /// How the scene file was when it was last found to hold the recipe; `Some(None)` once it has held something else.
+    found: Mutex<Option<Option<Stamp>>>,
 }
 
 impl Origin {
     /// An origin from its parts.
     pub fn new(recipe: Recipe, source: Source) -> Self {
         let scene = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
-        Origin { recipe, source, scene }
+        Origin { recipe, source, scene, found: Mutex::default() }
+    }
+
+    /// The same with another recipe of the same scene.
+    pub fn with_recipe(&self, recipe: Recipe) -> Self {
+        Origin {
+            recipe,
+            source: self.source.clone(),
+            scene: Arc::clone(&self.scene),
+            found: Mutex::default(),
+        }
+    }
+
+    /// Notes that the scene file was found to hold the recipe when it had this stamp; without a stamp, that it no longer
+    /// does.
+    pub(crate) fn note_file(&self, stamp: Option<Stamp>) {
+        *self.found.lock().unwrap_or_else(PoisonError::into_inner) = Some(stamp);
+    }
+
+    /// Whether the scene file still holds the recipe, as far as is known; `false` without a scene file.
+    pub fn is_in_file(&self) -> bool {
+        let Source::File(path) = &self.source else { return false };
+        let found = self.found.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        found.is_none_or(|stamp| stamp.is_some() && stamp_of(path) == stamp)
     }
 
     /// The origin of a stage.

@@ -126,6 +126,7 @@ impl Slots {
     pub fn arrive(&mut self, id: &str, kept: Option<Arc<Kept>>) -> Option<(SlotNumber, Coming)> {
         let (number, _) = self.awaited().find(|(_, coming)| coming.id == id)?;
         let coming = self.coming[number.index()].take()?;
+        debug_assert!(self.get(number).is_none());
         if let Some(kept) = kept {
             self.slots[number.index()] = Some(Slot { name: coming.name.clone(), kept });
             self.places.chosen = self.places.chosen.or(Some(number));
@@ -220,9 +221,10 @@ impl Slots {
         self.look(self.other());
     }
 
-    /// Puts a picture into a slot, which is then the one to swap with. A picture that was there can be brought back, if
+    /// Puts a picture into a slot that waits for none, which is then the one to swap with. A picture that was there can be brought back, if
     /// there is room for both.
     pub fn put(&mut self, number: SlotNumber, slot: Slot) {
+        debug_assert!(self.coming(number).is_none());
         if let Some(earlier) = self.slots[number.index()].replace(slot) {
             self.gone = Some((number, earlier));
         }
@@ -251,9 +253,19 @@ impl Slots {
         self.gone.as_ref().map(|(number, _)| *number)
     }
 
-    /// Puts the picture back that was deleted or replaced last. What has been put there since can be brought back.
+    /// Where the picture that was deleted or replaced last can be put back: into its slot, or, while that waits for
+    /// another picture, into the first free one.
+    pub fn place_back(&self) -> Option<SlotNumber> {
+        let number = self.gone()?;
+        if self.coming(number).is_none() { Some(number) } else { self.free().next() }
+    }
+
+    /// Puts the picture back that was deleted or replaced last, if there is a place for it. What has been put there since
+    /// can be brought back.
     pub fn bring_back(&mut self) {
-        if let Some((number, slot)) = self.gone.take() {
+        if let Some(number) = self.place_back()
+            && let Some((_, slot)) = self.gone.take()
+        {
             self.put(number, slot);
         }
     }

@@ -130,3 +130,41 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
             .response
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::dressed;
+    use egui_kittest::kittest::{NodeT, Queryable};
+    use egui_kittest::{Harness, Node};
+
+    fn open_list(harness: &mut Harness<'_, Remembered>, name: &str) {
+        let is_list = |node: &Node<'_>| node.accesskit_node().role() == egui::Role::ComboBox;
+        harness.get_all_by_label(name).find(is_list).unwrap().click();
+        harness.run_steps(3);
+    }
+
+    #[test]
+    fn as_many_lanes_and_threads_as_there_are_can_be_chosen() {
+        let mut harness = dressed([260.0, 900.0]).build_ui_state(lanes_and_threads, Remembered::default());
+        harness.run_steps(2);
+        for (name, counts) in [("Lanes", lane_counts()), ("Threads", (1..=core_count()).collect())] {
+            for count in counts {
+                open_list(&mut harness, name);
+                // A long list scrolls.
+                harness.get_all_by_label(&count.to_string()).last().unwrap().click_accesskit();
+                harness.run_steps(3);
+                let remembered = harness.state();
+                let chosen = if name == "Lanes" { remembered.lanes } else { remembered.threads };
+                assert_eq!(chosen, Some(count), "{name}");
+            }
+        }
+        assert_eq!(harness.state().lanes, lane_counts().last().copied(), "the other list leaves it");
+        for name in ["Lanes", "Threads"] {
+            open_list(&mut harness, name);
+            harness.get_all_by_label("automatic").last().unwrap().click_accesskit();
+            harness.run_steps(3);
+        }
+        assert_eq!((harness.state().lanes, harness.state().threads), (None, None));
+    }
+}

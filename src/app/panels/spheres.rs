@@ -186,7 +186,8 @@ fn colour(ui: &mut Ui, albedo: &mut DVec3, disabled_reason: Option<&str>) {
             named(&all, "Albedo");
             all = explained(ui, all, about);
             for (index, (old, new)) in before.into_iter().zip(rgb).enumerate() {
-                if old != new {
+                // The button rounds a colour that nobody changes, too.
+                if all.changed() && old != new {
                     // As many digits as a scene file needs.
                     albedo[index] = ((f64::from(new) * 1e4).round() / 1e4).clamp(0.0, 1.0);
                 }
@@ -201,4 +202,45 @@ fn colour(ui: &mut Ui, albedo: &mut DVec3, disabled_reason: Option<&str>) {
         })
         .inner
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{facts_of, part};
+
+    #[test]
+    fn a_colour_that_nobody_changes_keeps_its_digits() {
+        let component = |index: u32| f64::from(index % 101) / 101.0 + 1e-9;
+        let colours: Vec<DVec3> =
+            (0..100).map(|index| DVec3::from_array([7, 31, 53].map(|by| component(index * by)))).collect();
+        let mut shown = colours.clone();
+        let mut harness = part([240.0, 200.0], |ui| {
+            for albedo in &mut shown {
+                ui.push_id(albedo.to_string(), |ui| colour(ui, albedo, None));
+            }
+        });
+        harness.run_steps(3);
+        drop(harness);
+        assert_eq!(shown, colours);
+    }
+
+    #[test]
+    fn a_selected_sphere_that_nobody_changes_keeps_all_its_digits() {
+        let facts = facts_of("--stage metal-fuzzy --size 32x18");
+        let albedo = DVec3::new(0.123_456_789, 0.345_678_912, 0.987_654_321);
+        for material in [
+            Material::Lambertian { albedo },
+            Material::Metal { albedo, fuzz: 0.123_456_789 },
+            Material::Dielectric { refraction_index: 1.512_345_678 },
+        ] {
+            let body = Body { center: 10.0 * albedo, radius: 0.456_789_123, material };
+            let selected = Selected { sphere: 1, body, material: "mine".to_owned(), count: 4 };
+            let mut after = Vec::new();
+            let mut harness = part([240.0, 600.0], |ui| after.push(edited(ui, &selected, &facts)));
+            harness.run_steps(3);
+            drop(harness);
+            assert!(after.iter().all(|found| *found == body), "{after:?}");
+        }
+    }
 }

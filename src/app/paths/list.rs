@@ -1,7 +1,7 @@
 //! The list of paths, and the explanation of one ray.
 
 use super::paint::end_of;
-use super::{COUNT_LIMIT, Path, Paths};
+use super::{Path, Paths, most};
 use crate::app::inspector::names;
 use crate::app::model::document::Document;
 use crate::app::tips::{self, Side};
@@ -15,11 +15,14 @@ impl Paths {
         let weak = ui.visuals().weak_text_color();
         let Some(listed) = &self.listed else {
             let text = if document.no_rays().is_some() {
-                "This stage traces no rays, so its pixels have no paths."
+                "This stage traces no rays, so its pixels have no paths.".to_owned()
             } else if self.is_waiting {
-                "Recording paths…"
+                "Recording paths…".to_owned()
+            } else if let Some(reason) = &self.fault {
+                format!("The paths could not be recorded: {reason}")
             } else {
                 "T lists the paths of the pixel under the pointer; so do Alt-click and right-click."
+                    .to_owned()
             };
             ui.label(RichText::new(text).color(weak).small());
             return;
@@ -33,20 +36,25 @@ impl Paths {
         let last = listed.paths.len().saturating_sub(1);
         let mut selected = self.selected;
         let mut ray = self.ray;
-        let mut count = self.count;
+        let (most, before) = (most(document), self.count_in(document));
+        let mut count = before;
         let mut is_cleared = false;
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            let drag = DragValue::new(&mut count).range(1..=COUNT_LIMIT).speed(0.2).suffix(" paths");
-            let help = format!("How many of the pixel's samples are listed, 1 to {COUNT_LIMIT}");
+            let suffix = if count == 1 { " path" } else { " paths" };
+            let drag = DragValue::new(&mut count).range(1..=most).speed(0.2).suffix(suffix);
+            let help = match most {
+                1 => "The picture has one sample per pixel, so each pixel has one path".to_owned(),
+                _ => format!("How many of the pixel's samples are listed, 1 to {most}"),
+            };
             let drag = ui.add(drag);
             tips::beside(ui, drag, &help).accessible_name("Paths listed");
             let at = selected.unwrap_or(0);
-            let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
-            if let Some(to) = step_button(ui, "‹", "Path of the sample before", before) {
+            let [earlier, later] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
+            if let Some(to) = step_button(ui, "‹", "Path of the sample before", earlier) {
                 selected = Some(to);
             }
-            if let Some(to) = step_button(ui, "›", "Path of the sample after", after) {
+            if let Some(to) = step_button(ui, "›", "Path of the sample after", later) {
                 selected = Some(to);
             }
             let clear = ui.small_button("Clear");
@@ -79,7 +87,7 @@ impl Paths {
         self.select(selected);
         if is_cleared {
             self.forget();
-        } else if count != self.count {
+        } else if count != before {
             self.count = count;
             if let Some(listed) = &self.listed {
                 let before = Document { camera: listed.document.camera, ..document.clone() };

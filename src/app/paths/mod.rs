@@ -29,6 +29,12 @@ pub struct Listed {
     paths: Vec<Path>,
 }
 
+/// Why the paths that a query asked for are not listed.
+struct NotListed {
+    number: u64,
+    reason: String,
+}
+
 /// The list of paths.
 pub struct Paths {
     count: u64,
@@ -36,13 +42,15 @@ pub struct Paths {
     number: u64,
     is_waiting: bool,
     listed: Option<Listed>,
+    /// Why the paths that were asked for last could not be recorded, if so.
+    fault: Option<String>,
     /// The sample whose path is highlighted.
     selected: Option<usize>,
     /// The ray of that path that is explained.
     ray: usize,
     /// The list is new and the panel should scroll to it.
     is_new: bool,
-    answers: Answers<Listed>,
+    answers: Answers<Result<Listed, NotListed>>,
 }
 
 impl Default for Paths {
@@ -52,6 +60,7 @@ impl Default for Paths {
             number: 0,
             is_waiting: false,
             listed: None,
+            fault: None,
             selected: None,
             ray: 0,
             is_new: false,
@@ -61,12 +70,17 @@ impl Default for Paths {
 }
 
 impl Paths {
+    /// The number of paths to list: no more than the picture has samples per pixel when it ends.
+    fn count_in(&self, document: &Document) -> u64 {
+        self.count.min(most(document))
+    }
+
     /// Lists the paths of a pixel. A background thread records them.
     pub fn list(&mut self, document: &Document, pixel: [u32; 2], context: &egui::Context) {
         // An invalid document is reported elsewhere.
         let Ok(job) = document.job(1) else { return };
         self.number += 1;
-        let (number, count, document) = (self.number, self.count, document.clone());
+        let (number, count, document) = (self.number, self.count_in(document), document.clone());
         let record = move || {
             let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
             let recorder = PathRecorder::new(&job, isa, None);
@@ -79,35 +93,46 @@ impl Paths {
                 let steps = steps(&job, pixel, sample, &record).into_iter().map(told).collect();
                 Path { record, steps }
             };
-            Listed { number, pixel, document, paths: (0..count).map(path).collect() }
+            Ok(Listed { number, pixel, document, paths: (0..count).map(path).collect() })
         };
-        self.is_waiting = self.answers.ask("paths", context, record).is_ok();
+        let substitute = move |reason: String| Err(NotListed { number, reason });
+        self.answers.ask("paths", context, record, substitute);
+        (self.is_waiting, self.fault) = (true, None);
     }
 
     /// Takes recorded paths.
-    fn learn(&mut self, listed: Listed) {
-        if listed.number == self.number {
-            self.is_waiting = false;
-            self.is_new = self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel);
-            let last = listed.paths.len().saturating_sub(1);
-            self.selected = if self.is_new { Some(0) } else { self.selected.map(|index| index.min(last)) };
-            self.ray = 0;
-            self.listed = Some(listed);
+    fn learn(&mut self, outcome: Result<Listed, NotListed>) {
+        match outcome {
+            Ok(listed) if listed.number == self.number => {
+                self.is_waiting = false;
+                self.is_new = self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel);
+                let last = listed.paths.len().saturating_sub(1);
+                self.selected =
+                    if self.is_new { Some(0) } else { self.selected.map(|index| index.min(last)) };
+                self.ray = 0;
+                self.listed = Some(listed);
+            }
+            Err(NotListed { number, reason }) if number == self.number => {
+                // Those that were listed before would be asked for again and again.
+                self.forget();
+                self.fault = Some(reason);
+            }
+            Ok(_) | Err(_) => {}
         }
     }
 
     /// Removes the paths from the picture.
     pub fn forget(&mut self) {
         self.number += 1;
-        (self.listed, self.is_waiting) = (None, false);
+        (self.listed, self.is_waiting, self.fault) = (None, false, None);
     }
 
-    /// Takes recorded paths. Lists them again if a change affects the random numbers; if only the camera moves, the
-    /// existing paths stay. In a picture of another size they are those of the pixel at the same place. A picture without
+    /// Takes recorded paths. Lists them again if a change affects the random numbers or how many samples the picture has;
+    /// if only the camera moves, the existing paths stay. In a picture of another size they are those of the pixel at the same place. A picture without
     /// rays has none.
     pub fn follow(&mut self, document: &Document, context: &egui::Context) {
-        while let Some(listed) = self.answers.take() {
-            self.learn(listed);
+        while let Some(outcome) = self.answers.take() {
+            self.learn(outcome);
         }
         let Some(listed) = &self.listed else { return };
         // Undo may have led to a stage without rays.
@@ -116,7 +141,10 @@ impl Paths {
             return;
         }
         let is_same_scene = std::sync::Arc::ptr_eq(&listed.document.checked, &document.checked);
-        if self.is_waiting || (is_same_scene && listed.document.settings == document.settings) {
+        let is_same_count = listed.paths.len() as u64 == self.count_in(document);
+        if self.is_waiting
+            || (is_same_scene && is_same_count && listed.document.settings == document.settings)
+        {
             return;
         }
         let (pixel, sizes) = (listed.pixel, [listed.document.size(), document.size()]);
@@ -157,6 +185,11 @@ impl Paths {
     }
 }
 
+/// The largest number of paths that can be listed: the samples per pixel of the picture when it ends, if that is known.
+fn most(document: &Document) -> u64 {
+    document.stop.samples.unwrap_or(COUNT_LIMIT).clamp(1, COUNT_LIMIT)
+}
+
 /// The pixel of a picture of another size that contains the middle of this one.
 fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
     [0, 1].map(|axis| {
@@ -193,6 +226,50 @@ mod tests {
             paths.learn(listed);
             assert_eq!(paths.len(), if is_forgotten { 0 } else { 16 });
         }
+    }
+
+    #[test]
+    fn paths_that_cannot_be_recorded_are_told_of_and_not_waited_for() {
+        let (document, mut paths) = listed("metal", [16, 9]);
+        let context = egui::Context::default();
+        paths.list(&document, [3, 2], &context);
+        let (_, number) = (paths.answers.wait(), paths.number);
+        let reason = "the program failed (on purpose)".to_owned();
+        paths.answers.answer(&context).give(Err(NotListed { number: number - 1, reason: "late".to_owned() }));
+        paths.answers.answer(&context).give(Err(NotListed { number, reason: reason.clone() }));
+        paths.follow(&document, &context);
+        assert_eq!((paths.is_waiting, paths.len(), paths.fault.as_ref()), (false, 0, Some(&reason)));
+        let number = paths.number;
+        paths.follow(&document, &context);
+        assert_eq!(paths.number, number, "it is not tried again and again");
+        paths.list(&document, [3, 2], &context);
+        take(&mut paths);
+        assert_eq!((paths.len(), paths.fault.as_ref()), (16, None));
+    }
+
+    #[test]
+    fn as_many_paths_are_listed_as_the_picture_has_samples() {
+        let (context, pixel) = (egui::Context::default(), [16, 9]);
+        for (stage, samples, count) in
+            [("red-sphere", None, 1), ("metal", None, 16), ("metal", Some(4), 4), ("metal", Some(100), 16)]
+        {
+            let (mut document, _) = listed(stage, pixel);
+            document.stop.samples = samples.or(document.stop.samples);
+            let mut paths = Paths::default();
+            paths.list(&document, pixel, &context);
+            take(&mut paths);
+            assert_eq!(paths.len(), count, "{stage} {samples:?}");
+        }
+        // The render goes on to more samples.
+        let (mut document, mut paths) = listed("red-sphere", pixel);
+        document.stop.samples = Some(2);
+        paths.follow(&document, &context);
+        assert!(paths.is_waiting);
+        take(&mut paths);
+        assert_eq!(paths.len(), 2);
+        let number = paths.number;
+        paths.follow(&document, &context);
+        assert_eq!((paths.number, paths.is_waiting), (number, false));
     }
 
     /// A small picture of a stage with the paths of one of its pixels.

@@ -173,11 +173,6 @@ fn a_difference_is_from_the_stage_once_the_books_arithmetic_was_left() {
 }
 
 #[test]
-fn a_reason_goes_on_in_the_middle_of_a_sentence() {
-    assert_eq!(["Nothing yet", "Über", "a", ""].map(lower_first), ["nothing yet", "über", "a", ""]);
-}
-
-#[test]
 fn what_is_saved_is_said_in_words() {
     let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
     assert_eq!(window.size_words(), "The picture: 16x9");

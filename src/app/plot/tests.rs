@@ -104,6 +104,48 @@ fn several_curves_are_named_above_their_middles() {
     assert!(corner.distance(middle) < 1.0, "{corner} {middle}");
 }
 
+/// Curves above the guide, below it, and from one side to the other.
+#[test]
+fn the_name_of_the_guide_is_struck_through_by_no_curve() {
+    let at = |seconds: f64, rmse_estimate: f64| HistoryPoint { rmse_estimate, ..point("cpu", 4, seconds) };
+    let above = [(0.2, 0.1), (1.0, 0.06), (3.0, 0.035), (7.0, 0.021), (10.0, 0.012), (19.0, 0.005)];
+    let on_it = [(0.2, 0.1), (0.8, 0.05), (3.2, 0.025), (12.8, 0.0125)];
+    let below = [(0.2, 0.1), (1.0, 0.03), (3.0, 0.015), (7.0, 0.005), (20.0, 0.002)];
+    for history in [&above[..], &on_it, &below] {
+        let history: Vec<_> = history.iter().map(|(seconds, rmse)| at(*seconds, *rmse)).collect();
+        let (last, rmse) = (history.last().unwrap().trace_seconds, history.last().unwrap().rmse_estimate);
+        let harness = plotted(status(&history, last, rmse), None);
+        let names = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) if text.galley.text() == GUIDE => {
+                Some(Rect::from_min_size(text.pos, text.galley.size()))
+            }
+            _ => None,
+        });
+        let names: Vec<Rect> = names.collect();
+        assert_eq!(names.len(), 1, "{rmse}");
+        for ends in dots(&harness).windows(2) {
+            assert!(!crosses(names[0].shrink(1.5), [ends[0], ends[1]]), "{rmse}: {} {ends:?}", names[0]);
+        }
+    }
+}
+
+#[test]
+fn a_line_that_crosses_a_rectangle_is_found() {
+    let rect = Rect::from_min_max(egui::pos2(10.0, 10.0), egui::pos2(20.0, 14.0));
+    for (from, to, expected) in [
+        ([0.0, 12.0], [30.0, 12.0], true),
+        ([0.0, 9.0], [30.0, 9.0], false),
+        ([15.0, 0.0], [15.0, 30.0], true),
+        ([21.0, 0.0], [21.0, 30.0], false),
+        ([0.0, 0.0], [30.0, 24.0], true),
+        ([0.0, 20.0], [12.0, 30.0], false),
+        ([12.0, 11.0], [13.0, 12.0], true),
+        ([0.0, 12.0], [9.0, 12.0], false),
+    ] {
+        assert_eq!(crosses(rect, [from.into(), to.into()]), expected, "{from:?} {to:?}");
+    }
+}
+
 #[test]
 fn an_axis_is_labelled_with_round_numbers() {
     let labels = [-2.0, -2.0 + 2.0_f64.log10(), 5.0_f64.log10() - 1.0, 0.0, 2.0, 3.0 + 5.0_f64.log10()]
@@ -278,8 +320,19 @@ fn the_controls_of_the_plot_do_what_they_say() {
     harness.get_by_label("Set a target").click();
     harness.run_steps(2);
     assert_eq!(harness.state().target, Some(Stop::NOISE));
-    for (target, nearest) in [(5.0, 1.0), (1e-9, 1e-6), (0.25, 0.25)] {
+    for target in [5.0, 1e-9, 0.25] {
         harness.state_mut().target = Some(target);
+        harness.run_steps(2);
+        assert_eq!(harness.state().target, Some(target), "nobody has changed it");
+    }
+    harness.state_mut().target = Some(0.002_123_456_7);
+    harness.get_by_label("Target error").focus();
+    harness.run_steps(3);
+    harness.key_press(egui::Key::Tab);
+    harness.run_steps(3);
+    assert_eq!(harness.state().target, Some(0.002_123_456_7), "the keyboard only went by");
+    for (typed, nearest) in [(5.0, 1.0), (1e-9, 1e-6), (0.5, 0.5)] {
+        harness.get_by_label("Target error").set_value_accesskit(typed);
         harness.run_steps(2);
         assert_eq!(harness.state().target, Some(nearest));
     }

@@ -5,7 +5,7 @@
 //! is closed in order leaves film, note and folder under the name `session`, and the next window makes them its own.
 //! Files under other names, whose lock nobody holds, were left by a window that did not end in order.
 
-use super::paths::{PREFIX, Paths};
+use super::paths::{PREFIX, Paths, may_exist};
 use super::turn::turn;
 use crate::app::model::session::Session;
 use crate::app::slot_files::Folder;
@@ -105,9 +105,9 @@ impl RecoveryFiles {
         &self.paths.film
     }
 
-    /// Whether there is a film.
+    /// Whether there is a film, or may be: its place cannot be looked at.
     pub fn has_film(&self) -> bool {
-        self.paths.film.exists()
+        may_exist(&self.paths.film)
     }
 
     /// The folder with the kept pictures, whether or not it exists.
@@ -121,6 +121,16 @@ impl RecoveryFiles {
     /// Errors of the file system.
     pub fn take_slots(&self, other: &RecoveryFiles) -> io::Result<()> {
         other.paths.move_slots(&self.paths)
+    }
+
+    /// Moves the kept pictures where a later window offers them. Returns the new name of their folder.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn set_slots_aside(&self) -> io::Result<PathBuf> {
+        let free = free(&self.directory)?;
+        self.paths.move_slots(&free)?;
+        Ok(free.slots.path().to_owned())
     }
 
     /// Moves a kept film that cannot be read where a later window offers it. Returns its new name.
@@ -158,7 +168,7 @@ impl RecoveryFiles {
     /// What is wrong with it, with the name of the file.
     pub fn note(&self) -> Result<Option<Session>, String> {
         let path = &self.paths.note;
-        if !path.exists() {
+        if !may_exist(path) {
             return Ok(None);
         }
         let bytes = read(path, "a note of a window", NOTE_LIMIT).map_err(|error| error.to_string())?;
@@ -222,15 +232,16 @@ impl RecoveryFiles {
     pub fn leave_session(&self) -> io::Result<()> {
         let _turn = turn(&self.directory);
         let session = Paths::of(&self.directory, SESSION);
-        let is_changed = || {
-            let bytes = read(&session.note, "a note of a window", NOTE_LIMIT).ok()?;
-            Some(serde_json::from_slice::<Session>(&bytes).ok()?.is_changed)
+        // What cannot be read may be worth keeping.
+        let is_changed = || match read(&session.note, "a note of a window", NOTE_LIMIT) {
+            Ok(bytes) => !serde_json::from_slice::<Session>(&bytes).is_ok_and(|note| !note.is_changed),
+            Err(_) => may_exist(&session.note),
         };
-        if session.film.exists() || session.slots.exists() || is_changed().unwrap_or(false) {
+        if may_exist(&session.film) || session.slots.exists() || is_changed() {
             let free = free(&self.directory)?;
             session.move_slots(&free)?;
             for (from, to) in [(&session.film, &free.film), (&session.note, &free.note)] {
-                if from.exists() {
+                if may_exist(from) {
                     fs::rename(from, to)?;
                 }
             }
@@ -250,147 +261,9 @@ fn write_note(path: &Path, session: &Session) -> Result<(), String> {
 
 /// A name that nobody uses.
 fn free(directory: &Path) -> io::Result<Paths> {
-    let is_free = |paths: &Paths| paths.is_empty() && !paths.lock.exists();
+    let is_free = |paths: &Paths| paths.is_empty() && !may_exist(&paths.lock);
     Paths::new(directory).find(is_free).ok_or_else(|| io::Error::other("all names are taken"))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(directory: &Path) -> Vec<String> {
-        let entries = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name());
-        let mut names: Vec<String> = entries.map(|name| name.to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
-    }
-
-    fn write(files: &RecoveryFiles, title: &str, film: Option<&str>) {
-        files.write_note(&serde_json::from_value(serde_json::json!({ "title": title })).unwrap()).unwrap();
-        if let Some(film) = film {
-            fs::write(files.film(), film).unwrap();
-        }
-    }
-
-    fn title(files: &RecoveryFiles) -> String {
-        files.note().unwrap().unwrap().title
-    }
-
-    #[test]
-    fn only_files_of_windows_that_are_gone_are_left() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = directory.path();
-        let [first, second] = [(); 2].map(|()| RecoveryFiles::claim(at).unwrap());
-        assert_ne!(first.film(), second.film());
-        write(&first, "first", Some("film"));
-        write(&second, "second", None);
-        assert!(RecoveryFiles::left_in(at).is_empty(), "both windows run");
-        drop(first);
-        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
-        assert_eq!((title(&left).as_str(), left.has_film()), ("first", true));
-        assert!(RecoveryFiles::left_in(at).is_empty(), "who offers it has it");
-        drop(left);
-        assert_eq!(RecoveryFiles::left_in(at).len(), 1, "and gives it back");
-        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
-        left.delete_film();
-        left.delete_note();
-        drop(left);
-        second.delete_note();
-        drop(second);
-        assert_eq!(names(at), <[&str; 0]>::default(), "nothing stays where nothing was kept");
-    }
-
-    #[test]
-    fn a_film_without_a_lock_or_a_note_is_found() {
-        let directory = tempfile::tempdir().unwrap();
-        fs::write(directory.path().join("window-1-1.exr"), "film").unwrap();
-        fs::write(directory.path().join("window-2-1.json"), "no note").unwrap();
-        fs::write(directory.path().join("other.exr"), "film").unwrap();
-        let left = RecoveryFiles::left_in(directory.path());
-        assert_eq!(left.len(), 2);
-        let told = left.iter().find_map(|files| files.note().err()).unwrap();
-        assert!(told.contains("window-2-1.json"), "{told}");
-    }
-
-    #[test]
-    fn a_session_goes_from_window_to_window() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = directory.path();
-        let first = RecoveryFiles::claim(at).unwrap();
-        assert!(!first.take_session().unwrap());
-        write(&first, "first", Some("film"));
-        first.leave_session().unwrap();
-        drop(first);
-        assert!(RecoveryFiles::left_in(at).is_empty(), "it ended in order");
-        let [second, third] = [(); 2].map(|()| RecoveryFiles::claim(at).unwrap());
-        assert!(second.take_session().unwrap());
-        assert_eq!((title(&second).as_str(), second.has_film()), ("first", true));
-        assert!(!third.take_session().unwrap(), "one window takes it");
-        // It is this window's now: if the window is killed, the film is left.
-        drop(second);
-        assert_eq!(RecoveryFiles::left_in(at).len(), 1);
-    }
-
-    #[test]
-    fn a_session_that_no_window_has_taken_is_replaced_only_if_nothing_is_lost() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = directory.path();
-        let leave = |title: &str, film| {
-            let files = RecoveryFiles::claim(at).unwrap();
-            write(&files, title, film);
-            files.leave_session().unwrap();
-        };
-        leave("plain", None);
-        leave("long", Some("film"));
-        assert!(RecoveryFiles::left_in(at).is_empty(), "the plain one cost nothing");
-        leave("newest", None);
-        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
-        assert_eq!((title(&left).as_str(), left.has_film()), ("long", true));
-        let last = RecoveryFiles::claim(at).unwrap();
-        assert!(last.take_session().unwrap() && title(&last) == "newest" && !last.has_film());
-    }
-
-    #[test]
-    fn a_film_is_set_aside() {
-        let directory = tempfile::tempdir().unwrap();
-        let [files, other] = [(); 2].map(|()| RecoveryFiles::claim(directory.path()).unwrap());
-        write(&files, "mine", Some("film"));
-        let aside = files.set_film_aside().unwrap();
-        assert!(aside.exists() && !files.has_film());
-        assert_ne!(aside, other.film(), "that name is another window's");
-        let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
-        assert_eq!(left.film(), aside);
-        files.take_film(&left).unwrap();
-        assert!(files.has_film() && !left.has_film());
-    }
-
-    #[test]
-    fn a_directory_that_cannot_be_is_named() {
-        let directory = tempfile::tempdir().unwrap();
-        fs::write(directory.path().join("file"), "").unwrap();
-        let told = RecoveryFiles::claim(&directory.path().join("file/deeper")).unwrap_err();
-        assert!(told.contains("file/deeper"), "{told}");
-    }
-
-    #[test]
-    fn changes_and_kept_pictures_that_no_window_has_taken_are_not_replaced() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = directory.path();
-        let leave = |note: serde_json::Value, has_slots: bool| {
-            let files = RecoveryFiles::claim(at).unwrap();
-            files.write_note(&serde_json::from_value(note).unwrap()).unwrap();
-            if has_slots {
-                fs::create_dir(files.slots().path()).unwrap();
-                fs::write(files.slots().film("1"), "a film").unwrap();
-            }
-            files.leave_session().unwrap();
-        };
-        leave(serde_json::json!({ "title": "changed", "is_changed": true }), false);
-        leave(serde_json::json!({ "title": "keeping" }), true);
-        leave(serde_json::json!({ "title": "newest" }), false);
-        let mut left = RecoveryFiles::left_in(at);
-        left.sort_by_key(title);
-        let found: Vec<_> = left.iter().map(|files| (title(files), files.slots().exists())).collect();
-        assert_eq!(found, [("changed".to_owned(), false), ("keeping".to_owned(), true)]);
-    }
-}
+mod tests;

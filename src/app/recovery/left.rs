@@ -58,7 +58,8 @@ pub struct Left {
     pub files: RecoveryFiles,
     session: Option<Result<Session, String>>,
     film: Option<Result<FilmWords, String>>,
-    kept: Vec<Entry>,
+    /// The kept pictures, or why they cannot be listed.
+    kept: Result<Vec<Entry>, String>,
     changed: Option<SystemTime>,
 }
 
@@ -75,7 +76,7 @@ impl Left {
         Left {
             session: files.note().transpose(),
             film: files.has_film().then(|| FilmWords::read(files.film())),
-            kept: files.slots().entries().0,
+            kept: listed(&files),
             changed: files.changed(),
             files,
         }
@@ -84,7 +85,7 @@ impl Left {
     /// Deletes a note that says nothing more than the film, or that names an unchanged picture, and a list of kept pictures
     /// that are not there.
     fn tidy(&self) {
-        if self.kept.is_empty() {
+        if self.has_no_kept() {
             self.files.slots().clear();
         }
         if self.rows().next().is_none() {
@@ -102,15 +103,20 @@ impl Left {
         }
     }
 
-    /// The kept pictures.
+    /// The kept pictures, as far as they can be listed.
     pub fn kept(&self) -> &[Entry] {
-        &self.kept
+        self.kept.as_deref().unwrap_or_default()
+    }
+
+    /// Whether it is known that there are no kept pictures.
+    fn has_no_kept(&self) -> bool {
+        self.kept.as_ref().is_ok_and(Vec::is_empty)
     }
 
     /// Looks anew which kept pictures there are.
     pub fn count_kept(&mut self) {
-        self.kept = self.files.slots().entries().0;
-        if self.kept.is_empty() {
+        self.kept = listed(&self.files);
+        if self.has_no_kept() {
             self.settle(Part::Slots);
         }
     }
@@ -152,7 +158,7 @@ impl Left {
             self.film = None;
         }
         if part == Part::Slots {
-            self.kept.clear();
+            self.kept = self.files.slots().delete_all().map(|()| Vec::new());
         }
         if part == Part::Picture || (part == Part::Film && self.session(Part::Film).is_some()) {
             self.files.delete_note();
@@ -186,12 +192,21 @@ impl Left {
             Some(Err(fault)) => Some(row(Part::Picture, "A picture", "", Some(fault.clone()))),
             _ => None,
         };
-        let kept = (!self.kept.is_empty()).then(|| {
-            let names: Vec<&str> = self.kept.iter().map(|entry| entry.name.as_str()).collect();
-            row(Part::Slots, &counted(names.len() as u64, "kept picture"), &names.join("; "), None)
-        });
+        let kept = match &self.kept {
+            Ok(kept) if kept.is_empty() => None,
+            Ok(kept) => {
+                let names: Vec<&str> = kept.iter().map(|entry| entry.name.as_str()).collect();
+                let title = counted(names.len() as u64, "kept picture");
+                Some(row(Part::Slots, &title, &names.join("; "), None))
+            }
+            Err(fault) => Some(row(Part::Slots, "Kept pictures", "", Some(fault.clone()))),
+        };
         film.into_iter().chain(picture).chain(kept)
     }
+}
+
+fn listed(files: &RecoveryFiles) -> Result<Vec<Entry>, String> {
+    files.slots().listing().map(|listing| listing.entries)
 }
 
 /// How long ago something was, in words.
@@ -244,6 +259,39 @@ mod tests {
         write(true, true);
         let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
         assert_eq!(left.rows().map(|row| row.part).collect::<Vec<_>>(), [Part::Picture]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn kept_pictures_that_cannot_be_listed_are_named_and_stay() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join("window-1-1.slots");
+        // A link to itself: the system refuses to open it.
+        std::os::unix::fs::symlink(&folder, &folder).unwrap();
+        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+        for _ in 0..2 {
+            let [row] = left.rows().collect::<Vec<_>>().try_into().ok().unwrap();
+            let fault = row.fault.unwrap();
+            assert_eq!((row.part, row.title.as_str()), (Part::Slots, "Kept pictures"));
+            assert!(fault.starts_with(&format!("cannot list {}: ", folder.display())), "{fault}");
+            left.settle(Part::Slots);
+            left.count_kept();
+        }
+        assert!(folder.is_symlink() && left.kept().is_empty());
+    }
+
+    #[test]
+    fn kept_pictures_are_deleted_with_their_folder() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join("window-1-1.slots");
+        std::fs::create_dir(&folder).unwrap();
+        for name in ["1.exr", "1.json", "2.exr", "slots.json"] {
+            std::fs::write(folder.join(name), "{}").unwrap();
+        }
+        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+        assert_eq!(left.kept().len(), 2);
+        left.settle(Part::Slots);
+        assert!(!folder.exists() && left.rows().next().is_none());
     }
 
     #[test]

@@ -117,8 +117,11 @@ impl Recovery {
     pub fn begin(&mut self, context: &Context) {
         let Some(files) = &self.files else { return };
         let directory = files.film().parent().map(PathBuf::from).unwrap_or_default();
-        // Without a thread, the next window offers it.
-        let _ = self.found.ask("files", context, move || Left::all_in(&directory));
+        let substitute = |reason: String| {
+            log::warn!("what other windows left is offered by the next window: {reason}");
+            Vec::new()
+        };
+        self.found.ask("files", context, move || Left::all_in(&directory), substitute);
         if let Some(document) = self.resuming.take() {
             self.resume(context, &document);
         }
@@ -132,9 +135,8 @@ impl Recovery {
             let job = begun.job(1).map_err(|error| error.to_string())?;
             saved::resume(&path, &job).map_err(|error| error.to_string())
         };
-        if self.resumed.ask("files", context, read).is_ok() {
-            self.resuming = Some(document.clone());
-        }
+        self.resumed.ask("files", context, read, Err);
+        self.resuming = Some(document.clone());
     }
 
     /// Takes what was found. Returns whether there is something to offer.
@@ -163,10 +165,12 @@ impl Recovery {
                 restored.filter(|restored| restored.as_ref().map_or(part == Part::Picture, is_of_film));
             Arrival { opened, restored }
         };
-        match self.arrivals.ask("files", context, read) {
-            Ok(()) => self.opening = Some((left, part)),
-            Err(_) => self.left.insert(index, left),
-        }
+        let substitute = move |reason: String| match part {
+            Part::Film => Arrival { opened: Some(Err(reason)), restored: None },
+            Part::Picture | Part::Slots => Arrival { opened: None, restored: Some(Err(reason)) },
+        };
+        self.arrivals.ask("files", context, read, substitute);
+        self.opening = Some((left, part));
     }
 
     /// Deletes a part of what was left.
@@ -236,7 +240,8 @@ impl Recovery {
         let (write, shown, view) = (files.note_writer(), document.clone(), view.clone());
         let session = move || Session::of(&shown, &view, is_paused).with_framing(framing).with_film(has_film);
         let work = move || write(&session());
-        self.is_noting = self.notes.ask("files", context, work).is_ok();
+        self.notes.ask("files", context, work, Err);
+        self.is_noting = true;
         self.next_note = Instant::now() + NOTES_APART;
         self.noted = Some((document.clone(), has_film));
         words
@@ -256,141 +261,4 @@ impl Recovery {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::origin::Origin;
-    use crate::app::tests::sleep_after;
-    use crate::stages::Stage;
-    use std::path::Path;
-
-    fn metal() -> Document {
-        Document::new(Origin::of_stage(Stage::find("metal").unwrap()))
-    }
-
-    #[test]
-    fn a_note_that_cannot_be_written_is_told_of_once() {
-        let mut recovery = Recovery::new(Duration::from_secs(3600));
-        let (context, view, document) = (Context::default(), ViewState::default(), metal());
-        let mut tell = |outcome: Result<(), &str>| {
-            recovery.notes.answer(&context).give(outcome.map_err(str::to_owned));
-            recovery.note(&context, (&document, &view, None), false)
-        };
-        assert_eq!(tell(Ok(())), None);
-        assert_eq!(tell(Err("the disk is full")).as_deref(), Some("the disk is full"));
-        assert_eq!(
-            [tell(Err("the disk is full")), tell(Ok(())), tell(Err("the disk is full"))],
-            [None, None, None]
-        );
-    }
-
-    #[test]
-    fn each_change_is_noted_once_and_not_too_often() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut recovery = Recovery::new(Duration::from_secs(3600));
-        recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
-        let (context, view) = (Context::default(), ViewState::default());
-        let later = Instant::now() + Duration::from_secs(3600);
-        let mut document = metal();
-        // Whether a note was written, if the next one may be written then.
-        let is_noted = |recovery: &mut Recovery, document: &Document, next: Instant| {
-            recovery.next_note = next;
-            assert_eq!(recovery.note(&context, (document, &view, None), true), None);
-            let is_noting = recovery.is_noting;
-            recovery.finish_notes();
-            assert!(!recovery.is_noting);
-            is_noting
-        };
-        let noted = |recovery: &Recovery| recovery.files.as_ref().unwrap().note().unwrap();
-        let now = Instant::now();
-        assert!(!is_noted(&mut recovery, &document, now) && noted(&recovery).is_none(), "nothing is changed");
-        document.camera.vfov_degrees = 33.0;
-        assert!(!is_noted(&mut recovery, &document, later), "too soon");
-        assert!(is_noted(&mut recovery, &document, now));
-        assert!(recovery.next_note > now + NOTES_APART / 2);
-        let found = noted(&recovery).unwrap();
-        assert!(found.is_changed && !found.has_film && found.restore().unwrap().is_paused);
-        assert!(!is_noted(&mut recovery, &document, now), "once");
-        recovery.autosave.holds(Some(Saved { document: document.clone(), samples: 1 }));
-        assert!(is_noted(&mut recovery, &document, later), "a film needs its note at once");
-        assert!(noted(&recovery).unwrap().has_film);
-        recovery.note_soon();
-        assert!(recovery.next_note <= Instant::now());
-    }
-
-    #[test]
-    fn a_window_that_keeps_nothing_never_looks() {
-        let directory = tempfile::tempdir().unwrap();
-        let (mut recovery, context) = (Recovery::new(Duration::from_secs(3600)), Context::default());
-        let now = Instant::now();
-        recovery.next_look = now;
-        assert!(!recovery.is_time(&context));
-        recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
-        assert!(recovery.is_time(&context));
-        assert!(recovery.next_look >= now + LOOKS_APART, "the next look is later");
-        recovery.next_look = now + Duration::from_secs(3600);
-        assert!(!recovery.is_time(&context));
-    }
-
-    /// What three windows left in a directory.
-    fn left_by_three(directory: &Path) -> Recovery {
-        for name in ["window-1-1.exr", "window-2-1.exr", "window-3-1.exr"] {
-            std::fs::write(directory.join(name), "a film").unwrap();
-        }
-        let mut recovery = Recovery::new(Duration::from_secs(3600));
-        recovery.left = Left::all_in(directory);
-        recovery
-    }
-
-    fn films(recovery: &Recovery) -> Vec<PathBuf> {
-        recovery.left.iter().map(|left| left.path(Part::Film)).collect()
-    }
-
-    #[test]
-    fn what_is_not_opened_after_all_keeps_its_place() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut recovery = left_by_three(directory.path());
-        let all = films(&recovery);
-        assert_eq!(all.len(), 3);
-        for (from, to) in [(0, 0), (1, 1), (2, 2), (2, 9)] {
-            let left = recovery.left.remove(from);
-            recovery.put_back(to, left);
-            assert_eq!(films(&recovery), all, "{from} to {to}");
-        }
-        recovery.discard(3, Part::Film);
-        assert_eq!(films(&recovery), all, "there is none");
-        recovery.discard(1, Part::Film);
-        assert_eq!(films(&recovery), [all[0].clone(), all[2].clone()]);
-        assert_eq!([0, 1, 2].map(|index| all[index].exists()), [true, false, true]);
-    }
-
-    #[test]
-    fn one_thing_is_opened_at_a_time() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut recovery = left_by_three(directory.path());
-        let (all, context) = (films(&recovery), Context::default());
-        recovery.open(&context, 3, Part::Film);
-        assert!(recovery.opening.is_none(), "there is none");
-        for _ in 0..2 {
-            recovery.open(&context, 1, Part::Film);
-        }
-        assert_eq!(films(&recovery), [all[0].clone(), all[2].clone()]);
-        assert!(recovery.opening.as_ref().is_some_and(|(left, _)| left.path(Part::Film) == all[1]));
-        let arrival = recovery.arrivals.wait().unwrap();
-        assert!(arrival.opened.is_some_and(|opened| opened.is_err()) && arrival.restored.is_none());
-    }
-
-    #[test]
-    fn a_window_that_works_is_woken_for_the_next_look() {
-        let directory = tempfile::tempdir().unwrap();
-        let (mut recovery, context) = (Recovery::new(Duration::from_secs(3600)), Context::default());
-        let is_woken = |recovery: &mut Recovery| {
-            sleep_after(&context, |context| _ = recovery.is_time(context)) <= LOOKS_APART
-        };
-        recovery.is_working = true;
-        assert!(!is_woken(&mut recovery), "it keeps nothing");
-        recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
-        assert!(is_woken(&mut recovery));
-        recovery.is_working = false;
-        assert!(!is_woken(&mut recovery));
-    }
-}
+mod tests;

@@ -15,6 +15,11 @@ const NAME_LIMIT: u32 = 1000;
 /// On file systems without locks, files that have not changed for this long are nobody's.
 const OLD: Duration = Duration::from_secs(24 * 3600);
 
+/// Whether there is something, or may be: its place cannot be looked at.
+pub fn may_exist(path: &Path) -> bool {
+    !matches!(path.try_exists(), Ok(false))
+}
+
 /// Film, note, lock and kept pictures of one name.
 #[derive(Debug)]
 pub struct Paths {
@@ -40,7 +45,7 @@ impl Paths {
 
     /// Whether there is nothing but perhaps a lock.
     pub fn is_empty(&self) -> bool {
-        !self.film.exists() && !self.note.exists() && !self.slots.exists()
+        !may_exist(&self.film) && !may_exist(&self.note) && !self.slots.exists()
     }
 
     /// When something was written last.

@@ -1,8 +1,9 @@
 //! Windows take and leave a session one after the other.
 
-use std::fs::{File, OpenOptions, TryLockError};
+use crate::files::lock_path;
+use std::fs::File;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How long a window waits for another one that renames files, which takes a moment.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -13,20 +14,7 @@ pub fn turn(directory: &Path) -> Option<File> {
 }
 
 fn turn_within(directory: &Path, patience: Duration) -> Option<File> {
-    let file = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(directory.join("session.lock"))
-        .ok()?;
-    let begin = Instant::now();
-    while let Err(TryLockError::WouldBlock) = file.try_lock() {
-        if begin.elapsed() > patience {
-            return None;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    Some(file)
+    lock_path(&directory.join("session.lock"), patience)
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@
 
 use super::bounded::Bounded;
 use super::note::PictureNote;
+use crate::app::answers::caught;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::slots::{Coming, Slot, SlotNumber};
 use crate::describe::{SOFTWARE, describe};
-use crate::files::{check_writable, read, replace_file, write_text};
+use crate::files::{InputError, check_writable, read, replace_file, write_text};
 use crate::film::{checkpoint, key};
 use crate::saved::{self, Content, SavedFilm};
 use serde::{Deserialize, Serialize};
@@ -73,6 +74,15 @@ struct List {
     slots: Vec<Entry>,
 }
 
+/// What is in a folder.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Listing {
+    /// The pictures.
+    pub entries: Vec<Entry>,
+    /// What is wrong with the list, in words.
+    pub faults: Vec<String>,
+}
+
 /// Why a picture could not be written.
 #[derive(Debug)]
 pub enum WriteFault {
@@ -97,9 +107,17 @@ impl Folder {
         &self.0
     }
 
-    /// Whether there is anything in it.
+    /// Whether there is anything in it, or may be: it cannot be looked at.
     pub fn exists(&self) -> bool {
-        fs::read_dir(&self.0).is_ok_and(|mut entries| entries.next().is_some())
+        match fs::read_dir(&self.0) {
+            Ok(mut entries) => entries.next().is_some(),
+            Err(error) => error.kind() != ErrorKind::NotFound,
+        }
+    }
+
+    /// Whether the film of a picture is there, or may be: its place cannot be looked at.
+    pub fn may_have(&self, id: &str) -> bool {
+        !matches!(self.film(id).try_exists(), Ok(false))
     }
 
     /// The film of a picture.
@@ -120,68 +138,80 @@ impl Folder {
         fs::metadata(self.list()).or_else(|_| fs::metadata(&self.0)).ok()?.modified().ok()
     }
 
-    /// The pictures, and what is wrong with the list, in words. Deletes what killed windows have not finished.
-    pub fn entries(&self) -> (Vec<Entry>, Vec<String>) {
-        let (mut entries, mut faults) = (Vec::new(), Vec::new());
-        if !self.exists() {
-            return (entries, faults);
-        }
+    /// The pictures. Deletes what killed windows have not finished.
+    ///
+    /// # Errors
+    /// Why the folder or its list cannot be read, in words that name it. Nothing is deleted then.
+    pub fn listing(&self) -> Result<Listing, String> {
+        let Some(files) = self.files()? else { return Ok(Listing::default()) };
+        let (listed, mut faults) = self.read_list()?;
         // If it cannot be tidied, the next film that is written says so.
         let _ = check_writable(&self.list());
-        let mut films = self.stems("exr");
-        for note in self.stems("json").into_iter().filter(|id| !films.contains(id)) {
+        let mut films = self.stems(&files, "exr");
+        for note in self.stems(&files, "json").into_iter().filter(|id| !films.contains(id)) {
             // The film was not written to its end.
             let _ = fs::remove_file(self.note(&note));
         }
-        match self.read_list() {
-            Ok(listed) => {
-                for mut entry in listed {
-                    match films.iter().position(|id| *id == entry.id) {
-                        Some(place) => {
-                            films.swap_remove(place);
-                            if entries.iter().any(|other: &Entry| other.number == entry.number) {
-                                entry.number = None;
-                            }
-                            entries.push(entry);
-                        }
-                        None => {
-                            let of =
-                                entry.number.map_or_else(String::new, |number| format!(" of slot {number}"));
-                            faults.push(format!(
-                                "the film{of}, {}, is missing: there is no {}.exr in {}",
-                                entry.name,
-                                entry.id,
-                                self.0.display()
-                            ));
-                        }
+        let mut entries: Vec<Entry> = Vec::new();
+        for mut entry in listed {
+            match films.iter().position(|id| *id == entry.id) {
+                Some(place) => {
+                    films.swap_remove(place);
+                    if entries.iter().any(|other| other.number == entry.number) {
+                        entry.number = None;
                     }
+                    entries.push(entry);
+                }
+                None => {
+                    let of = entry.number.map_or_else(String::new, |number| format!(" of slot {number}"));
+                    faults.push(format!(
+                        "the film{of}, {}, is missing: there is no {}.exr in {}",
+                        entry.name,
+                        entry.id,
+                        self.0.display()
+                    ));
                 }
             }
-            Err(fault) => faults.push(fault),
         }
         films.sort();
         entries.extend(films.into_iter().map(|id| self.unlisted(id)));
-        (entries, faults)
+        Ok(Listing { entries, faults })
+    }
+
+    /// All files, none or all of which are known; `None` without a folder.
+    fn files(&self) -> Result<Option<Vec<PathBuf>>, String> {
+        let files = fs::read_dir(&self.0)
+            .and_then(|entries| entries.map(|entry| entry.map(|entry| entry.path())).collect());
+        match files {
+            Ok(files) => Ok(Some(files)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(format!("cannot list {}: {error}", self.0.display())),
+        }
     }
 
     /// The names of files of this ending, without the list.
-    fn stems(&self, ending: &str) -> Vec<String> {
-        let files = fs::read_dir(&self.0).into_iter().flatten().flatten().map(|entry| entry.path());
-        files
-            .filter(|path| path.extension().is_some_and(|own| own == ending) && *path != self.list())
-            .filter_map(|path| path.file_stem()?.to_str().map(str::to_owned))
-            .collect()
+    fn stems(&self, files: &[PathBuf], ending: &str) -> Vec<String> {
+        let is_it =
+            |path: &&PathBuf| path.extension().is_some_and(|own| own == ending) && **path != self.list();
+        let stems = files.iter().filter(is_it).filter_map(|path| path.file_stem()?.to_str());
+        stems.map(str::to_owned).collect()
     }
 
-    fn read_list(&self) -> Result<Vec<Entry>, String> {
+    /// The slots in the list, or none and what is wrong with it.
+    fn read_list(&self) -> Result<(Vec<Entry>, Vec<String>), String> {
         let path = self.list();
-        if !path.exists() {
-            return Ok(Vec::new());
+        if let Ok(false) = path.try_exists() {
+            return Ok((Vec::new(), Vec::new()));
         }
-        let bytes = read(&path, "a list of kept pictures", TEXT_LIMIT).map_err(|error| error.to_string())?;
-        let list = serde_json::from_slice::<List>(&bytes)
-            .map_err(|error| format!("{} cannot be understood: {error}", path.display()))?;
-        Ok(list.slots)
+        let bytes = match read(&path, "a list of kept pictures", TEXT_LIMIT) {
+            Ok(bytes) => bytes,
+            Err(error @ InputError::Unreadable { .. }) => return Err(error.to_string()),
+            Err(error) => return Ok((Vec::new(), vec![error.to_string()])),
+        };
+        Ok(match serde_json::from_slice::<List>(&bytes) {
+            Ok(list) => (list.slots, Vec::new()),
+            Err(error) => (Vec::new(), vec![format!("{} cannot be understood: {error}", path.display())]),
+        })
     }
 
     /// What a film says of itself that is not in the list.
@@ -200,7 +230,8 @@ impl Folder {
     /// # Errors
     /// [`WriteFault`]; nothing is left of the picture then.
     pub fn write(&self, kept: &Kept, room: u64) -> Result<u64, WriteFault> {
-        let outcome = self.try_write(kept, room);
+        let outcome =
+            caught(|| self.try_write(kept, room)).unwrap_or_else(|reason| Err(WriteFault::Failed(reason)));
         if outcome.is_err() {
             let _ = fs::remove_file(self.note(&kept.id));
             let _ = fs::remove_dir(&self.0);
@@ -260,9 +291,23 @@ impl Folder {
         let _ = fs::remove_file(self.note(id));
     }
 
-    /// Deletes everything.
+    /// Deletes all pictures.
+    ///
+    /// # Errors
+    /// Why the folder or its list cannot be read. Nothing is deleted then.
+    pub fn delete_all(&self) -> Result<(), String> {
+        self.listing()?.entries.iter().for_each(|entry| self.delete(&entry.id));
+        self.clear();
+        Ok(())
+    }
+
+    /// Deletes the folder if there is nothing in it but perhaps a list.
     pub fn clear(&self) {
-        let _ = fs::remove_dir_all(&self.0);
+        let is_bare = |files: Vec<PathBuf>| files.iter().all(|path| *path == self.list());
+        if self.files().is_ok_and(|files| files.is_some_and(is_bare)) {
+            let _ = fs::remove_file(self.list());
+            let _ = fs::remove_dir(&self.0);
+        }
     }
 
     /// Reads a picture. `known` are documents whose scenes it shares where they are equal.
@@ -315,5 +360,26 @@ impl Folder {
         let folders = self.0.parent().into_iter().flat_map(entries).map(|entry| entry.path());
         let folders = folders.filter(|path| path.extension().is_some_and(|ending| ending == ENDING));
         folders.flat_map(|path| entries(&path)).filter_map(|file| Some(file.metadata().ok()?.len())).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_kept_pictures_of_all_windows_count_and_nothing_else() {
+        let directory = tempfile::tempdir().unwrap();
+        let folders = ["window-1-1", "window-2-1"].map(|name| Folder::of(directory.path(), name));
+        assert_eq!(folders.each_ref().map(Folder::bytes_of_all), [0; 2]);
+        let other = directory.path().join("window-1-1.films");
+        fs::create_dir(&other).unwrap();
+        fs::write(other.join("a.exr"), [0_u8; 50]).unwrap();
+        fs::write(directory.path().join("window-1-1.exr"), [0_u8; 90]).unwrap();
+        for (folder, bytes) in folders.iter().zip([300, 7000]) {
+            fs::create_dir(folder.path()).unwrap();
+            fs::write(folder.film("a"), vec![0_u8; bytes]).unwrap();
+        }
+        assert_eq!(folders.each_ref().map(Folder::bytes_of_all), [7300; 2]);
     }
 }

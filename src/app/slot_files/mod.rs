@@ -8,7 +8,7 @@ mod reader;
 #[cfg(test)]
 mod tests;
 
-pub use folder::{Entry, Folder};
+pub use folder::{Entry, Folder, Listing};
 pub use keeper::{Keeper, News};
 pub use reader::{Arrival, SlotReader};
 

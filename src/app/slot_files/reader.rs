@@ -1,7 +1,7 @@
 //! A thread that reads kept pictures.
 
 use super::folder::Folder;
-use crate::app::answers::Answers;
+use crate::app::answers::{Answers, caught};
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::render_cpu::give_way;
@@ -39,7 +39,7 @@ impl SlotReader {
             give_way();
             let mut known = vec![live];
             for (id, answer) in answers {
-                let outcome = folder.read(&id, &known);
+                let outcome = caught(|| folder.read(&id, &known)).unwrap_or_else(Err);
                 known.extend(outcome.as_ref().ok().map(|kept| kept.document.clone()));
                 answer.give(Arrival { id, outcome });
             }

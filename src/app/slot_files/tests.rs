@@ -1,6 +1,6 @@
 //! Tests of the files of kept pictures.
 
-use super::folder::{Entry, Folder, WriteFault};
+use super::folder::{Entry, Folder, Listing, WriteFault};
 use super::keeper::{Keeper, News};
 use crate::app::model::checked::CheckedScene;
 use crate::app::model::document::Document;
@@ -61,6 +61,12 @@ fn assert_same(found: &Kept, kept: &Kept) {
     assert_eq!(found.seconds_before.map(f64::to_bits), kept.seconds_before.map(f64::to_bits));
     assert_eq!((&found.thumbnail, &found.id), (&kept.thumbnail, &kept.id));
     assert_eq!((found.samples(), found.bytes()), (kept.samples(), kept.bytes()));
+}
+
+/// The pictures in a folder, and what is wrong with its list.
+fn found_in(folder: &Folder) -> (Vec<Entry>, Vec<String>) {
+    let Listing { entries, faults } = folder.listing().unwrap();
+    (entries, faults)
 }
 
 fn written(folder: &Folder, kept: &Kept) {
@@ -146,40 +152,79 @@ fn no_film_meets_the_description_of_another_wherever_writing_ends() {
     folder.write_list(&[entry(&first)]).unwrap();
     // The program ends after the note, before the film.
     std::fs::write(folder.note(&second.id), "{}").unwrap();
-    assert_eq!(folder.entries(), (vec![entry(&first)], vec![]));
+    assert_eq!(found_in(&folder), (vec![entry(&first)], vec![]));
     assert!(!folder.note(&second.id).exists());
     // After the film, before the list.
     written(&folder, &second);
-    let (found, faults) = folder.entries();
+    let (found, faults) = found_in(&folder);
     assert_eq!((found.len(), faults.len(), &found[0]), (2, 0, &entry(&first)));
     assert_eq!((&found[1].id, found[1].number, found[1].samples), (&second.id, None, 7));
     assert_same(&folder.read(&found[1].id, &[]).unwrap(), &second);
     // After the list, before the film that was replaced is deleted.
     folder.write_list(&[entry(&second)]).unwrap();
-    let (found, _) = folder.entries();
+    let (found, _) = found_in(&folder);
     assert_eq!([&found[0].id, &found[1].id], [&second.id, &first.id]);
     // After the film was deleted, before its note is.
     std::fs::remove_file(folder.film(&first.id)).unwrap();
-    assert_eq!(folder.entries(), (vec![entry(&second)], vec![]));
+    assert_eq!(found_in(&folder), (vec![entry(&second)], vec![]));
     // Unfinished files of a program that is gone.
     let part = folder.path().join(".weekender-a1b2c3.part");
     std::fs::write(&part, "x").unwrap();
-    folder.entries();
+    found_in(&folder);
     assert!(!part.exists());
     // A film that has disappeared is named, and so is a list that cannot be read.
     folder.delete(&second.id);
-    let (found, faults) = folder.entries();
+    let (found, faults) = found_in(&folder);
     assert!(
         found.is_empty() && faults[0].contains("of slot 3") && faults[0].contains(&second.id),
         "{faults:?}"
     );
     written(&folder, &first);
     std::fs::write(folder.list(), "{").unwrap();
-    let (found, faults) = folder.entries();
+    let (found, faults) = found_in(&folder);
     assert_eq!((found.len(), &found[0].id), (1, &first.id));
     assert!(faults[0].contains("slots.json cannot be understood"), "{faults:?}");
     folder.clear();
+    assert!(folder.film(&first.id).exists() && folder.list().exists(), "more than a list is there");
+    folder.delete_all().unwrap();
     assert!(!folder.exists());
+}
+
+#[test]
+fn only_what_is_known_is_deleted() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    written(&folder, &kept(of_stage("metal"), 2));
+    let other = folder.path().join("mine.txt");
+    std::fs::write(&other, "a note of the user").unwrap();
+    folder.delete_all().unwrap();
+    assert!(other.exists() && std::fs::read_dir(folder.path()).unwrap().count() == 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_looked_at_is_not_deleted() {
+    use std::os::unix::fs::symlink;
+    let directory = tempfile::tempdir().unwrap();
+    // A link to itself: the system refuses to open it.
+    let gone = Folder::of(directory.path(), "window-2-1");
+    symlink(gone.path(), gone.path()).unwrap();
+    let told = gone.listing().unwrap_err();
+    assert!(told.starts_with(&format!("cannot list {}: ", gone.path().display())), "{told}");
+    assert!(gone.delete_all().is_err() && gone.exists() && gone.may_have("1"));
+    gone.clear();
+    assert!(gone.path().is_symlink());
+    // The list alone.
+    let folder = folder(&directory);
+    let kept = kept(of_stage("metal"), 2);
+    written(&folder, &kept);
+    std::fs::write(folder.note("unfinished"), "{}").unwrap();
+    symlink(folder.list(), folder.list()).unwrap();
+    let told = folder.listing().unwrap_err();
+    assert!(told.contains("slots.json"), "{told}");
+    assert!(folder.delete_all().is_err());
+    assert!(folder.note("unfinished").exists() && folder.film(&kept.id).exists());
+    assert!(folder.may_have(&kept.id) && !folder.may_have("unfinished"));
 }
 
 #[test]
@@ -194,7 +239,7 @@ fn two_pictures_of_one_slot_do_not_meet_there() {
     });
     folder.write_list(&entries).unwrap();
     let [first, second] = entries;
-    assert_eq!(folder.entries(), (vec![first, Entry { number: None, ..second }], vec![]));
+    assert_eq!(found_in(&folder), (vec![first, Entry { number: None, ..second }], vec![]));
 }
 
 #[test]
@@ -283,7 +328,7 @@ fn the_files_are_those_of_the_slots() {
     slots.delete(TWO);
     keeper.follow(&context, &slots);
     keeper.finish(&slots);
-    assert_eq!(folder.entries(), (vec![Entry::of(ONE, slots.get(ONE).unwrap())], vec![]));
+    assert_eq!(found_in(&folder), (vec![Entry::of(ONE, slots.get(ONE).unwrap())], vec![]));
     assert!(!folder.film(&second.kept.id).exists() && !folder.note(&second.kept.id).exists());
     assert_same(&folder.read(&first.kept.id, &[]).unwrap(), &first.kept);
 
@@ -321,7 +366,7 @@ fn a_picture_without_room_is_told_of_once_and_written_when_there_is_some() {
     assert_eq!(news(&keeper), (Some(kept[1].id.clone()), true, None), "now there is room");
     keeper.finish(&slots);
     assert!(keeper.news().is_none());
-    assert_eq!(folder.entries().0.len(), 1);
+    assert_eq!(found_in(&folder).0.len(), 1);
 }
 
 #[test]
@@ -339,5 +384,5 @@ fn that_nothing_can_be_written_is_told_of_once() {
     // It is tried once more at the end.
     std::fs::remove_file(folder.path()).unwrap();
     keeper.finish(&slots);
-    assert_eq!(folder.entries().0.len(), 2);
+    assert_eq!(found_in(&folder).0.len(), 2);
 }

@@ -92,7 +92,7 @@ impl SlotActions {
         self.awaited.retain(|(_, request)| request.strong_count() > 0);
         self.awaited.push((number, Arc::downgrade(&request)));
         let (document, status) = (document.clone(), Arc::clone(main.status()));
-        let answer = self.copied.answer(context);
+        let answer = self.copied.answer_or(context, Err);
         main.inspect(move |film| {
             answer.give(match film.try_copy() {
                 Ok(film) => Ok(Copied { number, kept: Kept::new(document, film, status, seconds_before) }),
@@ -104,7 +104,7 @@ impl SlotActions {
 
     /// Copies a kept film to go on with.
     pub fn reopen(&self, context: &Context, kept: &Arc<Kept>) {
-        let (kept, answer) = (Arc::clone(kept), self.reopened.answer(context));
+        let (kept, answer) = (Arc::clone(kept), self.reopened.answer_or(context, Err));
         self.thread.run(move || {
             let seconds = kept.seconds_before.map(|before| before + kept.status.trace.as_secs_f64());
             let document = kept.document.clone();

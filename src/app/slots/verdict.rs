@@ -1,6 +1,6 @@
 //! Whether two pictures differ only by noise: the statistics of `weekender compare`, on a thread.
 
-use crate::app::answers::{Answer, Answers};
+use crate::app::answers::Answers;
 use crate::app::kept::Subject;
 use crate::app::model::kept::Kept;
 use crate::app::theme;
@@ -51,13 +51,16 @@ impl Verdict {
         self.names = Some(names);
         let kept = Picture { name: first, recipe: kept.document.recipe(), film: Arc::clone(&kept.film) };
         let (recipe, number) = (subject.document().recipe(), self.number);
-        let answer = self.answers.answer(context);
+        let answer = self.answers.answer_or(context, move |reason| (number, Err(reason)));
         let shared = subject.shared_film();
         // The live film goes on, so it is copied first.
         subject.inspect(move |film| {
             let copy = shared.map_or_else(|| film.try_copy().map(Arc::new), Ok);
             match copy {
-                Ok(film) => compare_on_thread(number, kept, Picture { name: second, recipe, film }, answer),
+                Ok(film) => {
+                    let shown = Picture { name: second, recipe, film };
+                    answer.give_from("compare", move || (number, found([kept, shown])));
+                }
                 Err(error) => answer.give((number, Err(error.to_string()))),
             }
         });
@@ -160,17 +163,6 @@ fn text(ui: &mut egui::Ui, text: &str) {
     }
 }
 
-fn compare_on_thread(
-    number: u64,
-    kept: Picture,
-    shown: Picture,
-    answer: Answer<(u64, Result<Found, String>)>,
-) {
-    let work = move || answer.give((number, found([kept, shown])));
-    // Without a thread the answer never comes; the window can be closed.
-    let _ = std::thread::Builder::new().name("compare".to_owned()).spawn(work);
-}
-
 fn found(pictures: [Picture; 2]) -> Result<Found, String> {
     let [first, second] = pictures.map(|Picture { name, recipe, film }| {
         Side::of_rendered(name, recipe, film).map_err(|error| error.to_string())
@@ -189,6 +181,7 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::tests::{Drawings, dressed};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -207,6 +200,22 @@ mod tests {
         verdict.answers.answer(&context).give((2, Err("late".to_owned())));
         verdict.receive();
         assert_eq!((verdict.is_open(), verdict.words()), (false, None));
+    }
+
+    #[test]
+    fn a_comparison_that_cannot_be_made_is_told_of_and_not_waited_for() {
+        let (screen, context) = (OnScreen::new(small_film(1, 0.5)), egui::Context::default());
+        let document = screen.subject().document().clone();
+        let kept = Arc::new(Kept::new(document, small_film(1, 0.5), Arc::default(), None));
+        let mut verdict = Verdict::default();
+        // Nobody ever asks the film.
+        let asked = verdict.answers.answer_or(&context, |reason| (1, Err(reason)));
+        (verdict.number, verdict.names) = (1, Some(Default::default()));
+        drop(asked);
+        verdict.receive();
+        assert_eq!(verdict.words(), Some(Err("nothing has done it; try again")));
+        verdict.ask(&context, &kept, &screen.subject(), Default::default());
+        assert_eq!(verdict.answers.wait().map(|(number, _)| number), Some(2));
     }
 
     /// The window with what was found.

@@ -104,8 +104,8 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
     }
 }
 
-/// From a sphere to a place for its copy: beside it, where the copy is in no other sphere and the whole of it is in sight,
-/// or else its centre; above it if there is no such place.
+/// From a sphere to a place for its copy: beside it, where the copy is in no other sphere, nothing hides it, and the whole
+/// of it is in the picture, or else its centre; above it if there is no such place.
 pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
     let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
     let radius = original.radius;
@@ -126,11 +126,41 @@ pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DV
         let is_obstacle = |other: &&Sphere| overlaps(center, other) && !overlaps(original.center, other);
         is_in_sight && scene.spheres.iter().find(is_obstacle).is_none()
     };
-    let directions = [basis.u, -basis.u, basis.v, basis.w, -basis.w];
+    let is_seen = |by: &DVec3| {
+        let center = original.center + *by;
+        let hides = |(index, other): (usize, &Sphere)| {
+            (index == sphere || !overlaps(original.center, other))
+                && !is_glass(scene, other)
+                && is_before(other, camera.look_from, center, radius)
+        };
+        !scene.spheres.iter().enumerate().any(hides)
+    };
+    let (right, up, back) = (basis.u, basis.v, basis.w);
+    let beside = [right, -right, up];
+    let aslant = [up + right, up - right, up - back, right - back, -right - back];
+    let directions = beside.into_iter().chain(aslant.map(DVec3::normalize)).chain([back]);
     let places = directions.map(|direction| COPY_RADII * radius * direction);
-    let free: Vec<DVec3> = places.into_iter().filter(is_free).collect();
+    let free: Vec<DVec3> = places.filter(is_free).filter(is_seen).collect();
     let best = free.iter().find(|by| is_whole(by)).or(free.first());
     best.copied().unwrap_or(COPY_RADII * radius * basis.v)
+}
+
+fn is_glass(scene: &Scene, sphere: &Sphere) -> bool {
+    let material = scene.materials.get(sphere.material).map(|named| named.material);
+    matches!(material, Some(Material::Dielectric { .. }))
+}
+
+/// Whether a sphere is in front of the middle of another one, of this `center` and `radius`, as seen from `eye`.
+fn is_before(sphere: &Sphere, eye: DVec3, center: DVec3, radius: f64) -> bool {
+    let distance = eye.distance(center);
+    let to_sphere = sphere.center - eye;
+    let along = to_sphere.dot(center - eye) / distance;
+    let across = to_sphere.length_squared() - along * along;
+    let half_chord = sphere.radius * sphere.radius - across;
+    half_chord > 0.0 && {
+        let nearest = along - half_chord.sqrt();
+        0.0 < nearest && nearest < distance - radius
+    }
 }
 
 /// Rounds a positive number to two digits.
@@ -142,6 +172,9 @@ fn two_digits(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
+    use crate::stages::Stage;
     use proptest::prelude::*;
 
     const BODY: Body = Body {
@@ -203,9 +236,7 @@ mod tests {
         assert!(to_copy(&scene).distance(DVec3::Z) < 1e-12, "towards the eye");
         let mut crowded = scene.clone();
         crowded.add_sphere(scene.spheres[1].center + DVec3::Z, 0.5, 0);
-        assert!(to_copy(&crowded).distance(DVec3::NEG_Z) < 1e-12, "away from it");
-        crowded.add_sphere(scene.spheres[1].center - DVec3::Z, 0.5, 0);
-        assert!(to_copy(&crowded).distance(DVec3::Y) < 1e-12, "where nothing is free");
+        assert!(to_copy(&crowded).distance(DVec3::Y) < 1e-12, "above it, not behind it");
         // Nothing else is in sight of a narrow lens.
         let narrow = Camera { vfov_degrees: 1.0, ..Camera::BOOK };
         assert_eq!(super::to_copy(&scene, &narrow, 1.5, 1).normalize(), DVec3::Z);
@@ -215,6 +246,28 @@ mod tests {
         scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.9, 0);
         scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
         assert!(super::to_copy(&scene, &Camera::BOOK, 1.5, 1).normalize().distance(DVec3::X) < 1e-12);
+    }
+
+    #[test]
+    fn a_copy_is_not_hidden() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let (scene, camera) = (document.scene(), &document.camera);
+        // All but the ground.
+        for (index, sphere) in scene.spheres.iter().enumerate().filter(|(_, sphere)| sphere.radius < 10.0) {
+            let center = sphere.center + to_copy(scene, camera, document.aspect(), index);
+            let mut more = scene.clone();
+            more.add_sphere(center, sphere.radius, sphere.material);
+            let towards = (center - camera.look_from).normalize();
+            let hit = more.pick(camera.look_from, towards).unwrap();
+            assert_eq!(hit.sphere, scene.spheres.len(), "the copy of sphere {index}");
+            assert!(camera.place_of(center, document.aspect()).is_some(), "the copy of sphere {index}");
+        }
+        // A wall between the eye and the free place at the right.
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
+        scene.add_sphere(DVec3::new(0.55, 0.0, -1.5), 0.2, 0);
+        let by = to_copy(&scene, &Camera::BOOK, 1.5, 0);
+        assert!(by.normalize().distance(DVec3::NEG_X) < 1e-12, "{by}");
     }
 
     #[test]

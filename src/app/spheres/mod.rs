@@ -140,13 +140,13 @@ impl Spheres {
                 let outcome = edited(&from, &origin.recipe, edit);
                 Made { from, outcome, took: begin.elapsed() }
             };
-            match self.made.ask("edit", context, work) {
-                Ok(()) => self.is_working = true,
-                Err(error) => {
-                    self.queue.clear();
-                    return Err(format!("the scene was not changed: no thread could be started ({error})"));
-                }
-            }
+            let of = Arc::clone(&model.document.checked);
+            let substitute = |reason: String| {
+                let outcome = Err(format!("the scene was not changed: {reason}"));
+                Made { from: of, outcome, took: Duration::ZERO }
+            };
+            self.made.ask("edit", context, work, substitute);
+            self.is_working = true;
         }
         // The selection may be of another scene.
         model.selected = model.selected.filter(|sphere| *sphere < model.document.scene().spheres.len());
@@ -238,6 +238,24 @@ mod tests {
         let is_told = |window: &Window| window.messages().iter().any(|text| text.contains("radius is 0"));
         until(&mut window, &Context::default(), "why not", is_told);
         assert!(!window.document().has_changed_scene() && window.spheres.queue.is_empty());
+    }
+
+    #[test]
+    fn an_edit_that_panics_is_told_and_not_waited_for() {
+        let mut window = window(FIELD);
+        let model = &mut window.model;
+        let (mut spheres, context) = (Spheres::default(), Context::default());
+        let edit = with_radius(&model.document, 1, 0.25);
+        spheres.edit(model, edit).unwrap();
+        let of = Arc::clone(&model.document.checked);
+        let substitute = |reason| Made { from: of, outcome: Err(reason), took: Duration::ZERO };
+        spheres.made.answer_or(&context, substitute).give_from("edit", || panic!("on purpose"));
+        spheres.is_working = true;
+        let made = spheres.made.wait().unwrap();
+        spheres.made.answer(&context).give(made);
+        let told = spheres.follow(&context, model).unwrap_err();
+        assert_eq!(told, "the program failed (on purpose)");
+        assert!(!spheres.is_working && spheres.queue.is_empty());
     }
 
     #[test]

@@ -77,6 +77,15 @@ fn the_figures_are_those_of_the_status() {
 }
 
 #[test]
+fn what_a_film_does_not_say_is_no_zero() {
+    let status =
+        Status { stats: Stats::default(), trace: Duration::ZERO, ..status_of(parts()[..1].to_vec()) };
+    let figures = figures(&of(&status));
+    assert_eq!((figures[3].0.as_str(), figures[4].0.as_str()), ("– Mpaths/s", "– rays/path"));
+    assert!(!figures[3].2.contains("average"), "{}", figures[3].2);
+}
+
+#[test]
 fn a_film_that_was_opened_brings_its_time() {
     let status = status_of(parts()[..1].to_vec());
     for (seconds_before, text, help) in [

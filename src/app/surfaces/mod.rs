@@ -28,7 +28,8 @@ pub struct Surfaces {
     of: Option<Arc<CheckedScene>>,
     tree: Option<Tree>,
     is_asked: bool,
-    answers: Answers<(Arc<CheckedScene>, Tree)>,
+    /// Hierarchies, unless they could not be built.
+    answers: Answers<(Arc<CheckedScene>, Option<Tree>)>,
     /// Where the camera was last, and the innermost sphere around it.
     around: Option<(DVec3, Option<usize>)>,
 }
@@ -46,17 +47,21 @@ impl Surfaces {
             if document.scene().spheres.len() > SCAN_LIMIT {
                 let (scene, center) =
                     (Arc::clone(&document.checked), document.origin.recipe.camera.look_from);
+                let of = Arc::clone(&scene);
                 let build = move || {
                     let hierarchy = Hierarchy::build(&scene.scene().spheres, center, Effort::Quick);
-                    (scene, Tree { hierarchy, origin: center })
+                    (scene, Some(Tree { hierarchy, origin: center }))
                 };
-                // Without a thread, every sphere is looked at.
-                let _ = self.answers.ask("surfaces", context, build);
+                let substitute = |reason: String| {
+                    log::warn!("every sphere is looked at when the camera moves: {reason}");
+                    (of, None)
+                };
+                self.answers.ask("surfaces", context, build, substitute);
             }
         }
         while let Some((scene, tree)) = self.answers.take() {
             if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, &scene)) {
-                self.tree = Some(tree);
+                self.tree = tree;
             }
         }
         let at = document.camera.look_from;

@@ -144,14 +144,14 @@ impl Viewport {
             false => Document { camera: *camera, ..facts.document().clone() },
         };
         let notices = pictures.notices.len();
-        paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
+        let taken = paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
         let clip = if is_wipe {
             Rect { max: pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.max.y), ..rect }
         } else {
             rect
         };
         let rows = if notices > 0 { notices + usize::from(is_wipe) } else { 0 };
-        self.selection.paint(ui, (rect, clip.intersect(room)), selected, rows);
+        self.selection.paint(ui, (rect, clip.intersect(room)), selected, (rows, &taken));
         if let Some(crop) = crop {
             crop::paint(ui, &ui.painter().with_clip_rect(room), rect, pixels, *crop);
         }

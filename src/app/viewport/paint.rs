@@ -1,6 +1,6 @@
 //! Draws the viewport: the picture, the second picture and labels.
 
-use super::badge::badge;
+use super::badge::{badge, badge_below};
 use super::legend::paint_scale;
 use super::placement::{Placement, Zoom};
 use super::selection::ROW;
@@ -50,7 +50,7 @@ pub struct SecondPicture<'a> {
     pub fitted: Fitted,
 }
 
-/// Draws the picture at `rect`, within `room`.
+/// Draws the picture at `rect`, within `room`. Returns the places of the words at its top, which others must not cover.
 pub(super) fn paint(
     ui: &Ui,
     [room, rect]: [Rect; 2],
@@ -59,7 +59,8 @@ pub(super) fn paint(
     pictures: Pictures<'_>,
     document: &Document,
     facts: &Facts,
-) {
+) -> Vec<Rect> {
+    let mut taken = Vec::new();
     let painter = ui.painter().with_clip_rect(room);
     let options = |divisor: u32, is_scaled: bool| {
         // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
@@ -88,7 +89,7 @@ pub(super) fn paint(
         let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
         let titles = [facts.title(), format!("{title}{whose}{}", fitted.words())];
         let is_left = view.is_other_earlier(document);
-        paint_wipe(ui, &painter, rect, divider, (texture, is_left, fitted), &titles);
+        taken.extend(paint_wipe(ui, &painter, rect, divider, (texture, is_left, fitted), &titles));
     }
     let is_difference = view.mode() == Some(Mode::Difference);
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
@@ -98,13 +99,14 @@ pub(super) fn paint(
     let corners = rect.intersect(room);
     if let Some((_, divisor @ 2..)) = main {
         let text = format!("preview 1/{divisor}");
-        badge(ui, &painter, corners.left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP, &text, &font);
+        let at = (corners.left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP);
+        taken.push(badge_below(ui, &painter, at, &text, &font, &taken));
     }
     for (row, notice) in notices.iter().enumerate() {
         // Below the titles of a wipe.
         let row = row + usize::from(view.mode() == Some(Mode::Wipe));
         let at = corners.center_top() + vec2(0.0, 8.0 + ROW * row as f32);
-        badge(ui, &painter, at, Align2::CENTER_TOP, notice, &font);
+        taken.push(badge_below(ui, &painter, (at, Align2::CENTER_TOP), notice, &font, &taken));
     }
     if !has_film {
         let text = match (&facts.invalid, &facts.status.phase) {
@@ -116,7 +118,8 @@ pub(super) fn paint(
     }
     if let Zoom::Times(_) | Zoom::As(_) = placement.zoom() {
         let text = format!("{:.0} %", 100.0 * placement.times());
-        badge(ui, &painter, corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP, &text, &font);
+        let at = (corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP);
+        taken.push(badge_below(ui, &painter, at, &text, &font, &taken));
     }
     if facts.model.view.tone.exposure != 0.0 && view.show() == Show::Picture && !is_difference {
         let text = format!("exposure {:+.1} stops", view.tone.exposure);
@@ -127,6 +130,7 @@ pub(super) fn paint(
     if let Some(paths) = paths {
         paths.paint(document, ui, &painter, rect);
     }
+    taken
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
@@ -145,7 +149,7 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
-/// Draws the second picture to the left or right of the divider, and labels both sides.
+/// Draws the second picture to the left or right of the divider, and labels both sides. Returns the places of the labels.
 fn paint_wipe(
     ui: &Ui,
     painter: &egui::Painter,
@@ -153,7 +157,7 @@ fn paint_wipe(
     share: f32,
     (texture, is_left, fitted): (egui::TextureId, bool, Fitted),
     [mine, theirs]: &[String; 2],
-) {
+) -> [Rect; 2] {
     let x = rect.left() + rect.width() * share;
     let shares = if is_left { [0.0, share] } else { [share, 1.0] };
     let [from, to] = shares.map(|share| rect.left() + rect.width() * share);
@@ -181,8 +185,8 @@ fn paint_wipe(
     // Labels are clipped at the picture's edges.
     let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     let font = TextStyle::Body.resolve(ui.style());
-    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, left, &font);
-    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, right, &font);
+    [(x - 14.0, Align2::RIGHT_TOP, left), (x + 14.0, Align2::LEFT_TOP, right)]
+        .map(|(x, anchor, title)| badge(ui, painter, pos2(x, y), anchor, title, &font))
 }
 
 #[cfg(test)]

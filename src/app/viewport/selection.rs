@@ -1,6 +1,6 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
-use super::badge::badge;
+use super::badge::badge_below;
 use super::outline::paint_outline;
 use super::point::{place_at, point_at};
 use crate::app::model::document::Document;
@@ -152,13 +152,14 @@ impl Selection {
         }
     }
 
-    /// Draws the outline, the handle and the name of the selected sphere. The name is below so many `rows` of notices.
+    /// Draws the outline, the handle and the name of the selected sphere. The name is below so many `rows` of notices, and
+    /// covers none of the words at the `taken` places.
     pub(super) fn paint(
         &self,
         ui: &Ui,
         (rect, clip): (Rect, Rect),
         selected: Option<&Selected>,
-        rows: usize,
+        (rows, taken): (usize, &[Rect]),
     ) {
         let (Some(selected), Some(drawn)) = (selected, &self.drawn) else { return };
         let painter = &ui.painter().with_clip_rect(clip);
@@ -188,7 +189,7 @@ impl Selection {
         // Above the outline if there is room.
         let highest = painter.clip_rect().top() + 34.0 + ROW * rows as f32;
         let at = pos2(top.x, (top.y - 8.0).max(highest));
-        badge(ui, painter, at, Align2::CENTER_BOTTOM, &text, &font);
+        badge_below(ui, painter, (at, Align2::CENTER_BOTTOM), &text, &font, taken);
     }
 }
 

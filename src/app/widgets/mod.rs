@@ -78,8 +78,13 @@ pub fn slider(
             ui.spacing_mut().slider_width =
                 (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
             let speed = 0.002 * (track.end() - track.start()).min(value.abs().max(0.1) * 5.0);
-            let slider = Slider::new(value, track).show_value(false).clamping(SliderClamping::Edits);
+            let before = *value;
+            let slider = Slider::new(value, track.clone()).show_value(false).clamping(SliderClamping::Edits);
             let slid = ui.add(change(slider));
+            if *value != before {
+                // Assistive technology knows no limits.
+                *value = if value.is_nan() { before } else { value.clamp(*track.start(), *track.end()) };
+            }
             named(&slid, about.name);
             let size = vec2(digits, ui.spacing().interact_size.y);
             let typed =

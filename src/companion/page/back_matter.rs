@@ -24,7 +24,9 @@ pub fn fill(html: &str, site: &Site, uses: &mut Uses, faults: &mut Vec<Fault>) -
 }
 
 fn glossary(site: &Site, uses: &mut Uses, faults: &mut Vec<Fault>) -> Markup {
-    let parts = [("Rendering", Area::Rendering), ("Parallelism", Area::Parallelism)].map(|(title, area)| {
+    let areas =
+        [("Rendering", Area::Rendering), ("Parallelism", Area::Parallelism), ("Numbers", Area::Numbers)];
+    let parts = areas.map(|(title, area)| {
         let terms: Vec<Markup> = site
             .terms
             .iter()
@@ -34,7 +36,7 @@ fn glossary(site: &Site, uses: &mut Uses, faults: &mut Vec<Fault>) -> Markup {
         (title, terms)
     });
     html! {
-        @for (title, terms) in parts {
+        @for (title, terms) in parts.into_iter().filter(|(_, terms)| !terms.is_empty()) {
             h3 id={ "glossary-of-" (title.to_lowercase()) } { (title) }
             dl .glossary { @for term in terms { (term) } }
         }

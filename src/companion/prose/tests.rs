@@ -28,8 +28,12 @@ fn links_lead_to_what_they_name() {
         ("mailto:a@b.org", "<a href=\"mailto:a@b.org\">x</a>"),
         ("page:normals", "<a href=\"#normals\" title=\"Chapter 6: All normals\">x</a>"),
         ("page:languages#two", "<a href=\"#languages-two\" title=\"All languages\">x</a>"),
+        (
+            "page:normals#6.1",
+            "<a href=\"#normals-61-shading-with-surface-normals\" title=\"Section 6.1 Shading with Surface Normals\">x</a>",
+        ),
         ("glossary:lane", "<a id=\"use-lane\" class=\"term\" href=\"#term-lane\">x</a>"),
-        ("source:src/lib.rs", "x (<code class=\"path\">src/lib.rs</code>)"),
+        ("source:src/lib.rs", "x <span class=\"cite\">[<code class=\"path\">src/lib.rs</code>]</span>"),
     ] {
         assert_eq!(alone(&site, &format!("[x]({target})")), format!("<p>{html}</p>\n"));
     }
@@ -47,6 +51,45 @@ fn links_are_noted_with_their_lines_and_only_the_first_to_a_term_can_be_returned
     assert_eq!(html.matches("id=\"use-ray\"").count(), 1, "{html}");
     assert!(html.contains("<a class=\"term\" href=\"#term-ray\">d</a>"), "{html}");
     assert_eq!(faults, [Fault::new("normals.md", 11, "the page has no chapter \"nowhere\"")]);
+}
+
+#[test]
+fn a_link_leads_to_the_section_that_it_names() {
+    let (site, mut uses, mut faults) = (Site::made_up(), Uses::default(), Vec::new());
+    let text = "## 6.1 Shading with Surface Normals\n\n[6.1](page:normals#6.1) [section 6.1](page:normals) [6.1](book:6)\n\n\
+                [6.1](book:6.1) [6.2](page:normals#6.2)";
+    // As the page does.
+    uses.anchors.insert("normals".to_owned());
+    converted(&site, text, &mut uses, &mut faults);
+    site.check(&uses, &mut faults);
+    faults.retain(|fault| fault.file == "normals.md");
+    let names = |target: &str| {
+        format!("the link names section 6.1 but leads to {target:?}; write page:CHAPTER#6.1 or book:6.1")
+    };
+    let nothing =
+        "nothing on the page has the anchor #normals-62-simplifying-the-ray-sphere-intersection-code";
+    assert_eq!(
+        faults,
+        [
+            Fault::new("normals.md", 7, names("page:normals")),
+            Fault::new("normals.md", 7, names("book:6")),
+            Fault::new("normals.md", 9, nothing),
+        ]
+    );
+}
+
+#[test]
+fn only_a_formula_alone_has_a_wide_paragraph() {
+    let site = Site::made_up();
+    for (text, is_wide) in
+        [("$$x$$", true), ("$$x\n= y$$", true), ("So $$x$$", false), ("$$x$$ holds", false), ("$x$", false)]
+    {
+        assert_eq!(
+            alone(&site, text).starts_with("<p class=\"wide\"><span class=\"formula\""),
+            is_wide,
+            "{text}"
+        );
+    }
 }
 
 #[test]

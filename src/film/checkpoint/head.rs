@@ -4,9 +4,10 @@ use super::threads::threads;
 use super::{
     Checksum, Description, Film, FilmError, OLDEST_VERSION, PixelSum, SAMPLE_VERSION, SampleRanges, VERSION,
 };
+use crate::threads::shared;
 use serde::{Deserialize, Serialize};
+use std::io;
 use std::ops::Range;
-use std::thread;
 
 /// Rows of a band. Each band has a checksum of its own, so that damage can be located, and what is whole can be added
 /// before the rest is read.
@@ -68,7 +69,10 @@ pub(super) fn band_checksum<'a>(band: u32, halves: impl Iterator<Item = &'a [Pix
 }
 
 /// The checksums of all bands, made by several threads.
-fn band_checksums(film: &Film) -> Vec<String> {
+///
+/// # Errors
+/// If one of the threads has failed.
+fn band_checksums(film: &Film) -> io::Result<Vec<String>> {
     let width = film.width() as usize;
     let checksum = |band: u32| {
         let rows = band_rows(band, film.height());
@@ -77,18 +81,20 @@ fn band_checksums(film: &Film) -> Vec<String> {
     };
     let bands: Vec<u32> = (0..band_count(film.height())).collect();
     let sum = |share: &[u32]| share.iter().map(|band| checksum(*band)).collect::<Vec<_>>();
-    thread::scope(|scope| {
-        let shares = bands.chunks(bands.len().div_ceil(threads()).max(1));
-        let sum = &sum;
-        let workers: Vec<_> = shares.map(|share| scope.spawn(move || sum(share))).collect();
-        // A thread that has failed leaves a head that no reader accepts.
-        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
-    })
+    let shares: Vec<&[u32]> = bands.chunks(bands.len().div_ceil(threads()).max(1)).collect();
+    let mut checksums = Vec::with_capacity(bands.len());
+    for sums in shared(shares, sum) {
+        checksums.extend(sums.map_err(|_| io::Error::other("a thread that makes checksums has failed"))?);
+    }
+    Ok(checksums)
 }
 
 impl Head {
     /// Makes the head of a film with these texts.
-    pub fn of(film: &Film, texts: Texts) -> Self {
+    ///
+    /// # Errors
+    /// If a thread that makes checksums has failed.
+    pub fn of(film: &Film, texts: Texts) -> io::Result<Self> {
         let mut head = Head {
             version: VERSION,
             sample_version: SAMPLE_VERSION,
@@ -99,10 +105,10 @@ impl Head {
             rejected: film.rejected(),
             head_checksum: String::new(),
             checksum: None,
-            bands: band_checksums(film),
+            bands: band_checksums(film)?,
         };
         head.seal(texts);
-        head
+        Ok(head)
     }
 
     /// Sets the checksum of the head.
@@ -158,6 +164,11 @@ impl Head {
         let mut sum = self.sum(texts);
         halves.iter().flatten().for_each(|pixel| sum.words(&pixel.0));
         Some(sum.finish()) == self.checksum
+    }
+
+    /// What tells this film from others: it depends on all texts, numbers and sums.
+    pub fn mark(&self) -> String {
+        format!("{} {}", self.head_checksum, self.checksum.as_deref().unwrap_or_default())
     }
 
     /// The sample ranges that the film holds.

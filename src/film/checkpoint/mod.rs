@@ -32,7 +32,7 @@ pub use read::read;
 pub use write::save;
 pub(crate) use write::write;
 
-use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges};
+use super::{Checksum, Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
 use crate::files::{InputError, ShownPath};
 use crate::memory::MemoryError;
 use std::path::PathBuf;
@@ -86,7 +86,7 @@ pub enum CheckpointError {
     /// The samples of the film are of another version.
     #[error(
         "{} holds samples of version {version}, traced by {writer}, but this program ({}) traces samples of version {SAMPLE_VERSION}, which cannot be added to them; continue with {writer}, or render it again",
-        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), SOFTWARE
     )]
     SampleVersion {
         /// The file.
@@ -99,7 +99,7 @@ pub enum CheckpointError {
     /// The file has a layout that this program does not know.
     #[error(
         "{} is a film file of version {version}, written by {writer}, but this program ({}) reads versions {OLDEST_VERSION} to {VERSION}; continue with {writer}, or render it again",
-        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), SOFTWARE
     )]
     Version {
         /// The file.
@@ -116,6 +116,12 @@ pub enum CheckpointError {
         path: PathBuf,
         /// What is wrong.
         what: String,
+    },
+    /// Another program wrote to the file meanwhile, as a copy in its place does.
+    #[error("{} has changed while it was read; read it again when it is complete", path.shown())]
+    Changed {
+        /// The file.
+        path: PathBuf,
     },
     /// There is not enough memory for the film.
     #[error("cannot read {}: {reason}", path.shown())]
@@ -150,7 +156,7 @@ mod tests {
     /// A film file that is valid except for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
-        let mut head = Head::of(&film, TEXTS);
+        let mut head = Head::of(&film, TEXTS).unwrap();
         change(&mut head);
         head.seal(TEXTS);
         let mut file = Cursor::new(Vec::new());

@@ -40,16 +40,17 @@ pub struct FilmHead {
 /// [`CheckpointError`]; each message says what to do.
 pub fn read_head(path: &Path) -> Result<FilmHead, CheckpointError> {
     let (file, length) = files::open(path)?;
-    head_of(BufReader::new(file), length, path)
+    Ok(head_of(BufReader::new(file), length, path)?.0)
 }
 
-/// The same from a reader of `length` bytes. Messages name `path`.
+/// The same from a reader of `length` bytes, with the film's mark: see [`Head::mark`]. Messages name `path`.
 pub(in crate::film) fn head_of(
     reader: impl Read + Seek,
     length: u64,
     path: &Path,
-) -> Result<FilmHead, CheckpointError> {
-    Ok(Opened::new(reader, length, path)?.about)
+) -> Result<(FilmHead, String), CheckpointError> {
+    let opened = Opened::new(reader, length, path)?;
+    Ok((opened.about, opened.head.mark()))
 }
 
 /// A film file whose head has been read and checked.

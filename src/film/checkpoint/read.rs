@@ -17,7 +17,11 @@ use std::path::Path;
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
 pub fn read(reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
-    let opened = Opened::new(reader, length, path)?;
+    read_opened(Opened::new(reader, length, path)?)
+}
+
+/// The film of an opened file.
+pub(super) fn read_opened(opened: Opened<impl Read + Seek>) -> Result<FilmFile, CheckpointError> {
     let (file, about, texts) = (opened.file, opened.about.clone(), opened.texts.clone());
     let film = Film::try_new(about.width, about.height, about.halves);
     let mut halves = film.map_err(|error| file.no_film(error))?.halves;

@@ -3,8 +3,9 @@
 use super::head::{Head, Texts, comments};
 use super::planes::{self, Plane};
 use super::threads::threads;
-use super::{Description, FILM_ATTRIBUTE, Film, RECIPE_ATTRIBUTE};
+use super::{Description, FILM_ATTRIBUTE, Film, RECIPE_ATTRIBUTE, SOFTWARE};
 use crate::files::{WriteError, replace_file};
+use crate::threads::shared;
 use exr::block::chunk::Chunk;
 use exr::block::writer::ChunksWriter;
 use exr::block::{BlockIndex, UncompressedBlock};
@@ -13,7 +14,6 @@ use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, ChannelDescription, Compression, LineOrder, MetaData, SmallVec, Text};
 use std::io::{self, Seek, Write};
 use std::path::Path;
-use std::thread;
 
 /// Rows that a thread compresses before they are written.
 const ROWS_AT_ONCE: usize = 32;
@@ -37,7 +37,7 @@ pub(crate) fn write(
 ) -> io::Result<()> {
     let comments = comments(description);
     let texts = Texts { recipe: description.recipe().as_bytes(), comments: comments.as_bytes() };
-    write_with(film, texts, &Head::of(film, texts), writer)
+    write_with(film, texts, &Head::of(film, texts)?, writer)
 }
 
 /// Writes a film file with the given head.
@@ -62,8 +62,7 @@ pub(super) fn write_with(
         BlockDescription::ScanLines,
         LineOrder::Increasing,
     );
-    header.own_attributes.software_name =
-        Some(text(concat!("Weekender ", env!("CARGO_PKG_VERSION")).as_bytes()));
+    header.own_attributes.software_name = Some(text(SOFTWARE.as_bytes()));
     header.own_attributes.comments = Some(text(texts.comments));
     let head = toml::to_string(head).map_err(invalid)?;
     // One attribute in each of the two maps, so that the same film always gives the same bytes.
@@ -105,12 +104,9 @@ fn compressed(
         };
         blocks.iter().map(chunk).collect()
     };
-    thread::scope(|scope| {
-        let shares = blocks.chunks(blocks.len().div_ceil(threads).max(1));
-        let workers: Vec<_> = shares.map(|share| scope.spawn(move || compress(share))).collect();
-        let fallen = |_| vec![Err(exr::error::Error::Invalid("a thread has failed".into()))];
-        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_else(fallen)).collect()
-    })
+    let shares: Vec<&[(usize, BlockIndex)]> = blocks.chunks(blocks.len().div_ceil(threads).max(1)).collect();
+    let fallen = |_| vec![Err(exr::error::Error::Invalid("a thread has failed".into()))];
+    shared(shares, compress).into_iter().flat_map(|share| share.unwrap_or_else(fallen)).collect()
 }
 
 fn row_block(

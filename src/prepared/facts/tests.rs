@@ -47,8 +47,12 @@ fn the_first_of_many_copies_stays() {
 }
 
 #[test]
-fn in_a_full_cell_a_sphere_is_compared_with_the_next_larger_one_only() {
-    for (count, layers) in [(2, 1), (63, 63 * 62 / 2), (64, 64 * 63 / 2), (65, 64), (100, 99)] {
+fn in_a_full_cell_a_sphere_is_compared_with_the_four_nearest() {
+    // The two at either end of a crowd have neighbours that are three or four places away.
+    let nearest = |count: u32| 2 * count as usize - 3 + 6;
+    for (count, layers) in
+        [(2_u32, 1), (63, 63 * 62 / 2), (64, 64 * 63 / 2), (65, nearest(65)), (100, nearest(100))]
+    {
         let around = DVec3::splat(0.5);
         let facts = Facts::of(&scene((0..count).map(|i| (around, 1.0 + 1e-5 * f64::from(i)))));
         assert_eq!(facts.layers.len(), layers, "{count}");
@@ -56,6 +60,38 @@ fn in_a_full_cell_a_sphere_is_compared_with_the_next_larger_one_only() {
         assert_eq!(facts.layers.iter().filter(|layer| next(layer)).count(), count as usize - 1, "{count}");
         assert_eq!(facts.covered, [0_u32; 0], "{count}");
     }
+}
+
+/// Coated balls that overlap: all cores come before all coats in the order of their sizes.
+#[test]
+fn each_coat_in_a_crowd_is_found() {
+    let random = |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
+    for count in [20, 40, 500] {
+        for (corner, spread) in [(0.0, 1.0), (0.25, 0.5), (-0.5, 1.0), (0.4, 0.1)] {
+            for coat in [1e-7, 1e-3] {
+                let place = |i: u32| {
+                    DVec3::splat(corner) + spread * DVec3::new(random(i, 0), random(i, 1), random(i, 2))
+                };
+                let balls = (0..2 * count).map(|i| (place(i % count), 1.4 - coat * f64::from(i / count)));
+                let facts = Facts::of(&scene(balls));
+                for i in 0..count {
+                    let is_coat = |layer: &ThinLayer| layer.spheres == [i, i + count];
+                    assert!(facts.layers.iter().any(is_coat), "{i} of {count} at {corner}, {coat}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn copies_hide_no_layer_from_the_next_cell() {
+    // The last sphere is beyond a border of the copies' cell.
+    let radius = 1.0;
+    let copies = (0..100).map(|_| (DVec3::new(0.005, 0.5, 0.5), radius));
+    let inner = [(DVec3::new(0.005, 0.5, 0.5), 0.999), (DVec3::new(-0.001, 0.5, 0.5), radius)];
+    let facts = Facts::of(&scene(copies.chain(inner)));
+    let pairs: Vec<[u32; 2]> = facts.layers.iter().map(|layer| layer.spheres).collect();
+    assert_eq!(pairs, [[0, 100], [0, 101], [100, 101]]);
 }
 
 #[test]

@@ -126,7 +126,11 @@ impl Render {
             }
         }
         if let Some((_, renderer)) = backend {
-            guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel))?;
+            match guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel.preparing)) {
+                // The command to stop comes next.
+                Err(RenderError::Cancelled) if !self.cancel.is_abandoned() => return Ok(()),
+                outcome => outcome?,
+            }
             self.status.backend = Some(renderer.info());
             self.status.say(renderer.take_messages());
             self.status.kernel = renderer.kernel();

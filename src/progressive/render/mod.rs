@@ -3,6 +3,7 @@
 mod backends;
 mod notes;
 
+use super::cancel::Cancel;
 use super::guard::{Backend, guarded};
 use super::pending::Pending;
 use super::shared::{Picture, Shared};
@@ -10,7 +11,6 @@ use super::{EndReason, Factory, PassSizer, Phase, Plan, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
 use crate::render::{RenderError, RenderJob, Renderer, TileOccupancy};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ pub(super) struct Render {
     film: Film,
     /// The samples of the film, and those that the renderer has not added to it yet.
     requested: SampleRanges,
-    cancel: Arc<AtomicBool>,
+    cancel: Arc<Cancel>,
     choice: BackendChoice,
     /// The backends that have failed.
     failed: Vec<BackendChoice>,
@@ -43,7 +43,7 @@ impl Render {
         choice: BackendChoice,
         plan: Plan,
         film: Film,
-        cancel: Arc<AtomicBool>,
+        cancel: Arc<Cancel>,
     ) -> Self {
         let mut render = Render {
             sizer: PassSizer::new(film.halves().len()).begin_with(plan.preview.unwrap_or(1)),
@@ -83,6 +83,11 @@ impl Render {
     /// Makes the next request resolve a picture even if the film has not changed.
     pub fn forget_picture(&mut self) {
         self.pictured_samples = None;
+    }
+
+    /// Lets preparing go on if the render is resumed after the stop that is now obeyed.
+    pub fn stop_is_obeyed(&self) {
+        self.cancel.stop_is_obeyed();
     }
 
     /// Changes when the render ends. A finished render continues if the new plan has work left.
@@ -160,12 +165,17 @@ impl Render {
         &mut self,
         renderer: &mut dyn Renderer,
         is_picture_wanted: bool,
-        begin: Instant,
+        mut begin: Instant,
     ) -> Result<(), RenderError> {
-        if self.plan.stop.noise_reached(self.film.sample_count(), self.status.error) {
+        if self.meets_noise_target() {
             self.collect(renderer)?;
-            self.end(EndReason::NoiseTarget);
-            return Ok(());
+            // The samples that were outstanding can show that the estimate was too low.
+            self.estimate_error();
+            if self.meets_noise_target() {
+                self.end(EndReason::NoiseTarget);
+                return Ok(());
+            }
+            begin = Instant::now();
         }
         let Some(range) = self.next_pass() else {
             self.collect(renderer)?;
@@ -175,7 +185,7 @@ impl Render {
         let added = range.end - range.start;
         let held = self.film.sample_count();
         let outcome = guarded(self.choice.name(), || {
-            renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel)
+            renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel.pass)
         });
         // Measured before the samples are noted, because the history includes the seconds of their tracing.
         let took = begin.elapsed();
@@ -228,7 +238,7 @@ impl Render {
     pub fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);
-        if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.load(Ordering::Relaxed) {
+        if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.is_abandoned() {
             self.pictured_samples = Some(samples);
             let renderer = renderer.filter(|_| *view == View::Occupancy);
             let occupancy = renderer.and_then(Renderer::tile_occupancy);

@@ -1,7 +1,7 @@
 //! What the status says about the film: counts, contributions, the error estimate and its history.
 
 use super::Render;
-use crate::progressive::HistoryPoint;
+use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES};
 use crate::render::{RenderError, Renderer, Stats};
 use std::time::Instant;
 
@@ -53,12 +53,23 @@ impl Render {
         }
     }
 
+    /// Whether the film meets the noise target, by its latest estimate.
+    pub(super) fn meets_noise_target(&self) -> bool {
+        let error = self.status.error.as_ref();
+        self.film.sample_count() >= NOISE_TARGET_FIRST_SAMPLES
+            && self.plan.stop.noise.is_some_and(|target| self.film.meets(target, error, self.brightest()))
+    }
+
+    /// The largest radiance that a sample can have.
+    fn brightest(&self) -> f64 {
+        self.job.rules().brightest(self.job.scene())
+    }
+
     pub(super) fn estimate_error(&mut self) {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
-            let brightest = self.job.rules().brightest(self.job.scene());
-            self.status.doubt = self.film.doubt(self.status.error.as_ref(), brightest);
+            self.status.doubt = self.film.doubt(self.status.error.as_ref(), self.brightest());
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();

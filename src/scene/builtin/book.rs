@@ -4,7 +4,7 @@ use super::random::{Draws, to_four_decimals};
 use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 
-/// With this seed, three of the 22 x 22 small spheres fall where the golden sphere stands and are left out. This leaves
+/// With this seed, three of the 22 x 22 small spheres fall where the metal sphere stands and are left out. This leaves
 /// 485 spheres, the same number as the book's own generator.
 const SEED: u64 = 1;
 
@@ -80,13 +80,13 @@ mod tests {
     }
 
     #[test]
-    fn small_spheres_keep_clear_of_the_golden_one() {
+    fn small_spheres_keep_clear_of_the_metal_one() {
         let scene = book();
-        let golden_foot = DVec3::new(4.0, 0.2, 0.0);
+        let metal_foot = DVec3::new(4.0, 0.2, 0.0);
         let mut cells = HashSet::new();
         for sphere in scene.spheres.iter().filter(|sphere| sphere.radius == 0.2) {
             let center = sphere.center;
-            assert!(center.distance(golden_foot) > 0.9, "{center}");
+            assert!(center.distance(metal_foot) > 0.9, "{center}");
             assert_eq!(center.y, 0.2);
             let [x, z] = [center.x.floor(), center.z.floor()];
             assert!(center.x - x <= 0.9 && center.z - z <= 0.9, "{center}");
@@ -101,7 +101,7 @@ mod tests {
             draws.unit();
             let [across, along] = [draws.unit(), draws.unit()].map(|share| 0.9 * share);
             let center = DVec3::new(f64::from(x) + across, 0.2, f64::from(z) + along);
-            assert!(center.distance(golden_foot) < 0.9 + 1e-4, "{center} was left out");
+            assert!(center.distance(metal_foot) < 0.9 + 1e-4, "{center} was left out");
         }
     }
 }

@@ -80,11 +80,12 @@ fn what_does_not_fit_on_disk_is_said_once_and_comes_when_there_is_room() {
     assert!(last.state().slot(ONE).is_none() && last.state().slot(THREE).is_none());
 }
 
+#[cfg(unix)]
 #[test]
 fn a_place_that_cannot_be_written_is_said_and_the_slots_stay() {
     let state = tempfile::tempdir().unwrap();
     let blocked = state.path().join(format!("window-{}-1.slots", std::process::id()));
-    fs::write(&blocked, "").unwrap();
+    block(&blocked);
     let mut harness = finished(state.path());
     keep_in(&mut harness, ONE);
     let part = "will not come back in the next window: cannot write to";

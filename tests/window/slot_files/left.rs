@@ -70,13 +70,14 @@ fn who_asks_for_another_picture_finds_the_kept_ones_later() {
     assert!(next.state().slot(ONE).is_none());
 }
 
+#[cfg(unix)]
 #[test]
 fn kept_pictures_that_cannot_be_moved_are_offered_where_they_are() {
     let (state, first) = keeping(&[ONE]);
     close(first);
     fs::write(state.path().join("session.json"), "{").unwrap();
     // What cannot be shown stays under the window's first name, and this is in the way under its second one.
-    fs::write(state.path().join(format!("window-{}-2.slots", std::process::id())), "").unwrap();
+    block(&state.path().join(format!("window-{}-2.slots", std::process::id())));
     let mut next = window(state.path(), "");
     let words = next.state().messages();
     assert!(told(&next, "Kept pictures stay where they are: ").is_some(), "{words:?}");

@@ -37,6 +37,12 @@ pub fn window(state: &Path, arguments: &str) -> Harness<'static, Window> {
     limited(state, arguments, None)
 }
 
+/// Puts something in the way that looks like nothing: a link to nowhere.
+#[cfg(unix)]
+pub fn block(path: &Path) {
+    std::os::unix::fs::symlink(path.with_extension("nowhere"), path).unwrap();
+}
+
 /// A window with a finished picture.
 pub fn finished(state: &Path) -> Harness<'static, Window> {
     let mut harness = window(state, PICTURE);

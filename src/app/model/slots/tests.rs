@@ -62,6 +62,38 @@ fn what_is_replaced_or_deleted_comes_back_once() {
 }
 
 #[test]
+fn what_is_brought_back_goes_past_a_slot_that_waits_for_a_picture() {
+    let mut slots = with(&[ONE]);
+    let first = Arc::clone(&slots.get(ONE).unwrap().kept);
+    slots.delete(ONE);
+    slots.expect(ONE, coming("a", [4, 2]));
+    assert_eq!((slots.gone(), slots.place_back()), (Some(ONE), Some(TWO)));
+    slots.bring_back();
+    assert!(Arc::ptr_eq(&first, &slots.get(TWO).unwrap().kept) && slots.get(ONE).is_none());
+    let arrived = slot(film(4, 2, 2)).kept;
+    slots.arrive("a", Some(Arc::clone(&arrived)));
+    assert!(Arc::ptr_eq(&arrived, &slots.get(ONE).unwrap().kept), "both are there");
+    assert!(Arc::ptr_eq(&first, &slots.get(TWO).unwrap().kept) && slots.gone().is_none());
+}
+
+#[test]
+fn what_is_gone_stays_so_while_no_slot_is_free() {
+    let mut slots = with(&SlotNumber::ALL);
+    let first = Arc::clone(&slots.get(ONE).unwrap().kept);
+    slots.delete(ONE);
+    slots.expect(ONE, coming("a", [4, 2]));
+    slots.bring_back();
+    assert_eq!((slots.gone(), slots.place_back()), (Some(ONE), None));
+    assert!(slots.get(ONE).is_none());
+    let arrived = slot(film(4, 2, 2)).kept;
+    slots.arrive("a", Some(Arc::clone(&arrived)));
+    slots.bring_back();
+    assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
+    slots.bring_back();
+    assert!(Arc::ptr_eq(&arrived, &slots.get(ONE).unwrap().kept), "what was in its place comes back, too");
+}
+
+#[test]
 fn what_is_replaced_does_not_come_back_if_there_is_no_room_for_both() {
     let mut slots = with(&[ONE]);
     let (name, id, size) = ("large".to_owned(), "1".to_owned(), [20_000, 10_000]);
@@ -189,4 +221,22 @@ fn looking_again_at_what_is_shown_changes_nothing() {
     // A picture in the slot that is shown is shown, too.
     slots.put(ONE, slot(film(4, 2, 2)));
     assert_eq!((slots.looked(), slots.other()), (Some(ONE), None), "the live picture was before");
+}
+
+#[test]
+fn what_is_gone_can_be_brought_back_as_long_as_there_is_room_for_it() {
+    let three = SlotNumber::ALL[2];
+    let mut slots = with(&[ONE, TWO]);
+    let second = Arc::clone(&slots.get(TWO).unwrap().kept);
+    slots.delete(TWO);
+    // 192 bytes for the picture that is left, and as many for the one that is gone.
+    assert!(slots.make_room(three, 192, 576).is_ok());
+    assert_eq!((slots.bytes(), slots.gone()), (384, Some(TWO)));
+    slots.put(three, slot(film(4, 2, 3)));
+    assert_eq!((slots.bytes(), slots.gone()), (576, Some(TWO)));
+    slots.bring_back();
+    assert!(Arc::ptr_eq(&second, &slots.get(TWO).unwrap().kept));
+    slots.delete(TWO);
+    assert!(slots.make_room(SlotNumber::ALL[3], 192, 767).is_ok());
+    assert_eq!((slots.bytes(), slots.gone()), (384, None), "a byte too much");
 }

@@ -27,9 +27,14 @@ impl Shown {
     }
 }
 
-fn slot(document: &Document, [width, height]: [u32; 2], name: &str) -> Slot {
+fn slot(document: &Document, size: [u32; 2], name: &str) -> Slot {
+    slot_of(document, size, name, 1 << 20)
+}
+
+/// A slot with a picture of one colour, which is brighter with a larger sum.
+fn slot_of(document: &Document, [width, height]: [u32; 2], name: &str, sum: u64) -> Slot {
     let mut film = Film::new(width, height, 2);
-    film.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum([1 << 20; 3]));
+    film.halves_mut().iter_mut().flatten().for_each(|pixel| *pixel = PixelSum([sum; 3]));
     film.record(0..8, 0).unwrap();
     let kept = Kept::new(document.clone(), film, Arc::default(), None);
     Slot { name: name.to_owned(), kept: Arc::new(kept) }
@@ -188,4 +193,37 @@ fn the_slot_that_is_looked_at_returns_to_the_live_picture() {
     harness.get_by_label("Live").click();
     harness.run_steps(2);
     assert_eq!(harness.state().commands, [Command::Slot(SlotCommand::LookLive); 2]);
+}
+
+#[test]
+fn a_thumbnail_is_that_of_the_picture_that_is_in_the_slot_now() {
+    let mut harness = strip();
+    let shown = |harness: &Harness<'_, Shown>| {
+        let (_, texture) = harness.state().strip.textures[ONE.index()].as_ref().unwrap();
+        texture.colour([0, 0]).unwrap()
+    };
+    let of_slot = |harness: &mut Harness<'_, Shown>| {
+        let rgb8 = harness.state_mut().slots().get(ONE).unwrap().kept.thumbnail.rgb8.clone();
+        [rgb8[0], rgb8[1], rgb8[2]]
+    };
+    let document = harness.state().facts.model.document.clone();
+    let mut seen = vec![of_slot(&mut harness)];
+    assert_eq!(shown(&harness), seen[0]);
+    let changes: [fn(&mut Slots, Slot); 3] = [
+        |slots, slot| slots.put(ONE, slot),
+        |slots, slot| {
+            slots.delete(ONE);
+            slots.put(ONE, slot);
+        },
+        |slots, _| slots.bring_back(),
+    ];
+    for (change, shift) in changes.into_iter().zip([24, 22, 0]) {
+        let picture = slot_of(&document, [8, 6], "another", 1 << shift);
+        change(harness.state_mut().slots(), picture);
+        harness.run_steps(2);
+        let expected = of_slot(&mut harness);
+        assert_eq!(shown(&harness), expected);
+        assert_ne!(seen.last(), Some(&expected));
+        seen.push(expected);
+    }
 }

@@ -6,7 +6,7 @@ use crate::app::model::origin::Origin;
 use crate::app::tests::{Case, Drawings, dressed, leave};
 use crate::scene::Material;
 use crate::stages::Stage;
-use eframe::egui::{Event, Modifiers, Sense};
+use eframe::egui::{Event, Modifiers, Sense, Shape};
 use egui_kittest::Harness;
 use glam::DVec3;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn picture(stage: &str, sphere: usize) -> Harness<'static, Picture> {
         let (held, edit) = selection.handle(ui, &response, RECT, selected.as_ref(), document);
         *is_held = held;
         edits.extend(edit);
-        selection.paint(ui, (RECT, RECT), selected.as_ref(), 0);
+        selection.paint(ui, (RECT, RECT), selected.as_ref(), (0, &[]));
         *cursor = ui.ctx().output(|output| output.cursor_icon);
     };
     let picture = Picture {
@@ -67,6 +67,23 @@ fn button(harness: &mut Harness<'_, Picture>, pos: Pos2, pressed: bool, modifier
 /// Where the handle of the selected sphere is on the screen.
 fn handle(harness: &Harness<'_, Picture>) -> Pos2 {
     harness.state().selection.handle_at(RECT).unwrap().0
+}
+
+#[test]
+fn the_name_covers_no_other_words() {
+    let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    let selected = selected(&document, 0);
+    let taken = Rect::from_min_max(RECT.min, pos2(RECT.right(), RECT.center().y));
+    let draw = |ui: &mut Ui, selection: &mut Selection| {
+        selection.draw(&selected, &document);
+        selection.paint(ui, (RECT, RECT), Some(&selected), (0, &[taken]));
+    };
+    let harness = dressed([360.0, 200.0]).build_ui_state(draw, Selection::default());
+    let name = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+        Shape::Text(text) if text.galley.text() == selected.name() => Some(text.pos),
+        _ => None,
+    });
+    assert!(name.unwrap().y > taken.bottom(), "{name:?}");
 }
 
 #[test]

@@ -1,0 +1,45 @@
+//! Recipes that are too long for a picture with 8 bits: a comment with their length and checksum takes their place.
+
+use crate::film::Checksum;
+use std::borrow::Cow;
+
+/// Longest recipe in a PNG or PPM file, bytes. Some 600,000 listed spheres have as many.
+pub const RECIPE_LIMIT: usize = 64 << 20;
+
+/// What the comment begins with; the length follows.
+const BEGIN: &str = "# This picture does not hold its recipe, because that is too long. It has ";
+
+/// The recipe as PNG and PPM files hold it: the text itself, or the comment that takes the place of a text longer than
+/// [`RECIPE_LIMIT`]. Different recipes have different comments.
+pub fn recipe_in_picture(recipe: &str) -> Cow<'_, str> {
+    if recipe.len() <= RECIPE_LIMIT {
+        return Cow::Borrowed(recipe);
+    }
+    let mut sum = Checksum::default();
+    sum.text(recipe.as_bytes());
+    Cow::Owned(format!("{BEGIN}{} bytes, and its checksum is {}.\n", recipe.len(), sum.finish()))
+}
+
+/// The length in bytes of the recipe that this comment takes the place of; `None` for a recipe.
+pub fn length_of_missing(recipe: &str) -> Option<u64> {
+    let (length, _) = recipe.strip_prefix(BEGIN)?.split_once(' ')?;
+    length.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recipe_up_to_the_limit_stays_and_a_longer_one_is_told_from_others() {
+        let longest = "x".repeat(RECIPE_LIMIT);
+        assert!(matches!(recipe_in_picture(&longest), Cow::Borrowed(text) if text == longest));
+        assert_eq!(length_of_missing(&longest), None);
+        let [one, other] = ["y", "z"].map(|end| recipe_in_picture(&(longest.clone() + end)).into_owned());
+        assert_ne!(one, other);
+        for comment in [&one, &other] {
+            assert_eq!(length_of_missing(comment), Some(RECIPE_LIMIT as u64 + 1), "{comment}");
+            assert!(comment.len() < 200 && comment.lines().count() == 1, "{comment}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Tests of the top-down builder, and of what it is for.
+
+use super::*;
+use crate::scene::Sphere;
+
+fn ball(x: f64, radius: f64) -> Sphere {
+    Sphere { center: DVec3::X * x, radius, material: 0 }
+}
+
+fn crowded(spheres: &[Sphere]) -> bool {
+    is_crowded(&Bounded::all(spheres, &DVec3::ZERO))
+}
+
+fn nested(spheres: &[Sphere]) -> bool {
+    let bounded = Bounded::all(spheres, &DVec3::ZERO);
+    has_nested_runs(&bounded, &along_a_curve(&bounded))
+}
+
+/// So many shells around the origin, the largest first.
+fn shells(count: u32) -> impl Iterator<Item = Sphere> {
+    (0..count).map(|index| ball(0.0, 1.0 - 1e-5 * f64::from(index)))
+}
+
+/// So many balls here and there, away from the origin.
+fn strewn(count: u32) -> impl Iterator<Item = Sphere> {
+    (0..count).map(|index| {
+        let [x, y, z, _] = crate::sampling::pcg4d([index, 0, 0, 0]).map(|k| f64::from(k >> 8));
+        Sphere { center: 10.0 + DVec3::new(x, y, z) / 1e4, radius: 0.1, material: 0 }
+    })
+}
+
+/// So many balls beside each other, which are nested in nothing.
+fn row(count: u32) -> impl Iterator<Item = Sphere> {
+    (1..=count).map(|place| ball(3.0 * f64::from(place), 0.1))
+}
+
+#[test]
+fn a_thousand_spheres_in_runs_of_nested_ones_are_a_crowd() {
+    // The first 31 pairs of a run do not count.
+    let spheres = |shell: u32, apart: u32| shells(shell).chain(row(apart)).collect::<Vec<_>>();
+    assert!(nested(&spheres(1056, 1000)) && !nested(&spheres(1055, 1001)));
+    // Few spheres are never a crowd.
+    let of = |shell: u32, apart: u32| crowded(&spheres(shell, apart));
+    assert!(of(2048, 0) && !of(2047, 0) && of(1100, 948) && !of(1100, 947));
+    assert!(!nested(&spheres(0, 3000)));
+    let hollow = |size: u32, count: u32| -> Vec<Sphere> {
+        let of = |place: u32| move |index: u32| ball(3.0 * f64::from(place), 1.0 - 0.01 * f64::from(index));
+        (0..count).flat_map(|place| (0..size).map(of(place))).collect()
+    };
+    assert!(!crowded(&hollow(32, 100)) && !nested(&hollow(32, 100)), "hollow balls");
+    // Each run of 64 pairs counts 33.
+    let apart: Vec<Sphere> = (0..40).map(|place| ball(1e3 + 3.0 * f64::from(place), 0.1)).collect();
+    assert!(nested(&hollow(65, 32)) && !nested(&[hollow(65, 31), apart].concat()));
+}
+
+#[test]
+fn spheres_that_pair_one_by_one_are_a_crowd() {
+    let over_decades = |decades: f64, share: f64, count: u32| -> Vec<Sphere> {
+        let share_of = |index: u32| f64::from(index) / f64::from(count) - 0.5;
+        let along = (0..count).map(|index| 10_f64.powf(decades * share_of(index)));
+        let at = |x: f64| Sphere { center: DVec3::new(x, 0.0, -x), radius: share * x, material: 0 };
+        along.map(at).collect()
+    };
+    for decades in [3.0, 24.0] {
+        for share in [0.3, 1e-4] {
+            assert!(crowded(&over_decades(decades, share, 4096)), "{decades}, {share}");
+        }
+    }
+    assert!(crowded(&row(4096).collect::<Vec<_>>()));
+    // In an order that no longer follows their size.
+    let mut mixed = over_decades(24.0, 0.3, 4096);
+    mixed.sort_by_key(|ball| ball.center.x.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    assert!(crowded(&mixed));
+}
+
+#[test]
+fn spheres_that_pair_at_once_are_no_crowd() {
+    assert!(!crowded(&strewn(20_000).collect::<Vec<_>>()));
+    let lattice = |i: u32| Sphere {
+        center: DVec3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256)),
+        radius: 0.25,
+        material: 0,
+    };
+    assert!(!crowded(&(0..4096).map(lattice).collect::<Vec<_>>()));
+    let box_at = |x: f32| Aabb::new(glam::Vec3A::splat(x), glam::Vec3A::splat(x + 1.0));
+    let united = |from: f32, to: f32| box_at(from).union(&box_at(to));
+    for (places, pairs) in [
+        (&[0.0, 2.0, 5.0, 6.0][..], vec![united(0.0, 2.0), united(5.0, 6.0)]),
+        (&[0.0, 1.0, 3.0, 6.0][..], vec![united(0.0, 1.0), box_at(3.0), box_at(6.0)]),
+        (&[0.0, 3.0, 5.0, 6.0][..], vec![box_at(0.0), box_at(3.0), united(5.0, 6.0)]),
+        (&[0.0, 2.0][..], vec![united(0.0, 2.0)]),
+        (&[1.0][..], vec![box_at(1.0)]),
+    ] {
+        let clusters: Vec<Aabb> = places.iter().map(|x| box_at(*x)).collect();
+        let corners = |all: &[Aabb]| all.iter().map(|aabb| [aabb.min.x, aabb.max.x]).collect::<Vec<_>>();
+        assert_eq!(corners(&paired(&clusters)), corners(&pairs), "{places:?}");
+    }
+}
+
+#[test]
+fn neighbours_in_space_have_neighbouring_codes() {
+    assert_eq!(morton_code([0.0; 3]), 0);
+    assert_eq!(morton_code([1.0; 3]), (1 << 63) - 1);
+    let unit = 1.0 / f64::from((1 << 21) - 1);
+    for (number, code) in [(1, 0b1), (2, 0b1000), (3, 0b1001), (5, 0b100_0001), (1 << 20, 1 << 60)] {
+        // A little more, so that rounding does not take the number below.
+        let x = (f64::from(number) + 0.5) * unit;
+        for axis in 0..3 {
+            let mut place = [0.0; 3];
+            place[axis] = x;
+            assert_eq!(morton_code(place), code << axis, "{number} on axis {axis}");
+        }
+    }
+}
+
+/// The numbers on either side of the best split, in order.
+fn sides(spheres: &[Sphere]) -> Option<[Vec<u32>; 2]> {
+    let mut part: Vec<u32> = (0..spheres.len() as u32).collect();
+    let left = part_where_it_pays(&Bounded::all(spheres, &DVec3::ZERO), &mut part)?;
+    let (a, b) = part.split_at(left);
+    Some([a, b].map(|side| {
+        let mut side = side.to_vec();
+        side.sort_unstable();
+        side
+    }))
+}
+
+#[test]
+fn a_split_pays_most_where_area_times_spheres_is_least() {
+    // One ball in each of the sixteen bins.
+    let even: Vec<Sphere> = (0..16).map(|place| ball(f64::from(place), 0.25)).collect();
+    let all: Vec<u32> = (0..16).collect();
+    assert_eq!(sides(&even), Some([all[..8].to_vec(), all[8..].to_vec()]));
+    let backwards: Vec<Sphere> = even.iter().rev().copied().collect();
+    assert_eq!(sides(&backwards), Some([all[8..].to_vec(), all[..8].to_vec()]));
+    for axis in [DVec3::Y, DVec3::Z] {
+        let turned = even.iter().map(|ball| Sphere { center: ball.center.x * axis, ..*ball });
+        assert_eq!(sides(&turned.collect::<Vec<_>>()), sides(&even), "{axis}");
+    }
+    // Many balls at one end draw the split towards them.
+    let heavy: Vec<Sphere> = even.iter().copied().chain([even[1]; 30]).collect();
+    let [left, _] = sides(&heavy).unwrap();
+    assert_eq!(left, [0, 1].into_iter().chain(16..46).collect::<Vec<u32>>());
+    // Balls around the same place are parted by size, the small ones first.
+    let nested: Vec<Sphere> = (0..6).map(|index| ball(0.0, [8.0, 1.0][index % 2])).collect();
+    assert_eq!(sides(&nested), Some([vec![1, 3, 5], vec![0, 2, 4]]));
+    assert_eq!(sides(&[ball(1.0, 2.0); 5]), None, "copies cannot be parted");
+}
+
+#[test]
+fn a_half_is_taken_along_the_widest_key() {
+    let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
+    let spheres: Vec<Sphere> =
+        (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();
+    let mut part: Vec<u32> = (0..7).collect();
+    let left = part_in_the_middle(&Bounded::all(&spheres, &DVec3::ZERO), &mut part);
+    part[..left].sort_unstable();
+    assert_eq!((left, &part[..left]), (3, &[4, 5, 6][..]));
+    // Of equal keys, the first of the scene come first.
+    let mut part: Vec<u32> = (0..4).rev().collect();
+    let left = part_in_the_middle(&Bounded::all(&[ball(0.0, 1.0); 4], &DVec3::ZERO), &mut part);
+    part[..left].sort_unstable();
+    assert_eq!(part[..left], [0, 1]);
+}
+
+#[test]
+fn a_tree_holds_every_sphere_once_in_leaves_that_are_not_too_full() {
+    let spheres: Vec<Sphere> = row(100).chain(shells(30)).collect();
+    let bounded = Bounded::all(&spheres, &DVec3::ZERO);
+    let trees = [(1, false), (1, true), (4, false), (4, true), (130, false)];
+    for ((leaf_size, halved), cancelled) in trees.into_iter().flat_map(|t| [(t, false), (t, true)]) {
+        let tree = build(&bounded, leaf_size, halved, &AtomicBool::new(cancelled));
+        let mut order = tree.primitive_indices.clone();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..130));
+        let mut places = Vec::new();
+        for node in &tree.nodes {
+            let places_of = node.first_index..node.first_index + node.prim_count;
+            if node.is_leaf() {
+                assert!(node.prim_count as usize <= leaf_size);
+                places.extend(places_of.clone());
+            }
+            for place in places_of {
+                let inner = bounded[tree.primitive_indices[place as usize] as usize].aabb();
+                assert_eq!(node.aabb().union(&inner), *node.aabb(), "a box holds its spheres");
+            }
+        }
+        places.sort_unstable();
+        assert!(places.into_iter().eq(0..130), "leaves of {leaf_size}");
+        assert!(leaf_size < 130 || tree.nodes.len() == 1, "no more nodes than are needed");
+        assert!(leaf_size > 1 || tree.nodes.len() == 2 * 130 - 1, "each node has two children");
+    }
+}

@@ -1,0 +1,85 @@
+//! Work that several threads share. A system may refuse to start a thread, for example in a full control group or at
+//! the limit on a user's processes. The threads that it does start then do all the work.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, Builder};
+
+/// Does `work` with each item, with a thread for each as far as the system starts them; the calling thread is one of
+/// them. Returns the results in the order of the items. A panic is an error of its item alone.
+pub(crate) fn shared<T: Send, R: Send>(
+    items: Vec<T>,
+    work: impl Fn(T) -> R + Sync,
+) -> Vec<thread::Result<R>> {
+    shared_by(items, work, Builder::new)
+}
+
+fn shared_by<T: Send, R: Send>(
+    items: Vec<T>,
+    work: impl Fn(T) -> R + Sync,
+    builder: impl Fn() -> Builder,
+) -> Vec<thread::Result<R>> {
+    let count = items.len();
+    let left = Mutex::new(items.into_iter().enumerate());
+    let work_off = || {
+        let mut done = Vec::new();
+        loop {
+            let next = left.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((index, item)) = next else { return done };
+            done.push((index, catch_unwind(AssertUnwindSafe(|| work(item)))));
+        }
+    };
+    let mut results: Vec<thread::Result<R>> = Vec::with_capacity(count);
+    results.resize_with(count, || Err(Box::new("its thread has failed")));
+    thread::scope(|scope| {
+        let start = |_| builder().spawn_scoped(scope, work_off).ok();
+        let helpers: Vec<_> = (1..count).map_while(start).collect();
+        let mut done = work_off();
+        for helper in helpers {
+            done.extend(helper.join().unwrap_or_default());
+        }
+        for (index, result) in done {
+            results[index] = result;
+        }
+    });
+    results
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread::ThreadId;
+
+    /// Larger than any address space, so no thread starts.
+    const TOO_LARGE: usize = 1 << 50;
+
+    fn threads_of(builder: impl Fn() -> Builder) -> Vec<(u32, ThreadId)> {
+        let done = shared_by((0..9).collect(), |item: u32| (2 * item, thread::current().id()), builder);
+        done.into_iter().map(Result::unwrap).collect()
+    }
+
+    #[test]
+    fn results_come_in_the_order_of_the_items() {
+        let doubled: Vec<u32> = threads_of(Builder::new).into_iter().map(|(result, _)| result).collect();
+        assert_eq!(doubled, [0, 2, 4, 6, 8, 10, 12, 14, 16]);
+        assert!(shared(Vec::<u32>::new(), |item| item).is_empty());
+    }
+
+    #[test]
+    fn work_without_threads_for_it_is_done_by_the_caller() {
+        let own = thread::current().id();
+        let done = threads_of(|| Builder::new().stack_size(TOO_LARGE));
+        assert!(done.iter().enumerate().all(|(index, (result, _))| *result as usize == 2 * index));
+        assert!(done.iter().all(|(_, thread)| *thread == own), "no thread could be started");
+    }
+
+    #[test]
+    fn a_panic_is_an_error_of_its_item_alone() {
+        let done = shared((0..5).collect(), |item: u32| {
+            assert!(item != 2, "a slip");
+            item
+        });
+        let done: Vec<Option<u32>> = done.into_iter().map(Result::ok).collect();
+        assert_eq!(done, [Some(0), Some(1), None, Some(3), Some(4)]);
+    }
+}
