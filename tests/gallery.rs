@@ -198,6 +198,22 @@ fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
 }
 
 #[test]
+fn a_page_of_another_origin_is_not_replaced() {
+    let at = TempDir::new().unwrap();
+    let page = at.path().join("index.html");
+    std::fs::write(&page, "<title>Me</title>").unwrap();
+    for words in ["gallery --quick", "companion --quick", "stress --filter tiny"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+        command.current_dir(at.path()).args(words.split(' ')).args(["--out", "."]);
+        let output = command.output().unwrap();
+        let told = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("there is a page that Weekender did not write; move it away"), "{told}");
+        assert_eq!(std::fs::read_to_string(&page).unwrap(), "<title>Me</title>");
+    }
+}
+
+#[test]
 fn the_page_is_complete_and_needs_no_network() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -27,7 +27,7 @@ pub use section::excerpts_between;
 use crate::cli::CompanionOptions;
 use crate::console;
 use crate::failure::Failure;
-use crate::files::{self, check_writable, write_text};
+use crate::files::{self, check_page, write_text};
 use crate::gallery::{self, Order, Outcome, Quality, StillProgress};
 use crate::interrupt::Interrupt;
 use crate::terminal::print;
@@ -62,7 +62,7 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
         .with_context(|| format!("cannot create the directory {}; choose another with --out", out.display()))
         .map_err(Failure::Input)?;
     let index = out.join("index.html");
-    check_writable(&index).map_err(Failure::input)?;
+    check_page(&index).map_err(Failure::input)?;
     // The page can be read while its figures are rendered.
     write_text(&index, &page.html).map_err(Failure::run)?;
     let order = Order {

@@ -25,6 +25,7 @@ fn remedy(reason: &io::Error) -> &'static str {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "choose a place where you may write, or allow it"
         }
+        ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::IsADirectory => "name a file in that directory",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "free some space, or choose another place; an existing file is left unchanged"

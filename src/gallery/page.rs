@@ -2,6 +2,7 @@
 
 use super::quality::is_about_pixels;
 use super::{Figure, Panel, Stills};
+use crate::files::GENERATOR;
 use crate::stages::{BOOK_URL, Stage};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
@@ -17,6 +18,7 @@ pub fn page(stills: &Stills) -> String {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                (PreEscaped(GENERATOR))
                 title { "Ray Tracing in One Weekend in pictures" }
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";

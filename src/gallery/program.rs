@@ -8,7 +8,7 @@ use crate::cli::GalleryOptions;
 use crate::console;
 use crate::describe::{counted, seconds};
 use crate::failure::Failure;
-use crate::files::{check_writable, write_text};
+use crate::files::{check_page, write_text};
 use crate::interrupt::Interrupt;
 use crate::stages::Stage;
 use crate::suggest::similar_names;
@@ -34,7 +34,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
     };
     let index = options.out.join("index.html");
     if options.out.is_dir() {
-        check_writable(&index).map_err(Failure::input)?;
+        check_page(&index).map_err(Failure::input)?;
     }
     let mut progress = StillProgress::new(options.progress);
     let mut printed = Ok(());

@@ -29,7 +29,7 @@ pub use verdict::Verdict;
 use crate::backends::BackendChoice;
 use crate::cli::{JsonTarget, StressOptions};
 use crate::failure::Failure;
-use crate::files::check_writable;
+use crate::files::{check_page, check_writable};
 use crate::interrupt::Interrupt;
 use crate::render_cpu::CpuOptions;
 use crate::terminal::{self, Display};
@@ -50,6 +50,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     }
     if let Some(directory) = &options.out {
         make(directory).map_err(Failure::Input)?;
+        check_page(&directory.join("index.html")).map_err(Failure::input)?;
     }
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {

@@ -6,7 +6,7 @@ use super::families::build::sized;
 use super::report::{CaseReport, StressReport};
 use super::suite::by_the_book;
 use super::table;
-use crate::files::write_text;
+use crate::files::{GENERATOR, write_text};
 use crate::film::Description;
 use crate::output::write_image;
 use crate::recipe::{Recipe, file, plain_name};
@@ -71,14 +71,14 @@ pub fn write_pages(directory: &Path, report: &StressReport) -> Result<()> {
     write_text(&directory.join("index.html"), &page(directory, report)).context("cannot write the page")
 }
 
-const PAGE_HEAD: &str = "<!doctype html>\n<meta charset=\"utf-8\">\n<title>weekender stress</title>\n<style>\n\
+const PAGE_HEAD: &str = "<title>weekender stress</title>\n<style>\n\
 body { font: 15px sans-serif; margin: 2em; max-width: 72em }\n\
 td { vertical-align: top; padding: .4em .8em .4em 0 }\n\
 img { width: 240px; image-rendering: pixelated; background: #ddd }\n\
 .wrong { color: #b00020; font-weight: bold }\n</style>\n<h1>weekender stress</h1>\n";
 
 fn page(directory: &Path, report: &StressReport) -> String {
-    let mut text = PAGE_HEAD.to_owned();
+    let mut text = format!("<!doctype html>\n<meta charset=\"utf-8\">\n{GENERATOR}\n{PAGE_HEAD}");
     // Writing to a string cannot fail.
     let _ = writeln!(text, "<p>{}</p>", escaped(table::summary(report).trim()));
     let _ = writeln!(text, "<table>\n<tr><th>case</th><th>Weekender</th><th>the book's arithmetic</th></tr>");

@@ -6,6 +6,7 @@ use super::chapter::Chapter;
 use super::faults::{Fault, Faults};
 use super::prose;
 use super::site::{Site, Uses};
+use crate::files::GENERATOR;
 use crate::stages::{BOOK_URL, Stage};
 use crate::web;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -69,6 +70,7 @@ fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                (PreEscaped(GENERATOR))
                 title { (TITLE) }
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="description" content=(ABOUT);
