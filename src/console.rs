@@ -19,6 +19,11 @@ const OWN_SEQUENCES: [&str; 5] = ["\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[1;31m"
 
 /// Prints one or more lines to standard error. Nothing happens if that fails.
 pub fn note(text: &str) {
+    say(&message(text));
+}
+
+/// The lines of a message, as many as may be shown.
+fn message(text: &str) -> String {
     let mut lines = text.trim_end_matches('\n').split('\n');
     let mut said: String = lines.by_ref().take(MESSAGE_LINES).map(|line| presentable(line) + "\n").collect();
     let left = lines.count();
@@ -26,7 +31,7 @@ pub fn note(text: &str) {
         // Writing to a string cannot fail.
         let _ = writeln!(said, "... and {left} more lines");
     }
-    say(&said);
+    said
 }
 
 /// As [`note`], for commands and other texts to copy: nothing is left out of them.
@@ -183,5 +188,14 @@ mod tests {
             painted(text),
             "\x1b[1mscene\x1b[0m    a\\u{1b}[5mb\n\x1b[1;31mx\x1b[0m\\u{1b}]0;title\\u{7}"
         );
+    }
+
+    #[test]
+    fn a_message_of_many_lines_says_how_many_are_left_out() {
+        let lines = |count: usize| (0..count).map(|number| format!("line {number}\n")).collect::<String>();
+        assert_eq!(message(&lines(60)), lines(60));
+        assert_eq!(message(&lines(62)), lines(60) + "... and 2 more lines\n");
+        assert_eq!(message("one"), "one\n");
+        assert_eq!(message("a\r\nb\x1b\n\n"), "a\nb\\u{1b}\n");
     }
 }

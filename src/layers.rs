@@ -189,6 +189,17 @@ mod tests {
     }
 
     #[test]
+    fn a_layer_records_only_the_rays_that_it_needs() {
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        let mut depths = |max_depth| {
+            recipe.settings.max_depth = max_depth;
+            let job = recipe.job().unwrap();
+            Layer::ALL.map(|layer| layer.job(&job).unwrap().settings().max_depth)
+        };
+        assert_eq!([1, 2, 50].map(&mut depths), [[1, 1, 1], [1, 2, 2], [1, 2, 50]]);
+    }
+
+    #[test]
     fn where_nothing_is_hit_a_layer_shows_the_sky() {
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
         let sky = Sky { bottom: DVec3::X, top: DVec3::Y };

@@ -190,6 +190,9 @@ mod tests {
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
         assert_eq!(message, "a film needs 14.1 GB of memory, but only 8.0 GB is free; do less");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
+        let rest = (9 << 30) - BASE_BYTES;
+        assert_eq!(check(rest, 9 << 30), Ok(()));
+        assert!(check(rest + 1, 9 << 30).is_err(), "the program needs the rest");
     }
 
     #[test]
@@ -226,5 +229,7 @@ mod tests {
         assert_eq!(file_cache("anon 5\ninactive_file 10\nactive_file 20\n"), 30);
         assert_eq!(file_cache("active_file 1\ntotal_inactive_file 7\ntotal_active_file 2\n"), 9);
         assert_eq!([words(999), words(2_500_000), words(3_000_000_000)], ["999 bytes", "2.5 MB", "3.0 GB"]);
+        let at_limits = [999_999, 1_000_000, 999_999_999, 1_000_000_000].map(words);
+        assert_eq!(at_limits, ["999999 bytes", "1.0 MB", "1000.0 MB", "1.0 GB"]);
     }
 }

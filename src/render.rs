@@ -375,16 +375,4 @@ pub trait Renderer: Send {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn statistics_add_up() {
-        let trace = Duration::from_secs(7);
-        let stats = Stats { paths: 1, rays: 2, rejected: 3, busy_lanes: 4, offered_lanes: 5, trace };
-        let mut sum = stats;
-        sum.add(&stats);
-        let trace = 2 * trace;
-        assert_eq!(sum, Stats { paths: 2, rays: 4, rejected: 6, busy_lanes: 8, offered_lanes: 10, trace });
-    }
-}
+mod tests;

@@ -43,4 +43,23 @@ mod tests {
         assert_eq!(similar_names("SKY", names), ["sky"]);
         assert!(similar_names("xylophone", names).is_empty());
     }
+
+    #[test]
+    fn few_names_are_offered_and_the_likeliest_first() {
+        let near = |wanted: &str, names: &[&'static str]| similar_names(wanted, names.iter().copied());
+        // Of six letters, three may be wrong.
+        assert_eq!(near("abcdef", &["abwxyz", "abcxyz", "abcdxf"]), ["abcdxf", "abcxyz"]);
+        // A part of the other counts, however long that is, but not if it is hardly a word.
+        assert_eq!(near("abc", &["a song of abc", "abcd"]), ["abcd", "a song of abc"]);
+        assert_eq!(near("abcdefghijkl", &["kl", "mn"]), ["kl"]);
+        assert_eq!(near("ab", &["a song of ab"]), [""; 0]);
+        let many = ["metal6", "metal5", "metal4", "metal3", "metal2"];
+        assert_eq!(near("metal", &many), ["metal2", "metal3", "metal4", "metal5"]);
+    }
+
+    #[test]
+    fn a_message_names_what_is_near() {
+        assert_eq!(or_nearest(&["a", "b"]), "did you mean a or b? --list shows all");
+        assert_eq!(or_nearest(&[]), "--list shows all");
+    }
 }

@@ -84,6 +84,17 @@ fn a_log_file_has_passes_and_checkpoints_and_replaces_no_picture() {
 }
 
 #[test]
+fn a_filter_that_is_wrong_empties_no_log() {
+    let directory = tempfile::tempdir().unwrap();
+    let log = directory.path().join("run.log");
+    fs::write(&log, "an older log").unwrap();
+    let mut command = program(directory.path(), &["--list", "--log", "run.log"]);
+    let output = command.env("RUST_LOG", "weekender=loud").output().unwrap();
+    assert!(output.status.code() == Some(2) && said(&output)[1].contains("weekender=loud"), "{output:?}");
+    assert_eq!(fs::read_to_string(&log).unwrap(), "an older log");
+}
+
+#[test]
 fn every_subcommand_can_write_a_log() {
     let directory = tempfile::tempdir().unwrap();
     let flags = ["stress", "--filter", "no-such-scene", "--log", "run.log"];

@@ -13,8 +13,8 @@ use weekender::describe::seconds;
 use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
 use weekender::output::{
-    Description, OutputError, OutputFormat, RECIPE_LIMIT, key, read_description, recipe_in_picture,
-    write_image,
+    Description, OutputError, OutputFormat, RECIPE_LIMIT, check_frame, key, read_description,
+    recipe_in_picture, write_image,
 };
 use weekender::stages::Transfer;
 
@@ -268,4 +268,28 @@ mod unix {
             assert!(message.contains("full") && message.contains("free some space"), "{message}");
         }
     }
+}
+
+#[test]
+fn a_frame_is_a_whole_rgb_picture_of_its_size() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let told = |name: &str, size| check_frame(&at(name), size).unwrap_err().to_string();
+    write_image(&at("a.png"), &film(), Transfer::Gamma2, &description()).unwrap();
+    check_frame(&at("a.png"), [13, 7]).unwrap();
+    for [width, height] in [[7, 13], [12, 7], [13, 8]] {
+        let words = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
+        let told = told("a.png", [width, height]);
+        assert!(told.contains("a.png") && told.contains(&words), "{told}");
+    }
+    image::GrayImage::new(13, 7).save(at("grey.png")).unwrap();
+    image::RgbaImage::new(13, 7).save(at("rgba.png")).unwrap();
+    image::ImageBuffer::from_pixel(13, 7, image::Rgb([9_u16; 3])).save(at("deep.png")).unwrap();
+    for name in ["grey.png", "rgba.png", "deep.png"] {
+        assert!(told(name, [13, 7]).contains("not an 8-bit RGB picture of 13x7 pixels"), "{name}");
+    }
+    let whole = fs::read(at("a.png")).unwrap();
+    fs::write(at("short.png"), &whole[..whole.len() - 20]).unwrap();
+    assert!(told("short.png", [13, 7]).contains("short.png"));
+    assert!(told("missing.png", [13, 7]).contains("missing.png"));
 }

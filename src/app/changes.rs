@@ -132,6 +132,7 @@ fn restore(document: &mut Document, state: &Document) {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]
     fn a_move_with_long_frames_is_one_step() {
@@ -254,5 +255,48 @@ mod tests {
         let other = Document::new(Origin::usual());
         restore(&mut document, &other);
         assert_eq!(document.size(), other.size(), "so does that of another picture");
+    }
+
+    /// Presses or releases the button of the pointer.
+    fn press(context: &Context, pressed: bool) {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let event = Event::PointerButton { pos: Pos2::ZERO, button, pressed, modifiers };
+        let input = RawInput { events: vec![event], ..RawInput::default() };
+        let _ = context.run_ui(input, |_| {});
+    }
+
+    #[test]
+    fn what_is_changed_while_the_button_is_held_is_one_step() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        press(&context, true);
+        for seconds in [7.0, 8.0] {
+            document.stop.seconds = Some(seconds);
+            assert!(!changes.follow(&context, &document, false));
+            assert!(changes.moved.is_none(), "the film goes on, so nothing is previewed");
+        }
+        press(&context, false);
+        changes.follow(&context, &document, false);
+        document.stop.seconds = Some(9.0);
+        changes.follow(&context, &document, false);
+        for expected in [Some(8.0), None] {
+            changes.undo(&mut document);
+            changes.follow(&context, &document, false);
+            assert_eq!(document.stop.seconds, expected);
+        }
+        assert!(!changes.can_undo(&document));
+    }
+
+    #[test]
+    fn another_film_is_previewed_while_the_button_is_held() {
+        for is_held in [true, false] {
+            let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+            let mut changes = Changes::new(document.clone());
+            press(&context, is_held);
+            assert!(!changes.follow(&context, &document, false) && changes.moved.is_none());
+            change(&mut document);
+            assert!(changes.follow(&context, &document, false));
+            assert_eq!(changes.moved.is_some(), is_held);
+        }
     }
 }

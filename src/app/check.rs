@@ -255,4 +255,41 @@ mod tests {
         check.begin(&context, Path::new("/of/nothing.ppm"), None);
         assert_eq!((check.number, check.waiting.as_deref()), (3, Some(Path::new("/of/nothing.ppm"))));
     }
+
+    #[test]
+    fn a_file_that_is_no_picture_is_told_and_ends_the_wait() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("notes.txt");
+        std::fs::write(&path, "no picture").unwrap();
+        let (context, mut check) = (egui::Context::default(), Check::default());
+        check.begin(&context, &path, None);
+        assert!(check.is_open() && check.words().is_none());
+        let answer = check.answers.wait().unwrap();
+        check.answers.answer(&context).give(answer);
+        let told = check.follow().unwrap().unwrap_err();
+        assert_eq!(told, unreadable(&path, String::new()));
+        assert!(!check.is_open());
+    }
+
+    #[test]
+    fn a_finding_is_about_the_picture_that_was_checked() {
+        // The tiny picture of the book, as the first lines of its program print it.
+        let [width, height] = [16_u32, 9];
+        let share = |at: u32, count: u32| (255.999 * f64::from(at) / f64::from(count - 1)) as u8;
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+        let rgb8: Vec<u8> = pixels.flat_map(|[x, y]| [share(x, width), share(y, height), 0]).collect();
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("mine.ppm");
+        std::fs::write(&path, [b"P6\n16 9\n255\n".as_slice(), &rgb8].concat()).unwrap();
+        let (context, mut check) = (egui::Context::default(), Check::default());
+        check.begin(&context, &path, Some(Stage::find("ppm-tiny").unwrap()));
+        let answer = check.answers.wait().unwrap();
+        let found = answer.outcome.as_ref().unwrap();
+        assert_eq!((found.size, answer.number, &answer.path), ([16, 9], 1, &path));
+        assert!(found.views[0] == rgb8, "the first picture is the reader's");
+        assert!(found.views.iter().all(|view| view.len() == rgb8.len()));
+        check.answers.answer(&context).give(answer);
+        assert_eq!(check.follow(), Some(Ok(path)));
+        assert!(check.words().is_some_and(|words| words.contains("mine.ppm")), "{:?}", check.words());
+    }
 }

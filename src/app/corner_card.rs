@@ -90,4 +90,27 @@ mod tests {
         harness.state_mut().height = 600.0;
         assert_eq!(edges(&mut harness), [high, card], "it is as high as before");
     }
+
+    #[test]
+    fn a_card_has_a_place_as_long_as_it_is_shown() {
+        let over = Rect::from_min_size(egui::pos2(10.0, 10.0), vec2(400.0, 300.0));
+        // Whether it is shown, and its place.
+        let draw = |ui: &mut Ui, (is_shown, place): &mut (bool, Option<Rect>)| {
+            if *is_shown {
+                corner_card(ui, over, Place::FirstSteps, "Card", |ui| _ = ui.label("one line"));
+            }
+            *place = shown_card(ui.ctx());
+        };
+        let mut harness: Harness<'_, (bool, Option<Rect>)> =
+            dressed([420.0, 340.0]).build_ui_state(draw, (true, None));
+        harness.run_steps(4);
+        let (_, place) = *harness.state();
+        let place = place.unwrap();
+        let corner = over.right_top() + vec2(-MARGIN, MARGIN);
+        assert!(place.right_top().distance(corner) < 1.0 && place.width() <= WIDTH + 1.0, "{place}");
+        assert!(place.contains_rect(harness.get_by_label("one line").rect()), "{place}");
+        harness.state_mut().0 = false;
+        harness.run_steps(1);
+        assert_eq!(harness.state().1, None);
+    }
 }

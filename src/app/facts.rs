@@ -9,7 +9,7 @@ use super::model::origin::Source;
 use super::model::show::Show;
 use super::model::slots::SlotNumber;
 use super::model::view::Mode;
-use crate::progressive::{Phase, Status};
+use crate::progressive::Status;
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -66,7 +66,7 @@ impl Facts {
 
     /// Whether samples are being added.
     pub fn is_working(&self) -> bool {
-        matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
+        self.status.phase.is_working()
     }
 
     /// Why the document's camera has no effect, if so.

@@ -231,6 +231,8 @@ mod tests {
             let screen = OnScreen::of(document, film.clone());
             let subject = screen.subject();
             let description = describer(&subject)(&film);
+            let recipe = file::parse(description.recipe(), "told").unwrap();
+            assert_eq!(recipe.samples_per_pixel, 1, "as many as the film has");
             description.get(key::STAGE).map(str::to_owned)
         };
         assert_eq!(told(document()).as_deref(), Some("metal"));
@@ -267,5 +269,46 @@ mod tests {
         assert_eq!(save([2, 0]), Ok(path.clone()));
         let read = image::open(&path).unwrap();
         assert_eq!([read.width(), read.height()], [2, 2]);
+    }
+
+    #[test]
+    fn a_film_without_samples_is_not_saved() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, path) = (Files::default(), directory.path().join("a.png"));
+        let (screen, context) = (OnScreen::new(Film::new(4, 2, 1)), Context::default());
+        let named = (OutputFormat::Png, path.clone());
+        screen.before_answers(|subject| files.save(&context, subject, named));
+        let reason = "nothing has been traced yet; try again in a moment";
+        assert_eq!(files.saved.take(), Some(Err(reason.to_owned())));
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn a_scene_is_in_its_file_once_that_is_written() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, context) = (Files::default(), Context::default());
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        for (name, is_written) in [("none/a.toml", false), ("a.toml", true)] {
+            let path = directory.path().join(name);
+            files.save_scene(&context, path.clone(), &document);
+            assert_eq!(files.saved.wait().unwrap().is_ok(), is_written, "{name}");
+            assert_eq!(document.checked.file(), is_written.then_some(path));
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, context) = (Files::default(), Context::default());
+        let white = image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3]));
+        white.save(directory.path().join("a.png")).unwrap();
+        std::fs::write(directory.path().join("a.toml"), "[camera").unwrap();
+        for (name, is_picture) in [("a.png", true), ("a.toml", false), ("none.toml", false)] {
+            let path = directory.path().join(name);
+            files.open(&context, path.clone());
+            let Some(Err(found)) = files.opened.wait() else { panic!("{name} was opened") };
+            assert_eq!((found.path, found.is_picture), (path, is_picture), "{name}");
+            assert!(found.reason.contains(name), "{}", found.reason);
+        }
     }
 }

@@ -223,4 +223,64 @@ mod tests {
         assert_eq!(frame, 30);
         assert!(reason.contains("look_from and look_at are both"), "{reason}");
     }
+
+    #[test]
+    fn half_way_the_eye_is_half_way_around() {
+        // Distance, degrees around and degrees up, seen from what is looked at.
+        let eye = |distance: f64, around: f64, up: f64| {
+            let ((sine, cosine), (rise, level)) = (around.to_radians().sin_cos(), up.to_radians().sin_cos());
+            distance * DVec3::new(level * sine, rise, level * cosine)
+        };
+        for (from, to, middle) in [
+            // The distance grows by a factor of two on each half of the way.
+            (eye(4.0, 0.0, 0.0), eye(16.0, 90.0, 60.0), eye(8.0, 45.0, 30.0)),
+            (eye(5.0, 150.0, -20.0), eye(5.0, 210.0, 40.0), eye(5.0, 180.0, 10.0)),
+        ] {
+            let [from, to] = [from, to].map(|look_from| Camera { look_from, look_at: DVec3::ZERO, ..CAMERA });
+            let mut flight = Flight::between(&from, &to, 2.0);
+            assert!(!flight.go_on(2.0 + 0.5 * SECONDS));
+            let found = *flight.camera();
+            assert!(found.look_from.distance(middle) < 1e-6, "{}, not {middle}", found.look_from);
+            assert_eq!((found.look_at, found.vup), (DVec3::ZERO, CAMERA.vup));
+        }
+    }
+
+    #[test]
+    fn a_flight_to_a_camera_begins_and_ends_slowly() {
+        let [from, to] = [4.0, 16.0].map(|distance| Camera {
+            look_from: DVec3::Z * distance,
+            look_at: DVec3::ZERO,
+            ..CAMERA
+        });
+        let mut flight = Flight::between(&from, &to, 0.0);
+        // After a quarter of the time, a sixteenth of the way: the distance is 4^(1/16) times as long.
+        for (share, expected) in [(0.25, 4.0 * 1.0905), (0.75, 16.0 / 1.0905)] {
+            assert!(!flight.go_on(share * SECONDS));
+            let distance = flight.camera().look_from.length();
+            assert!((distance / expected - 1.0).abs() < 0.01, "{distance}, not {expected}");
+        }
+        assert!(flight.go_on(SECONDS));
+        assert_eq!(*flight.camera(), to);
+    }
+
+    #[test]
+    fn a_flight_leaves_out_cameras_that_are_not_valid() {
+        let opposite = Camera { look_from: CAMERA.look_at * 2.0 - CAMERA.look_from, ..CAMERA };
+        let keyframes = [(0, CAMERA), (60, opposite)].map(|(frame, camera)| Keyframe { frame, camera });
+        let mut flight = Flight::along(&keyframes, &CAMERA, 3.0);
+        // In the middle, the eye is at what it looks at.
+        assert!(!flight.go_on(4.0));
+        assert_eq!(*flight.camera(), CAMERA);
+        assert!(flight.go_on(5.0));
+        assert_eq!(*flight.camera(), opposite);
+    }
+
+    #[test]
+    fn a_flight_along_one_bookmark_is_over_at_once() {
+        let other = Camera { vfov_degrees: 33.0, ..CAMERA };
+        let keyframes = keyframes(&[Bookmark::new("a".to_owned(), &other)]);
+        let mut flight = Flight::along(&keyframes, &CAMERA, 3.0);
+        assert!(flight.go_on(3.0));
+        assert_eq!((*flight.camera(), first_fault(&keyframes), first_fault(&[])), (other, None, None));
+    }
 }

@@ -197,10 +197,12 @@ fn compare_ui(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::animation::Keyframe;
     use crate::app::model::checked::CheckedScene;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::origin::{Origin, Source};
     use crate::app::model::view::{Mode, ViewState};
     use crate::app::tests::{Case, Drawings, dressed, facts_of, leave};
+    use crate::recipe::Recipe;
     use crate::stress::shown_cases;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -360,5 +362,22 @@ mod tests {
         document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
         harness.run_steps(3);
         assert_ne!(told(&harness), before);
+    }
+
+    #[test]
+    fn a_scene_with_keyframes_tells_how_its_animation_is_made() {
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        let source = Source::File("/of/mine.toml".into());
+        let mut harness = panel("--stage sky --size 32x18");
+        for (frames, is_told) in [(Vec::new(), false), (vec![0, 20], true)] {
+            recipe.keyframes =
+                frames.iter().map(|frame| Keyframe { frame: *frame, camera: recipe.camera }).collect();
+            let document = Document::new(Origin::new(recipe.clone(), source.clone()));
+            harness.state_mut().facts.model.document = document;
+            harness.run_steps(3);
+            for words in ["Animation", "21 frames along", "--frames=0..21"] {
+                assert_eq!(harness.query_by_label_contains(words).is_some(), is_told, "{words}");
+            }
+        }
     }
 }

@@ -373,4 +373,7 @@ impl Window {
 }
 
 #[cfg(test)]
+#[path = "perform/saving/tests.rs"]
+mod saving_tests;
+#[cfg(test)]
 mod tests;

@@ -114,10 +114,14 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::checked::CheckedScene;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
     use crate::app::tests::{until, window};
     use crate::recipe::file;
     use crate::stages::Stage;
     use std::path::PathBuf;
+    use std::time::{Duration, Instant};
 
     const SPHERE: &str = "radius = 0.5";
 
@@ -220,5 +224,67 @@ mod tests {
             window.messages(),
             ["Reload the scene file: this picture is not from a scene file; open one first"]
         );
+    }
+
+    /// What the scene file of the window's picture holds now.
+    fn read_again(window: &Window, context: &Context) -> Reread {
+        let begin = Instant::now();
+        window.scene_file.reload(context, &window.document().origin);
+        loop {
+            if let Some(outcome) = window.scene_file.reread() {
+                return outcome.unwrap();
+            }
+            assert!(begin.elapsed() < Duration::from_secs(60), "no answer");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn a_file_that_was_read_again_is_shown_if_its_picture_still_is() {
+        let (directory, context) = (tempfile::tempdir().unwrap(), Context::default());
+        let (path, mut window) = shown(directory.path(), &context);
+        change(&path, SPHERE, "radius = 0.0625");
+        let reread = read_again(&window, &context);
+        let of_file = window.document().clone();
+        let other = Document::new(Origin::of_stage(Stage::find("sky").unwrap()));
+        window.show_document(other.clone());
+        window.take_reread(&reread);
+        assert!(*window.document() == other && !has_told("Reloaded")(&window));
+        // The spheres were changed in the window, too.
+        let checked = CheckedScene::new(Arc::clone(of_file.checked.scene()), *of_file.rules());
+        window.show_document(Document { checked: Arc::new(checked), ..of_file });
+        window.take_reread(&reread);
+        let told = format!("Reloaded {}; Undo brings the spheres back", path.display());
+        assert_eq!(window.messages().pop(), Some(told));
+        assert!(window.document().origin.is_in_file() && !window.document().has_changed_scene());
+    }
+
+    #[test]
+    fn an_offer_to_reload_ends_with_its_picture() {
+        let mut window = window("weekender --stage metal --size 16x9 --device cpu");
+        window.toasts.offer("It was changed", Command::Reload);
+        window.follow_scene_file(&Context::default());
+        assert!(window.messages().is_empty(), "a stage has no file");
+    }
+
+    #[test]
+    fn a_scene_that_is_in_no_file_is_to_be_saved_for_its_command() {
+        let directory = tempfile::tempdir().unwrap();
+        let (path, context) = (directory.path().join("mine.toml"), Context::default());
+        let mut window = window("weekender --stage metal --size 16x9 --device cpu");
+        let stage = window.document().clone();
+        let embedded = Document::new(Origin::new(stage.origin.recipe.clone(), Source::Embedded));
+        let changed = Document { checked: Arc::clone(&embedded.checked), ..stage.clone() };
+        assert!(changed.has_changed_scene() && !embedded.has_changed_scene());
+        let usual = "Copied: the command line that renders this picture";
+        let fault = "Copied; the scene has no file yet: save the scene file, which the command reads";
+        let mut told_of = |document: &Document| {
+            window.model.document = document.clone();
+            copied(&mut window, &context).1
+        };
+        assert_eq!([&stage, &embedded, &changed].map(&mut told_of), [usual, fault, fault]);
+        std::fs::write(&path, "").unwrap();
+        changed.checked.note_file(&path);
+        assert_eq!(told_of(&changed), usual);
     }
 }

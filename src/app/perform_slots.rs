@@ -332,4 +332,43 @@ mod tests {
         assert!(second.contains("), in place of 11.4 ") && second.ends_with(", 5 samples"), "{second}");
         assert_eq!(window.slot(number).map(|(_, samples)| samples), Some(6));
     }
+
+    #[test]
+    fn what_failed_is_told_in_words() {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
+        let context = egui::Context::default();
+        window.slot_actions.copied.answer(&context).give(Err("there is no room".to_owned()));
+        window.slot_actions.reopened.answer(&context).give(Err("it is too large".to_owned()));
+        window.receive_for_slots();
+        assert_eq!(window.messages(), ["Not kept: there is no room", "Not opened: it is too large"]);
+    }
+
+    #[test]
+    fn a_picture_without_samples_is_kept_once_it_has_some() {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let (context, one) = (egui::Context::default(), SlotNumber::ALL[0]);
+        window.perform_on_slots(&context, SlotCommand::KeepIn(one));
+        window.keep_wanted(&context);
+        assert!(window.slot_actions.is_wanted(one) && !window.slot_actions.is_copying());
+        until(&mut window, &context, "the slot", |window| window.slot(one).is_some());
+    }
+
+    #[test]
+    fn going_on_from_a_slot_ends_a_comparison_and_is_told() {
+        let mut window = finished(&egui::Context::default());
+        let [one, two, ..] = SlotNumber::ALL;
+        for number in [one, two] {
+            let kept = Kept::new(window.document().clone(), film(5), Arc::default(), None);
+            window.model.view.slots.put(number, Slot { name: String::new(), kept: Arc::new(kept) });
+        }
+        window.model.view.look(Some(one));
+        window.model.view.toggle(Mode::Wipe, With::Slot(two));
+        assert!(window.is_comparing() && window.looked() == Some(one));
+        let document = window.document().clone();
+        window.go_on_from(Reopened { document, film: film(5), seconds: None });
+        assert!(!window.is_comparing() && window.looked().is_none());
+        let told = "Going on from 11.4 Windows at a slant with 5 samples per pixel; Undo returns";
+        assert_eq!(window.messages().pop().as_deref(), Some(told));
+        assert_eq!(window.seconds_before, None, "nobody knows how long they took");
+    }
 }

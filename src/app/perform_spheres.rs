@@ -78,3 +78,79 @@ impl Window {
             .flatten();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::checked::CheckedScene;
+    use crate::app::model::document::Document;
+    use crate::app::model::edit::Body;
+    use crate::app::model::origin::Origin;
+    use crate::app::tests::window;
+    use crate::scene::Scene;
+    use crate::stages::Stage;
+
+    fn glass() -> Window {
+        window("weekender --stage glass-schlick --size 16x9 --device cpu")
+    }
+
+    /// The document with another scene.
+    fn with_scene(document: &Document, change: impl FnOnce(&mut Scene)) -> Document {
+        let mut scene = document.scene().clone();
+        change(&mut scene);
+        let checked = CheckedScene::new(Arc::new(scene), *document.rules());
+        Document { checked: Arc::new(checked), ..document.clone() }
+    }
+
+    #[test]
+    fn what_was_changed_or_came_back_is_selected() {
+        let mut window = glass();
+        let usual = window.document().clone();
+        let count = usual.scene().spheres.len();
+        let moved = with_scene(&usual, |scene| scene.spheres[2].center.x += 1.0);
+        let more = with_scene(&usual, |scene| scene.spheres.push(scene.spheres[0]));
+        let fewer = with_scene(&usual, |scene| _ = scene.spheres.remove(1));
+        // It has more spheres, but they are others.
+        let other = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
+        assert!(other.scene().spheres.len() > count);
+        for (name, from, to, selected) in [
+            ("a sphere is moved", &usual, &moved, Some(2)),
+            ("and moved back", &moved, &usual, Some(2)),
+            ("one is added", &usual, &more, Some(count)),
+            ("and deleted", &more, &usual, None),
+            ("one comes back", &fewer, &usual, Some(1)),
+            ("and goes", &usual, &fewer, None),
+            ("another picture", &usual, &other, None),
+            ("the same scene", &usual, &usual, Some(3)),
+        ] {
+            (window.model.document, window.model.selected) = (from.clone(), Some(3));
+            window.keep_selection_after(|window| window.model.document = to.clone());
+            assert_eq!(window.selected(), selected, "{name}");
+        }
+    }
+
+    #[test]
+    fn only_of_a_pinhole_it_is_told_that_all_is_sharp() {
+        for (angle, told) in [(0.0, 1), (1.0, 0)] {
+            let mut window = glass();
+            window.model.selected = Some(1);
+            window.model.document.camera.defocus_angle_degrees = angle;
+            window.perform_on_spheres(Command::FocusSphere);
+            assert_eq!(window.messages().len(), told, "{angle}");
+            assert!(window.document().camera.focus_distance.is_some());
+        }
+    }
+
+    #[test]
+    fn an_edit_is_a_first_step_unless_it_is_refused() {
+        for (radius, is_possible) in [(0.25, true), (f64::NAN, false)] {
+            let mut window = glass();
+            window.model.has_first_steps = true;
+            let body = Body::of(window.document().scene(), 1).unwrap();
+            window.edit(Edit::Change(1, Body { radius, ..body }));
+            assert_eq!(window.document().has_changed_scene(), is_possible, "{radius}");
+            assert_eq!(window.model.remembered.first_steps.has(Step::Change), is_possible);
+            assert_eq!(window.messages().is_empty(), is_possible, "{:?}", window.messages());
+        }
+    }
+}

@@ -204,9 +204,12 @@ mod tests {
         let told = window.messages();
         let reason = "Not resumed: the picture was changed before /of/mine.exr had been read";
         assert!(told[0].starts_with(reason) && window.pending_film.is_none(), "{told:?}");
+        assert!(window.model.remembered.recent.is_empty());
         let mine = window.document().clone();
         window.go_on(resumed(&mine));
         assert!(window.pending_film.is_some());
+        assert_eq!(window.messages().pop().as_deref(), Some("Continuing /of/mine.exr"));
+        assert_eq!(window.model.remembered.recent, [PathBuf::from("/of/mine.exr")]);
     }
 
     #[test]
@@ -278,6 +281,7 @@ mod tests {
             let reference = ReferenceMeans { width, height, means, identity: None };
             window.take_reference(PathBuf::from("/of/a.exr"), reference);
             assert!(window.model.view.reference.is_some());
+            assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
             let commands = if is_shown { vec![Command::Show(Show::Difference)] } else { vec![] };
             assert_eq!(window.commands, commands, "{size:?}");
             let told = window.messages();
@@ -321,6 +325,7 @@ mod tests {
             assert_eq!(document.stop.samples, samples);
             assert_eq!(document.origin.source == Source::File(path.clone()), is_scene);
             assert_eq!(window.model.remembered.recent, [path]);
+            assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
             assert_eq!(window.messages(), ["Opened /of/mine.toml"]);
         }
     }

@@ -104,13 +104,17 @@ mod tests {
         let kept = Kept::new(window.document().clone(), film, Default::default(), None);
         let (number, id) = (SlotNumber::ALL[4], kept.id.clone());
         window.model.view.slots.put(number, Slot { name: "my picture".to_owned(), kept: kept.into() });
+        (window.model.view.tone.exposure, window.model.is_paused) = (1.5, true);
         panic_with(window);
 
         let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
         let read = checkpoint::load(left.film()).unwrap();
         assert!(read.film.sample_count() >= 4 && read.film.width() == 16);
         assert_seconds(&read);
-        assert!(left.note().unwrap().unwrap().has_film);
+        let note = left.note().unwrap().unwrap();
+        assert!(note.has_film);
+        let restored = note.restore().unwrap();
+        assert_eq!((restored.view.tone.exposure, restored.is_paused), (1.5, true));
         let listing = left.slots().listing().unwrap();
         let [entry] = &listing.entries[..] else { panic!("{listing:?}") };
         assert_eq!((entry.number, &entry.id, entry.name.as_str()), (Some(number), &id, "my picture"));

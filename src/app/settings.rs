@@ -282,6 +282,15 @@ mod tests {
     }
 
     #[test]
+    fn changes_of_one_moment_are_written_together() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut file = SettingsFile::read(&directory.path().join("settings.json")).file;
+        let begin = Instant::now();
+        assert_eq!(keep_now(&mut file, &Remembered::default()), None);
+        assert!(file.next >= begin + WRITES_APART);
+    }
+
+    #[test]
     fn what_two_windows_change_is_kept() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("settings.json");

@@ -75,11 +75,18 @@ impl Facts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::device::Device;
+    use crate::app::model::document::Document;
+    use crate::app::model::kept::Kept;
+    use crate::app::model::origin::Origin;
     use crate::app::model::presentation::Presentation;
     use crate::app::model::remembered::Theme;
     use crate::app::model::sizing::Sizing;
-    use crate::app::model::slots::SlotNumber;
+    use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::tests::{Case, Drawings, facts_of};
+    use crate::film::Film;
+    use crate::stress::shown_cases;
+    use std::sync::Arc;
 
     #[test]
     fn a_switch_is_on_while_what_it_shows_is_shown() {
@@ -123,5 +130,54 @@ mod tests {
             drawings.tell(&format!("{name}: {}", is_on(&facts).join(", ")));
         }
         drawings.keep("switches");
+    }
+
+    #[test]
+    fn slots_that_are_shown_are_on() {
+        let mut facts = facts_of("--stage glass-schlick --size 32x18");
+        let looks = |facts: &Facts| -> Vec<Option<SlotNumber>> {
+            let numbers = SlotNumber::ALL.map(SlotCommand::Look).into_iter();
+            let is_on = |command: &SlotCommand| facts.is_on(Command::Slot(*command));
+            let looks = numbers.chain([SlotCommand::LookLive]).filter(is_on);
+            looks
+                .map(|command| match command {
+                    SlotCommand::Look(number) => Some(number),
+                    _ => None,
+                })
+                .collect()
+        };
+        assert!(looks(&facts).is_empty(), "there is nothing to choose from");
+        for number in [SlotNumber::ALL[0], SlotNumber::ALL[4]] {
+            let document = facts.model.document.clone();
+            let mut film = Film::new(32, 18, 2);
+            film.record(0..2, 0).unwrap();
+            let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+            facts.model.view.slots.put(number, Slot { name: String::new(), kept });
+        }
+        for at in [None, Some(SlotNumber::ALL[4]), Some(SlotNumber::ALL[0]), None] {
+            facts.model.view.look(at);
+            assert_eq!(looks(&facts), [at]);
+        }
+    }
+
+    #[test]
+    fn devices_sizes_and_extreme_scenes_are_on_while_they_are_chosen() {
+        let mut facts = facts_of("--stage glass-schlick");
+        for device in Device::ALL {
+            facts.model.remembered.device = device;
+            let are_on = Device::ALL.map(|other| facts.is_on(Command::Device(other)));
+            assert_eq!(are_on, Device::ALL.map(|other| other == device));
+        }
+        let sizes = |facts: &Facts| Sizing::ALL.map(|sizing| facts.is_on(Command::Size(sizing)));
+        assert_eq!(sizes(&facts), [true, false]);
+        facts.model.remembered.sizing = Sizing::Book;
+        assert_eq!(sizes(&facts), [false, true]);
+        facts.model.document.give_size([32, 18]);
+        assert_eq!(sizes(&facts), [false, false]);
+        let [first, second] = [0, 1].map(|place| &shown_cases()[place]);
+        let extremes = |facts: &Facts| [first, second].map(|case| facts.is_on(Command::Extreme(case)));
+        assert_eq!(extremes(&facts), [false, false]);
+        facts.model.document = Document::new(Origin::of_case(second));
+        assert_eq!(extremes(&facts), [false, true]);
     }
 }

@@ -54,6 +54,8 @@ mod tests {
                 "make it thicker, or choose the device f64",
             ),
             ("(focus_distance)", "(Focus distance)"),
+            ("vfov is 0 and defocus_angle is -1", "Field of view is 0 and Defocus angle is -1"),
+            ("max_depth is 0; vfov2 and max_depths", "Depth is 0; vfov2 and max_depths"),
             ("\"my_vup.exr\" cannot be read", "\"my_vup.exr\" cannot be read"),
             ("größer als vup", "größer als Up"),
             ("", ""),

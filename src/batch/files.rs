@@ -344,4 +344,35 @@ mod tests {
         assert!(written.failure.is_none(), "{:?}", written.failure);
         assert!(matches!(&written.notes[..], [note] if note.contains("8..10")), "{:?}", written.notes);
     }
+
+    #[test]
+    fn a_film_that_the_render_goes_on_with_is_not_replaced_by_a_shorter_one() {
+        for (goes_on, held) in [(true, 4), (false, 2)] {
+            let directory = tempfile::tempdir().unwrap();
+            let [out, path] = ["picture.png", "film.exr"].map(|name| directory.path().join(name));
+            let names = [&path, &out].map(|path| path.to_str().unwrap());
+            let first = options(&["--out", names[0]]);
+            let mut film = first.job.new_film();
+            film.record(0..4, 0).unwrap();
+            let description = described(&first, &film, &Status::default(), None);
+            checkpoint::save(&path, &film, &description).unwrap();
+            let render = options(&["--checkpoint", names[0], "--continue", "--out", names[1]]);
+            let places = Places::of(&render);
+            if goes_on {
+                places.go_on(&render, &film);
+            }
+            // A render that lost its film and began anew.
+            let mut shorter = render.job.new_film();
+            shorter.record(0..2, 0).unwrap();
+            let written = write(&render, &places, &shorter, &Status::default(), None, |_| {});
+            assert!(written.failure.is_none(), "{written:?}");
+            assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), held);
+        }
+    }
+
+    #[test]
+    fn rescued_films_go_to_the_directories_of_the_files() {
+        let render = options(&["--out", "a.png", "--checkpoint", "d/k.exr"]);
+        assert_eq!(beside(&render), [".", "d"].map(PathBuf::from));
+    }
 }

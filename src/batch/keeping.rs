@@ -124,14 +124,18 @@ impl Keeper {
     /// Has the film written if it is time. Returns a warning about the last write, if there is one.
     pub(super) fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let words = self.outcomes.try_recv().ok().and_then(|outcome| self.note(outcome));
-        let is_due = !self.is_under_way && self.last.elapsed() >= self.every;
-        if is_due && status.samples_per_pixel > self.asked {
+        if self.is_due(self.last.elapsed(), status.samples_per_pixel) {
             (self.is_under_way, self.asked) = (true, status.samples_per_pixel);
             let (writer, snapshots, status) =
                 (Arc::clone(&self.writer), self.snapshots.clone(), status.clone());
             progressive.inspect(move |film| writer.take(film, status, snapshots));
         }
         words
+    }
+
+    /// Whether a film of this many samples per pixel is to be written, when the last writing ended `since` ago.
+    fn is_due(&self, since: Duration, samples: u64) -> bool {
+        !self.is_under_way && since >= self.every && samples > self.asked
     }
 
     /// Waits until the current checkpoint is written. Returns the samples per pixel in the file, if there is one.
@@ -180,6 +184,21 @@ mod tests {
         assert!(keeper.asked < 1 && !keeper.is_under_way);
         assert_eq!(keeper.note(Outcome { samples: Some(1), words: None }), None);
         assert_eq!(keeper.kept, Some(1));
+    }
+
+    #[test]
+    fn a_film_is_due_after_the_pause_if_it_has_grown_and_none_is_being_written() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        let render = options(&["--checkpoint", path.to_str().unwrap(), "--every", "2s"]);
+        let mut keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 5, None);
+        let [early, late] = [1999, 2000].map(Duration::from_millis);
+        assert!(keeper.is_due(late, 6));
+        assert!(!keeper.is_due(early, 6) && !keeper.is_due(late, 5), "the film was resumed with 5");
+        (keeper.asked, keeper.is_under_way) = (6, true);
+        assert!(!keeper.is_due(late, 7));
+        assert_eq!(keeper.note(Outcome { samples: Some(6), words: None }), None);
+        assert!(keeper.is_due(late, 7) && !keeper.is_due(late, 6));
     }
 
     #[test]

@@ -301,7 +301,7 @@ pub(crate) mod tests {
     use crate::render::{BackendInfo, RenderError, RenderJob, Stats};
     use crate::render_cpu::CpuOptions;
     use std::ops::Range;
-    use std::sync::atomic::AtomicBool;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     /// The options of a small render with these `flags`.
     pub(crate) fn options(flags: &[&str]) -> RenderOptions {
@@ -367,5 +367,21 @@ pub(crate) mod tests {
         assert!(told.contains("it broke") && told.contains("4 samples") && told.contains("a.exr"), "{told}");
         assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
         assert!(out.exists());
+    }
+
+    #[test]
+    fn a_failure_counts_more_than_a_signal_and_a_signal_more_than_figures_that_cannot_be_written() {
+        let no_space = || Err(anyhow::anyhow!("no space"));
+        for (is_set, code) in [(false, ExitCode::SUCCESS), (true, ExitCode::from(130))] {
+            let interrupt = Interrupt::unheard();
+            interrupt.flag().store(is_set, Ordering::Relaxed);
+            let failure = Failure::BrokeOff(anyhow::anyhow!("it broke"));
+            assert!(matches!(ended(Some(failure), no_space(), &interrupt), Err(Failure::BrokeOff(_))));
+            assert_eq!(ended(None, Ok(()), &interrupt).unwrap(), code);
+            match ended(None, no_space(), &interrupt) {
+                Ok(found) => assert!(is_set && found == code),
+                Err(failure) => assert!(!is_set && matches!(failure, Failure::Run(_))),
+            }
+        }
     }
 }

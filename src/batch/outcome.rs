@@ -42,6 +42,7 @@ pub(super) fn outcome(
 mod tests {
     use super::*;
     use crate::batch::tests::options;
+    use crate::progressive::EndReason;
 
     #[test]
     fn a_render_that_leaves_nothing_has_not_broken_off() {
@@ -52,5 +53,32 @@ mod tests {
         assert!(
             matches!(failure(Some(4)), Failure::BrokeOff(error) if error.to_string().contains("4 samples"))
         );
+    }
+
+    #[test]
+    fn a_failure_says_why_and_where_the_samples_are() {
+        let options = options(&["--checkpoint", "k.exr"]);
+        let mut film = options.job.new_film();
+        film.record(0..6, 0).unwrap();
+        let failed = Status { phase: Phase::Failed("it broke".to_owned()), ..Status::default() };
+        let done = Status { phase: Phase::Done(EndReason::Samples), ..Status::default() };
+        let ended = |status: &Status, film: Option<&Film>, failure: Option<&str>| {
+            let failure = failure.map(|words| anyhow!("{words}"));
+            let files = vec!["a.png".into(), "k.exr".into()];
+            let written = Written { files, failure, ..Written::default() };
+            match outcome(&options, status, film, &written, Some(4)) {
+                Ok(()) => "success".to_owned(),
+                Err(Failure::BrokeOff(error)) => format!("broke off: {error}"),
+                Err(Failure::Run(error)) => format!("failed: {error}"),
+                Err(other) => panic!("{other:?}"),
+            }
+        };
+        let held = "broke off: it broke; the 6 samples per pixel rendered before are in a.png, k.exr";
+        assert_eq!(ended(&failed, Some(&film), None), held);
+        let kept = "broke off: it broke; 4 samples per pixel are in k.exr";
+        assert_eq!(ended(&failed, Some(&options.job.new_film()), None), kept);
+        assert_eq!(ended(&failed, Some(&film), Some("no space")), "failed: it broke; no space");
+        assert_eq!(ended(&done, Some(&film), Some("no space")), "failed: no space");
+        assert_eq!(ended(&done, Some(&film), None), "success");
     }
 }

@@ -173,3 +173,53 @@ impl<'a, W: Work> PlanJson<'a, W> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::FrameRate;
+    use crate::recipe::Recipe;
+    use std::path::Path;
+
+    fn planned<W: Work>(directory: &Path, samples_per_pixel: u64, work: W) -> Plan<W> {
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        recipe.samples_per_pixel = samples_per_pixel;
+        Plan::write(directory, &recipe, &recipe.job().unwrap(), Manifest::new(work)).unwrap()
+    }
+
+    #[test]
+    fn a_plan_of_samples_is_told_with_its_lengths_and_the_memory_of_a_part() {
+        for (count, parts, each) in [
+            (8, 2, "2 parts of 4 samples per pixel each"),
+            (1, 1, "1 part of 1 sample per pixel each"),
+            (100, 2, "2 parts of 48 to 52 samples per pixel, in blocks of 16"),
+        ] {
+            let directory = tempfile::tempdir().unwrap();
+            let division = divide(0..count, parts).unwrap();
+            let plan = planned(directory.path(), count, Samples::new(&(0..count), &division));
+            // 12 pixels with two halves of 24 bytes.
+            let expected = format!(
+                "{}: three-spheres of 4x3, {each}; a part's film takes 576 bytes of memory",
+                plan.path.shown()
+            );
+            assert_eq!(about_samples(&plan, &division), expected);
+        }
+    }
+
+    #[test]
+    fn a_plan_of_frames_is_told_with_its_lengths_and_samples() {
+        for (count, parts, samples, words) in [
+            (7, 3, 6, "6 samples per pixel, 3 parts of 2 to 3 frames"),
+            (6, 3, 6, "6 samples per pixel, 3 parts of 2 frames each"),
+            (1, 1, 1, "1 sample per pixel, 1 part of 1 frame each"),
+        ] {
+            let directory = tempfile::tempdir().unwrap();
+            let rate = FrameRate { frames: 30, seconds: 1 };
+            let work = Frames::new(&(5..5 + count), None, rate, parts).unwrap();
+            let plan = planned(directory.path(), samples, work);
+            let expected = format!("{}: three-spheres of 4x3 with {words}", plan.path.shown());
+            assert_eq!(about_frames(&plan), expected);
+        }
+    }
+}

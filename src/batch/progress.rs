@@ -32,24 +32,7 @@ impl Progress {
     pub(super) fn update(&mut self, status: &Status) {
         let elapsed = self.begin.elapsed();
         let left = seconds_left(&self.plan, status);
-        let words = || match status.phase {
-            Phase::Preparing => "preparing the scene".to_owned(),
-            _ => {
-                let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
-                let error = status.error.map_or_else(String::new, |e| format!(", error {:.2e}", e.rmse));
-                format!(
-                    "tracing: {} spp, {:.1} Mpaths/s, {}{left}{error}",
-                    status.samples_per_pixel,
-                    status.paths_per_second() / 1e6,
-                    seconds(elapsed.as_secs_f64()),
-                )
-            }
-        };
-        let share = left.map_or(0.0, |left| {
-            let done = elapsed.as_secs_f64();
-            done / (done + left).max(f64::MIN_POSITIVE)
-        });
-        self.display.update((share * STEPS as f64) as u64, words);
+        self.display.update(step(elapsed, left), || so_far(status, elapsed, left));
     }
 
     /// Shows that `path` is being written.
@@ -66,6 +49,29 @@ impl Progress {
     pub(super) fn finish(&self) {
         self.display.clear();
     }
+}
+
+/// How far the render is, in words. `elapsed` has passed since its begin, and `left` are the seconds to its end, if that can
+/// be predicted.
+fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
+    if status.phase == Phase::Preparing {
+        return "preparing the scene".to_owned();
+    }
+    let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
+    let error = status.error.map_or_else(String::new, |e| format!(", error {:.2e}", e.rmse));
+    format!(
+        "tracing: {} spp, {:.1} Mpaths/s, {}{left}{error}",
+        status.samples_per_pixel,
+        status.paths_per_second() / 1e6,
+        seconds(elapsed.as_secs_f64()),
+    )
+}
+
+/// The step of the bar: the first one until the end can be predicted.
+fn step(elapsed: Duration, left: Option<f64>) -> u64 {
+    let done = elapsed.as_secs_f64();
+    let share = left.map_or(0.0, |left| done / (done + left).max(f64::MIN_POSITIVE));
+    (share * STEPS as f64) as u64
 }
 
 /// Seconds until the first stop condition is met, if that can be predicted.
@@ -91,6 +97,7 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
+    use crate::render::Stats;
 
     #[test]
     fn the_condition_that_is_met_first_tells_the_time_left() {
@@ -116,5 +123,35 @@ mod tests {
         assert_eq!(seconds_left(&plan, &status), Some(50.0));
         plan.stop.noise = Some(0.01);
         assert!((seconds_left(&plan, &status).unwrap() - 30.0).abs() < 1e-9);
+        // The last pass has met the condition.
+        plan.stop.noise = Some(0.05);
+        assert_eq!(seconds_left(&plan, &status), Some(0.0));
+        (plan.stop.noise, status.elapsed) = (None, Duration::from_secs(61));
+        assert_eq!(seconds_left(&plan, &status), Some(0.0));
+    }
+
+    #[test]
+    fn progress_is_told_with_what_is_known() {
+        let mut status = Status {
+            phase: Phase::Tracing,
+            samples_per_pixel: 8,
+            stats: Stats { paths: 3_000_000, ..Stats::default() },
+            trace: Duration::from_secs(2),
+            ..Status::default()
+        };
+        let told = |status: &Status, left| so_far(status, Duration::from_secs(12), left);
+        assert_eq!(told(&status, None), "tracing: 8 spp, 1.5 Mpaths/s, 12.0 s");
+        status.error = Some(ErrorEstimate { rmse: 0.0123, rmse_deviation: 0.5, rel_mse: 0.25 });
+        let expected = "tracing: 8 spp, 1.5 Mpaths/s, 12.0 s, 1 min 30 s left, error 1.23e-2";
+        assert_eq!(told(&status, Some(90.0)), expected);
+        status.phase = Phase::Preparing;
+        assert_eq!(told(&status, Some(90.0)), "preparing the scene");
+    }
+
+    #[test]
+    fn the_bar_shows_the_share_of_the_time() {
+        let step = |seconds, left| step(Duration::from_secs(seconds), left);
+        assert_eq!([step(10, None), step(10, Some(30.0)), step(30, Some(10.0))], [0, 250, 750]);
+        assert_eq!([step(0, Some(0.0)), step(7, Some(0.0))], [0, 1000]);
     }
 }

@@ -224,6 +224,7 @@ mod tests {
     use crate::film::ROUNDING_LIMIT;
     use crate::progressive::EndReason;
     use crate::render::{BackendInfo, Stats};
+    use serde_json::json;
 
     #[test]
     fn the_summary_tells_what_the_status_holds() {
@@ -284,5 +285,83 @@ mod tests {
         for (key, value) in [("prepare_seconds", 2.0), ("total_seconds", 6.5), ("rel_mse_estimate", 0.3)] {
             assert_eq!(json[key], value, "{key}");
         }
+    }
+
+    #[test]
+    fn the_json_has_each_figure_under_its_key() {
+        let backend = BackendInfo { name: "cpu", device: "x".to_owned(), lanes: 8, threads: 3 };
+        let status = Status {
+            phase: Phase::Failed("it broke".to_owned()),
+            backend: Some(backend.clone()),
+            samples_per_pixel: 10,
+            rejected_samples: 9,
+            stats: Stats {
+                paths: 6_000_000,
+                rays: 15_000_000,
+                busy_lanes: 3,
+                offered_lanes: 4,
+                ..Stats::default()
+            },
+            prepare: Duration::from_secs(3),
+            hierarchy: Duration::from_secs(1),
+            trace: Duration::from_secs(2),
+            elapsed: Duration::from_secs(6),
+            kernel: "glass".to_owned(),
+            left_out: vec!["lens"],
+            error: Some(ErrorEstimate { rmse: 0.02, rmse_deviation: 0.001, rel_mse: 0.3 }),
+            contributions: vec![Contribution { backend, samples_per_pixel: 7 }],
+            messages: vec!["warned".to_owned()],
+            ..Status::default()
+        };
+        let options = options(&["--depth", "24", "--seed", "5", "--stage", "metal"]);
+        let mut film = options.job.new_film();
+        film.record(2..12, 0).unwrap();
+        let files = vec![PathBuf::from("a.png"), PathBuf::from("b.exr")];
+        let summary = Summary::new(&options, &status, Some(&film), files, Duration::from_millis(500));
+        let json = serde_json::to_value(SummaryJson::of_one(summary.clone())).unwrap();
+        for (key, value) in [
+            ("schema", json!(1)),
+            ("version", json!(env!("CARGO_PKG_VERSION"))),
+            ("stage", json!("metal")),
+            ("width", json!(4)),
+            ("height", json!(3)),
+            ("max_depth", json!(24)),
+            ("seed", json!(5)),
+            ("backend", json!("cpu")),
+            ("device", json!("x")),
+            ("lanes", json!(8)),
+            ("threads", json!(3)),
+            ("kernel", json!("glass")),
+            ("left_out", json!(["lens"])),
+            ("samples_per_pixel", json!(10)),
+            ("sample_ranges", json!("2..12")),
+            ("added_samples_per_pixel", json!(7)),
+            ("prepare_seconds", json!(2.0)),
+            ("hierarchy_seconds", json!(1.0)),
+            ("trace_seconds", json!(2.0)),
+            ("write_seconds", json!(0.5)),
+            ("total_seconds", json!(6.5)),
+            ("paths", json!(6_000_000)),
+            ("rays", json!(15_000_000)),
+            ("paths_per_second", json!(3e6)),
+            ("rays_per_second", json!(7.5e6)),
+            ("lane_occupancy", json!(0.75)),
+            ("rmse_estimate", json!(0.02)),
+            ("rmse_deviation", json!(0.001)),
+            ("rel_mse_estimate", json!(0.3)),
+            ("rejected_samples", json!(9)),
+            ("ended_by", json!("failure")),
+            ("warnings", json!(["warned"])),
+            ("files", json!(["a.png", "b.exr"])),
+        ] {
+            assert_eq!(json[key], value, "{key}");
+        }
+        assert!(
+            summary.to_string().contains(" (7 of them new) per pixel, ended by a failure\n"),
+            "{summary}"
+        );
+        let all = serde_json::to_value(SummaryJson::of_all(vec![summary.clone(), summary])).unwrap();
+        assert_eq!((&all["schema"], all["stages"].as_array().map(Vec::len)), (&json!(1), Some(2)));
+        assert_eq!(all["stages"][1]["seed"], 5);
     }
 }

@@ -348,4 +348,21 @@ mod tests {
         // A GPU has threads instead.
         assert_eq!(row(Kind::Gpu).lanes_in_use, None);
     }
+
+    #[test]
+    fn a_run_has_the_figures_of_its_pass_and_the_error_of_its_film() {
+        let trace = std::time::Duration::from_millis(250);
+        let stats = Stats { paths: 1, rays: 2, rejected: 3, busy_lanes: 4, offered_lanes: 5, trace };
+        let run = Run::of(&stats, &Film::new(2, 1, 1));
+        assert_eq!((run.seconds, run.paths, run.rays), (0.25, 1, 2));
+        assert_eq!((run.busy_lanes, run.offered_lanes, run.rmse), (4, 5, None));
+        // The halves differ in one pixel.
+        let mut film = Film::new(2, 1, 2);
+        film.halves_mut()[0][1] = crate::film::PixelSum([1 << 24, 0, 0]);
+        film.record(0..4, 0).unwrap();
+        let run = Run::of(&Stats { trace: std::time::Duration::ZERO, ..stats }, &film);
+        assert_eq!(run.rmse, film.error().map(|error| error.rmse));
+        assert!(run.rmse.is_some_and(|rmse| rmse > 0.0));
+        assert!(run.seconds > 0.0, "speeds are divided by it");
+    }
 }

@@ -187,7 +187,7 @@ fn write(options: &BenchOptions, figures: &BenchFigures) -> anyhow::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::figures::{DeviceFigures, GainRow, Spread};
+    use super::figures::{DeviceFigures, GainRow, Kind, Row, ScaleFigures, Spread};
     use super::*;
     use crate::cli::{self, Request};
 
@@ -238,5 +238,59 @@ mod tests {
                  in second, avx2",
             ]
         );
+    }
+
+    #[test]
+    fn runs_of_scenes_and_fields_may_differ_by_a_tenth() {
+        let spread = |max: f64| Some(Spread { median: 100.0, min: 100.0, max });
+        let warned = |of_scene: f64, of_field: f64| {
+            let row = Row {
+                name: "avx2".to_owned(),
+                kind: Kind::Packets,
+                lanes: 8,
+                threads: 1,
+                samples_per_pixel: 4,
+                runs: Vec::new(),
+                paths_per_second: spread(of_scene),
+                rays_per_second: spread(900.0),
+                lanes_in_use: None,
+                ratio_to_baseline: None,
+                efficiency: None,
+                skipped: None,
+            };
+            let scene = SceneFigures {
+                scene: "book".to_owned(),
+                width: 8,
+                height: 4,
+                max_depth: 50,
+                sampler: "sobol",
+                spheres: 485,
+                rows: vec![row.clone(), Row { paths_per_second: None, ..row }],
+            };
+            let field = ScaleFigures {
+                spheres: 1000,
+                generate_seconds: 1.0,
+                build_seconds: 1.0,
+                hierarchy_seconds: 1.0,
+                scene_bytes_per_sphere: 40.0,
+                table_bytes_per_sphere: 96.0,
+                peak_memory_bytes: None,
+                samples_per_pixel: 4,
+                paths_per_second: spread(of_field),
+                rays_per_second: spread(900.0),
+            };
+            let mut figures = BenchFigures { scenes: vec![scene], scale: vec![field], ..figures() };
+            figures.machine.load_at_start = Some(LOAD_LIMIT);
+            warnings(&figures)
+        };
+        let doubt = |rows: usize, largest: &str| {
+            [format!(
+                "in {rows} of 2 rows, the runs differ by more than 10 % of their median; the largest difference is {largest}"
+            )]
+        };
+        assert_eq!(warned(110.0, 110.0), [""; 0]);
+        assert_eq!(warned(130.0, 110.0), doubt(1, "30 % in book, avx2"));
+        assert_eq!(warned(110.0, 140.0), doubt(1, "40 % in field:1000"));
+        assert_eq!(warned(150.0, 120.0), doubt(2, "50 % in book, avx2"));
     }
 }

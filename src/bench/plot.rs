@@ -222,6 +222,10 @@ mod tests {
             .iter()
             .map(|panel| {
                 let Panel::Lines(chart) = panel else { panic!("{panel:?}") };
+                assert_eq!(
+                    (chart.x.label.as_str(), [chart.x.scale, chart.y.scale]),
+                    ("spheres", [Scale::Log; 2])
+                );
                 let of_series = |series: &Series| {
                     let points: Vec<String> = series
                         .points

@@ -149,7 +149,10 @@ fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
 fn plain_text(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
-        size if !(1e-4..1e7).contains(&size) => power_text(size.log10()),
+        size if !(1e-4..1e7).contains(&size) => {
+            let sign = if value < 0.0 { "-" } else { "" };
+            format!("{sign}{}", power_text(size.log10()))
+        }
         _ => {
             let text = format!("{value:.6}");
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -219,5 +222,47 @@ mod tests {
                 assert!(shown.into_iter().all(|position| ruler.range.contains(&position)), "{values:?}");
             }
         }
+    }
+
+    #[test]
+    fn an_axis_is_a_little_longer_than_its_values_unless_it_has_limits() {
+        for (scale, limits, values, expected) in [
+            (Scale::Linear, None, &[100.0, 0.0, f64::NAN, 50.0][..], [-4.0, 104.0]),
+            (Scale::Log, None, &[1e3, 10.0, -5.0], [1.0 - 0.08, 3.0 + 0.08]),
+            (Scale::Linear, None, &[3.0, 3.0], [2.5, 3.5]),
+            (Scale::Log, None, &[0.0], [0.0, 1.0]),
+            (Scale::Linear, Some([2.0, 8.0]), &[100.0], [2.0, 8.0]),
+            (Scale::Log, Some([10.0, 1e4]), &[], [1.0, 4.0]),
+        ] {
+            let ruler = Axis { limits, ..Axis::new("", scale) }.ruler(values.iter().copied());
+            let [start, end] = expected;
+            let is_so = (ruler.range.start - start).abs() < 1e-9 && (ruler.range.end - end).abs() < 1e-9;
+            assert!(is_so, "{values:?}: {:?}", ruler.range);
+        }
+    }
+
+    #[test]
+    fn of_many_powers_of_ten_every_second_has_a_label() {
+        assert_eq!(labels(Scale::Log, [1.0, 1e11]).len(), 12);
+        let labels = labels(Scale::Log, [1.0, 1e12]);
+        assert_eq!(labels, ["1", "100", "10⁴", "10⁶", "10⁸", "10¹⁰", "10¹²"]);
+    }
+
+    #[test]
+    fn a_position_is_a_share_of_the_pixels() {
+        let ruler =
+            Axis { limits: Some([0.0, 10.0]), ..Axis::new("", Scale::Linear) }.ruler(std::iter::empty());
+        assert_eq!([0.0, 2.5, 10.0].map(|position| ruler.map(&position, (20, 120))), [20, 45, 120]);
+        // Pixels are counted from above.
+        assert_eq!([0.0, 2.5, 10.0].map(|position| ruler.map(&position, (100, 0))), [100, 75, 0]);
+    }
+
+    #[test]
+    fn large_and_small_numbers_have_powers_of_ten() {
+        let numbers = [0.0, 0.5, -1.25, 1e-4, 5e-5, 9_999_999.0, 1e7, -2e7, 3e-6];
+        let texts = ["0", "0.5", "-1.25", "0.0001", "5e-5", "9999999", "10⁷", "-2·10⁷", "3e-6"];
+        assert_eq!(numbers.map(plain_text), texts);
+        let powers = [-4.0, -3.0, 3.0, 4.0, 13.0, 20.0].map(power_text);
+        assert_eq!(powers, ["1e-4", "0.001", "1000", "10⁴", "10¹³", "10²⁰"]);
     }
 }

@@ -147,3 +147,21 @@ fn draw<B: DrawingBackend>(
     }
     area.present()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_pixel_is_the_mean_of_a_square_of_four() {
+        // Squares of one colour: it tells the column, the row and the channel.
+        let colour = |x: usize, y: usize| [0, 1, 2].map(|channel| (10 * x + 100 * y + channel) as u8);
+        let picture = |width: usize, height: usize, side: usize| -> Vec<u8> {
+            let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x / side, y / side)));
+            pixels.flat_map(|(x, y)| colour(x, y)).collect()
+        };
+        assert_eq!(smaller(&picture(6, 4, 2), 3, 2), picture(3, 2, 1));
+        let square: Vec<u8> = [[0, 9, 255], [4, 9, 0], [8, 9, 255], [4, 9, 1]].concat();
+        assert_eq!(smaller(&square, 1, 1), [4, 9, 127]);
+    }
+}

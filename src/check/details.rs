@@ -205,6 +205,50 @@ mod tests {
     }
 
     #[test]
+    fn cutting_makes_no_dark_value_white() {
+        let right = Hypothesis::right(&Stage::find("sky").unwrap().recipe());
+        // Three hundred values, all 0 or 255, of which so many are white though they should be dark.
+        let is_found = |white: usize, linear: f64| {
+            let byte = |index: usize| if index < white { [254, 255][index % 2] } else { 0 };
+            let bytes = (0..100).map(|pixel| [0, 1, 2].map(|channel| byte(3 * pixel + channel))).collect();
+            let mine = Mine { width: 10, height: 10, bytes, format: "P3", damages: Vec::new() };
+            let expected = Expected { pixels: vec![[linear; 3]; 100] };
+            is_truncated(&mine, &compare(&mine, right.clone(), expected))
+        };
+        // Below a linear value of 1/2, a byte is below 128.
+        assert!(is_found(0, 0.25) && is_found(3, 0.25) && !is_found(4, 0.25) && !is_found(300, 0.49));
+        assert!(is_found(4, 0.5) && is_found(300, 0.75));
+    }
+
+    /// Of 64 x 64 pixels, with another factor instead of 255/256, and with noise.
+    #[test]
+    fn only_a_loss_of_about_a_256th_is_blamed_on_a_factor_of_255() {
+        let recipe = Stage::find("lambertian-gamma").unwrap().recipe();
+        let right = Hypothesis::right(&recipe);
+        let value = |index: usize| 0.25 + 0.4 * (index * 7919 % 12_289) as f64 / 12_289.0;
+        let picture = |of: &dyn Fn(usize) -> f64| Expected {
+            pixels: (0..64 * 64).map(|pixel| [0, 1, 2].map(|channel| of(3 * pixel + channel))).collect(),
+        };
+        let found = |factor: f64, noise: f64| {
+            // The displayed value is the root of the linear one.
+            let darker = |index: usize| {
+                let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+                value(index) * factor * factor + sign * noise
+            };
+            let mine = shown(&right, &picture(&darker), [64, 64]);
+            times_integer(&mine, &compare(&mine, right.clone(), picture(&value))).is_some()
+        };
+        let part = |loss: f64| 1.0 - loss / 256.0;
+        let factors = [-1.0, 0.0, 0.5, 0.7, 1.0, 1.3, 1.5, 2.0];
+        assert_eq!(
+            factors.map(|loss| found(part(loss), 0.0)),
+            [false, false, false, true, true, true, false, false]
+        );
+        // Noise of which a mean over all values cannot be told from no loss.
+        assert_eq!([0.02, 0.2].map(|noise| found(part(1.0), noise)), [true, false]);
+    }
+
+    #[test]
     fn a_thousand_values_are_needed_to_see_a_factor_of_255() {
         let recipe = Stage::find("lambertian-gamma").unwrap().recipe();
         let right = Hypothesis::right(&recipe);

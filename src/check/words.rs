@@ -214,4 +214,58 @@ mod tests {
             assert_eq!((found.is_right, found.damages.is_empty()), (is_right, is_right));
         }
     }
+
+    #[test]
+    fn other_programs_get_the_mistake_with_its_remedy_and_the_files() {
+        let stage = Stage::find("metal").unwrap();
+        let of = |mistake, is_noise| Compared {
+            hypothesis: Hypothesis::of(mistake, &stage.recipe()).remove(0),
+            misfit: 0.5,
+            is_noise,
+            expected: Expected { pixels: Vec::new() },
+        };
+        let right =
+            Compared { hypothesis: Hypothesis::right(&stage.recipe()), ..of(Mistake::GammaTwice, false) };
+        let files = ["d/mine.png", "d/ours.png"].map(PathBuf::from);
+        for (mistake, explains_all, note) in [
+            (Mistake::SwappedChannels, true, Some("the channels seem to be blue, green, red")),
+            (Mistake::GammaTwice, false, None),
+        ] {
+            let finding = Finding { stage, right: right.clone(), mistake: Some(of(mistake, explains_all)) };
+            let mine = mine([40, 20], Vec::new());
+            let found = FindingJson::new(Path::new("a.ppm"), &mine, &finding, &files);
+            let about = mistake.about();
+            let expected = serde_json::json!({
+                "schema": 1,
+                "version": env!("CARGO_PKG_VERSION"),
+                "picture": "a.ppm",
+                "format": "P3",
+                "width": 40,
+                "height": 20,
+                "stage": "metal",
+                "section": stage.section,
+                "is_right": false,
+                "mistake": {
+                    "id": about.id,
+                    "title": about.title,
+                    "remedy": about.remedy,
+                    "note": note,
+                    "explains_all": explains_all,
+                },
+                "damages": [],
+                "files": ["d/mine.png", "d/ours.png"],
+            });
+            assert_eq!(serde_json::to_value(&found).unwrap(), expected);
+            let told = text(Path::new("a.ppm"), &mine, &finding, &files);
+            let last = format!("read     {}\nfiles    d/mine.png, d/ours.png\n", stage.url());
+            assert!(told.ends_with(&last), "{told}");
+        }
+        // A picture that differs by more than noise is not right, even if no mistake explains it.
+        let finding = Finding { stage, right, mistake: None };
+        let found = FindingJson::new(Path::new("a.ppm"), &mine([40, 20], Vec::new()), &finding, &[]);
+        assert!(!found.is_right && found.mistake.is_none() && found.files.is_empty());
+        let told = text(Path::new("a.ppm"), &mine([40, 20], Vec::new()), &finding, &[]);
+        assert!(told.contains("\nverdict  not right, but none of the known mistakes explains it;"), "{told}");
+        assert!(told.contains("\nread     ") && !told.contains("\nfiles "), "{told}");
+    }
 }

@@ -92,3 +92,85 @@ pub(super) fn choose(
         (RawDevice::Reference, None) => Ok(BackendChoice::Reference { threads: cpu.threads }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Request, parse};
+    use crate::failure::Failure;
+
+    fn request(line: &str) -> Result<Request, Failure> {
+        parse(format!("weekender {line}").split(' ').map(Into::into))
+    }
+
+    #[test]
+    fn the_command_of_a_part_has_the_flags_of_the_backend() {
+        for (flags, expected) in [
+            ("--simd off", &["--simd=off"][..]),
+            ("--device auto --simd auto --isa auto", &[]),
+            ("--isa portable --simd 1", &["--simd=off", "--isa=portable"]),
+            ("--threads 3 --simd 4", &["--simd=4", "--threads=3"]),
+            ("--device cpu,gpu", &["--device=cpu,gpu"]),
+            ("--adapter some --device gpu", &["--device=gpu", "--adapter=some"]),
+        ] {
+            match request(&format!("plan --samples 4 --parts 2 --out no-such-plan {flags}")) {
+                Ok(Request::Plan(options)) => assert_eq!(options.flags, expected, "{flags}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn any_flag_of_the_backend_chooses_one_for_the_window() {
+        for (flags, is_given) in [
+            ("--fresh", false),
+            ("--device auto --simd auto --isa auto", false),
+            ("--vfov 30 --samples 3", false),
+            ("--device cpu", true),
+            ("--adapter some", true),
+            ("--threads 3", true),
+            ("--simd 1", true),
+            ("--isa portable", true),
+        ] {
+            match request(flags) {
+                Ok(Request::Window(options)) => assert_eq!(options.is_device_given, is_given, "{flags}"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn a_device_gets_the_options_that_are_its_own() {
+        let cpu = CpuOptions { threads: Some(3), ..CpuOptions::default() };
+        let gpu = GpuOptions::of_adapter(Some("some"));
+        for (device, expected) in [
+            (RawDevice::Auto, BackendChoice::Gpu(gpu.clone())),
+            (RawDevice::Gpu, BackendChoice::Gpu(gpu.clone())),
+            (RawDevice::Cpu, BackendChoice::Cpu(cpu)),
+            (RawDevice::Both, BackendChoice::Both(cpu, gpu.clone())),
+            (RawDevice::Reference, BackendChoice::Reference { threads: Some(3) }),
+        ] {
+            assert_eq!(choose(device, cpu, gpu.clone(), [None, None]).unwrap(), expected);
+        }
+        // Without a name of a GPU, the options of the CPU choose that.
+        let unnamed = choose(RawDevice::Auto, cpu, GpuOptions::default(), [None, None]).unwrap();
+        assert_eq!(unnamed, BackendChoice::Cpu(cpu));
+    }
+
+    #[test]
+    fn flags_of_another_device_are_refused() {
+        let only_gpu = "it applies only to the GPU; leave one of them out";
+        let scalar = "the reference is scalar; leave one of them out";
+        for (flags, flag, other, reason) in [
+            ("--device cpu --adapter some", "--adapter", "cpu", only_gpu),
+            ("--device reference --adapter some", "--adapter", "reference", only_gpu),
+            ("--device cpu --simulate-invalid-call 2", "--simulate-invalid-call", "cpu", only_gpu),
+            ("--device reference --isa portable", "--isa", "reference", scalar),
+            ("--device reference --simd 4 --isa portable", "--simd", "reference", scalar),
+        ] {
+            let told = request(&format!("--batch {flags}")).unwrap_err().to_string();
+            assert_eq!(told, format!("error: {flag} cannot be used with --device {other}: {reason}"));
+        }
+        assert!(request("--batch --device gpu --simd 4").is_ok(), "for the CPU that it may fall back to");
+    }
+}

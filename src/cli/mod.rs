@@ -194,34 +194,4 @@ fn called(first: Option<&OsString>) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn commands_call_the_program_in_any_directory_as_it_was_called_in_this_one() {
-        let whole = std::env::current_exe().unwrap().to_str().unwrap().to_owned();
-        for (name, expected) in [
-            ("weekender", "weekender"),
-            ("./weekender", whole.as_str()),
-            ("../release/weekender", whole.as_str()),
-            ("target/release/weekender", whole.as_str()),
-            ("/usr/bin/weekender", whole.as_str()),
-        ] {
-            let parsed =
-                |words: &[&str]| parse([&[name], words].concat().into_iter().map(Into::into)).unwrap();
-            let planned = |more: &[&str]| match parsed(
-                &[&["plan", "--samples", "4", "--parts", "2", "--out", "no-such-plan"], more].concat(),
-            ) {
-                Request::Plan(options) => options.program,
-                other => panic!("{other:?}"),
-            };
-            assert_eq!(planned(&[]), expected, "{name}");
-            assert_eq!(planned(&["--program", "./another"]), "./another", "{name}");
-            match parsed(&["merge", "no-such-a.exr", "no-such-b.exr", "--out", "no-such-c.exr"]) {
-                Request::Merge(options) => assert_eq!(options.program, expected, "{name}"),
-                other => panic!("{other:?}"),
-            }
-        }
-        assert_eq!(called(None), "weekender");
-    }
-}
+mod tests;

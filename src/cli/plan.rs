@@ -318,4 +318,27 @@ mod tests {
         assert!(told.contains("JOB_COMPLETION_INDEX") && told.contains("x7"), "{told}");
         assert!(with(&[]).unwrap_err().to_string().contains("--part NUMBER"));
     }
+
+    #[test]
+    fn the_variable_of_slurm_comes_first() {
+        assert_eq!(part_of_environment(|name| Some(name.len().to_string())).unwrap(), 19);
+    }
+
+    #[test]
+    fn there_may_be_as_many_parts_as_samples_or_frames() {
+        for (what, most, told) in [
+            ("--samples 4", 4, "4 samples per pixel"),
+            ("--sample-range 8..11", 3, "3 samples per pixel"),
+            ("--frames 2..4 --turntable", 2, "2 frames"),
+        ] {
+            let planned = |parts: u64| {
+                let line = format!("weekender plan --out no-such-plan --parts {parts} {what}");
+                crate::cli::parse(line.split(' ').map(Into::into))
+            };
+            assert!(planned(most).is_ok(), "{what}");
+            let error = planned(most + 1).unwrap_err().to_string();
+            let expected = format!("error: --parts is {}, but there are {told} to divide", most + 1);
+            assert!(error.starts_with(&expected), "{error}");
+        }
+    }
 }

@@ -336,3 +336,45 @@ fn default_name(chosen: &ChosenRecipe) -> PathBuf {
     let name = chosen.stage.map_or(chosen.recipe.name.as_str(), |stage| stage.id);
     PathBuf::from(format!("{}.png", plain_name(name)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::parse;
+
+    fn window(flags: &str) -> WindowOptions {
+        let line = format!("weekender --device cpu {flags}");
+        match parse(line.split(' ').map(Into::into)).unwrap() {
+            Request::Window(options) => *options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_picture_is_given_by_the_flags_that_choose_or_change_it() {
+        for (flags, is_given) in [
+            ("--fresh", false),
+            ("--samples 7", false),
+            ("--time-limit 3", false),
+            ("--draw-with gl", false),
+            ("--estimate-error on", true),
+            ("--scene three-spheres", true),
+            ("--size 8x4", true),
+            ("--seed 0", true),
+            ("--focus-distance 3", true),
+        ] {
+            assert_eq!(window(flags).is_picture_given, is_given, "{flags}");
+        }
+    }
+
+    #[test]
+    fn the_window_knows_its_picture_without_the_changes_of_flags() {
+        let options = window("--stage metal --vfov 30 --samples 7 --estimate-error off");
+        let own = Stage::find("metal").unwrap().recipe();
+        assert_eq!((&options.unchanged, options.stage), (&own, Some(Stage::find("metal").unwrap())));
+        let mut changed = own;
+        (changed.camera.vfov_degrees, changed.samples_per_pixel) = (30.0, 7);
+        changed.settings.estimate_error = false;
+        assert_eq!(options.recipe, changed);
+    }
+}

@@ -116,4 +116,21 @@ mod tests {
             assert!(check(name).is_err(), "{name}");
         }
     }
+
+    #[test]
+    fn a_scene_with_an_ending_or_a_directory_is_a_file() {
+        for (scene, expected) in [
+            ("three-spheres", false),
+            ("field:20", false),
+            ("s.toml", true),
+            ("s.TOML", true),
+            ("./metals", true),
+            ("scenes/metals", true),
+            (".toml", false),
+        ] {
+            assert_eq!(is_file(scene), expected, "{scene}");
+            assert_eq!(scene_file(Some(scene)), expected.then_some(Path::new(scene)));
+        }
+        assert_eq!(scene_file(None), None);
+    }
 }

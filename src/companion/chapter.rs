@@ -131,6 +131,7 @@ mod tests {
         };
         assert_eq!([shown(6, Some("6")), shown(20, None)], [Some(6), Some(20)]);
         assert_eq!([shown(0, Some("1")), shown(1, None)], [None, None]);
+        assert_eq!([shown(14, None), shown(14, Some("14")), shown(15, None)], [None, Some(14), Some(15)]);
     }
 
     #[test]

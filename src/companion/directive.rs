@@ -105,3 +105,66 @@ fn between<'a>(text: &'a str, open: &str, close: &str) -> Option<&'a str> {
     let inside = &inside[inside.find('>')? + 1..];
     Some(inside[..inside.find(close)?].trim())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::companion::library::Library;
+
+    fn excerpt(file: &str, [first, last]: [usize; 2], text: &str) -> Excerpt {
+        Excerpt { file: file.to_owned(), first, last, text: text.to_owned() }
+    }
+
+    #[test]
+    fn excerpts_have_their_path_and_their_lines_and_pairs_are_in_order() {
+        let (mut site, mut uses) = (Site::made_up(), Uses::default());
+        site.excerpts.insert("one".to_owned(), excerpt("a/b.text", [7, 7], "x < y\n"));
+        site.excerpts.insert("more".to_owned(), excerpt("c.text", [8, 10], "z\n"));
+        site.excerpts.insert("code".to_owned(), excerpt("d.rs", [1, 1], "fn d() {}\n"));
+        let shown = |file: &str, lines: &str, text: &str| {
+            format!(
+                "<figure class=\"code\"><figcaption><code class=\"path\">{file}</code> <span class=\"lines\">{lines}</span>\
+                 </figcaption><pre tabindex=\"0\" role=\"group\" aria-label=\"{file}, {lines}\"><code>{text}\n</code></pre>\
+                 </figure>"
+            )
+        };
+        let one = shown("a/b.text", "line 7", "x &lt; y");
+        let more = shown("c.text", "lines 8 to 10", "z");
+        let mut made = |directive: &str| html(&site, directive, &mut uses).map(Markup::into_string);
+        assert_eq!(made("excerpt one"), Ok(one.clone()));
+        assert_eq!(made("pair more one"), Ok(format!("<div class=\"pair\">{more}{one}</div>")));
+        assert!(made("excerpt code").unwrap().contains("<span class=\"hl-k\">fn</span>"));
+        for wrong in ["excerpt none", "pair one none", "pair none one"] {
+            assert!(made(wrong).unwrap_err().contains("has no excerpt \"none\""), "{wrong}");
+        }
+        assert_eq!(uses.excerpts.iter().collect::<Vec<_>>(), ["code", "more", "one"]);
+    }
+
+    #[test]
+    fn a_diagram_is_its_svg_with_its_title_as_the_caption() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join(FOLDER).join("diagrams");
+        std::fs::create_dir_all(&folder).unwrap();
+        let drawing = "<svg><title id=\"t\"> A <b>lens</b> </title><path/></svg>";
+        for (name, text) in [
+            ("lens", format!("<?xml version=\"1.0\"?>\n{drawing}\n")),
+            ("untitled", "<svg></svg>".to_owned()),
+            ("empty", "nothing".to_owned()),
+        ] {
+            std::fs::write(folder.join(format!("{name}.svg")), text).unwrap();
+        }
+        let (mut site, mut uses) = (Site::made_up(), Uses::default());
+        site.library = Library::Checkout(directory.path().to_owned());
+        let mut made = |directive: &str| html(&site, directive, &mut uses).map(Markup::into_string);
+        let figure = |name: &str, inside: &str| {
+            format!("<figure class=\"diagram\" id=\"diagram-{name}\"><div class=\"scroll\">{inside}</figure>")
+        };
+        let caption = "<figcaption>A <b>lens</b></figcaption>";
+        assert_eq!(made("diagram lens"), Ok(figure("lens", &format!("{drawing}</div>{caption}"))));
+        assert_eq!(made("diagram untitled"), Ok(figure("untitled", "<svg></svg></div>")));
+        let message = "docs/companion/diagrams/empty.svg has no <svg> element";
+        assert_eq!(made("diagram empty"), Err(message.to_owned()));
+        assert!(made("diagram none").unwrap_err().starts_with("docs/companion/diagrams/none.svg "));
+        assert_eq!(uses.diagrams.iter().collect::<Vec<_>>(), ["lens", "untitled"]);
+    }
+}

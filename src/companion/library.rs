@@ -226,4 +226,17 @@ mod tests {
             assert!(!is_chapter(path), "{path}");
         }
     }
+
+    #[test]
+    fn what_cannot_be_read_says_what_to_do() {
+        let told = Library::Embedded.read("docs/companion/nothing.md").unwrap_err();
+        assert!(told.contains("add it to FILES in src/companion/library.rs"), "{told}");
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("a.md"), b"a\xff").unwrap();
+        std::fs::write(directory.path().join("b.md"), "ö").unwrap();
+        let library = Library::Checkout(directory.path().to_owned());
+        assert_eq!(library.read("a.md"), Err("is not UTF-8; save it as UTF-8".to_owned()));
+        assert_eq!(library.read("b.md").as_deref(), Ok("ö"));
+        assert!(library.read("c.md").is_err() && library.chapters().is_err());
+    }
 }

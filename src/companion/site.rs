@@ -137,3 +137,28 @@ impl Site {
         site
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::companion::library::FOLDER;
+
+    #[test]
+    fn terms_are_in_alphabetical_order_and_references_in_that_of_their_file() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(directory.path().join(FOLDER)).unwrap();
+        let term =
+            |key: &str, term: &str| format!("[{key}]\nterm = \"{term}\"\ntext = \"x\"\narea = \"numbers\"\n");
+        let terms = [term("a", "ray"), term("b", "BVH"), term("c", "Lane")].concat();
+        std::fs::write(directory.path().join(GLOSSARY), terms).unwrap();
+        let works = "[z]\ntitle = \"Z\"\nauthors = \"A\"\n\n[b]\ntitle = \"B\"\nauthors = \"C\"\n";
+        std::fs::write(directory.path().join(REFERENCES), works).unwrap();
+        let library = Library::Checkout(directory.path().to_owned());
+        let site = Site::read(&library, Measured::default(), &mut Vec::new()).unwrap();
+        let shown: Vec<&str> = site.terms.iter().map(|entry| entry.value.term.as_str()).collect();
+        assert_eq!(shown, ["BVH", "Lane", "ray"]);
+        let number =
+            |key: &str| site.reference(key).map(|(number, entry)| (number, entry.value.title.as_str()));
+        assert_eq!([number("z"), number("b"), number("c")], [Some((1, "Z")), Some((2, "B")), None]);
+    }
+}

@@ -150,6 +150,47 @@ mod tests {
     }
 
     #[test]
+    fn rounding_explains_at_most_the_steps_of_both_pictures() {
+        for (a, b) in [(0.003, 0.003), (0.1, 0.1), (0.003, 0.0), (0.002, 0.007)] {
+            let most = rounding(f64::hypot(a, b), 0.0);
+            assert!(a + b <= most && most <= f64::hypot(a, b) * 1.415, "{a} {b}: {most}");
+            assert_eq!(rounding(f64::hypot(a, b), 0.5), most + 0.5);
+        }
+        assert!(
+            rounding(f64::hypot(0.1, 0.1), 0.0) < 0.2 * (1.0 + 1e-8),
+            "neighbouring bytes reach the limit"
+        );
+        assert_eq!([step_of(0.25), step_of(f64::NAN)], [0.25, 0.0]);
+    }
+
+    #[test]
+    fn a_difference_is_cut_where_either_format_ends() {
+        let clipped = f64::NAN;
+        let bytes = |value: f64, limit: f64| Side {
+            limit,
+            steps: Some(vec![[0.01; 3]; 80 * 48]),
+            ..floats(move |_| value)
+        };
+        let float = |value: f64| floats(move |_| value);
+        for (a, b, expected) in [
+            (float(0.25), float(0.75), 0.5),
+            (float(0.25), bytes(clipped, 0.875), 0.625),
+            (float(5.0), bytes(clipped, 0.875), 0.0),
+            (float(5.0), bytes(0.5, 0.875), -0.375),
+            (bytes(0.25, 0.875), bytes(clipped, 0.75), 0.5),
+            (bytes(0.8125, 0.875), bytes(clipped, 0.75), 0.0),
+            (bytes(clipped, 0.875), bytes(clipped, 0.75), 0.0),
+            (float(-1.0), bytes(clipped, 0.875), 1.875),
+            (float(f64::INFINITY), bytes(0.5, 0.875), -0.375),
+        ] {
+            let there = capped_difference(&a, &b, 7, 1);
+            assert_eq!((there, capped_difference(&b, &a, 7, 1)), (expected, -expected));
+        }
+        // No number of a picture of floats stands for anything.
+        assert!(capped_difference(&float(f64::NAN), &bytes(0.5, 0.875), 7, 1).is_nan());
+    }
+
+    #[test]
     fn what_is_clipped_in_one_picture_and_dark_in_the_other_differs() {
         let scene = |seed: u32| move |pixel: u32| 0.2 + 0.4 * random(pixel, seed);
         let painted: [fn(u32) -> bool; 4] = [

@@ -86,4 +86,57 @@ mod tests {
         // The middle of the scale twice, and its dark end.
         assert_eq!(colours, [[159, 42, 99], [159, 42, 99], [0, 0, 4], [0, 0, 4]]);
     }
+
+    /// A picture of floats that is grey but for some pixels.
+    fn floats([width, height]: [u32; 2], others: &[(usize, f64)]) -> Side {
+        let side = Side::of_film(String::new(), String::new(), Film::new(width, height, 1));
+        let mut pixels = vec![[0.5; 3]; (width * height) as usize];
+        others.iter().for_each(|(pixel, value)| pixels[*pixel] = [*value; 3]);
+        Side { film: None, pixels, ..side }
+    }
+
+    /// The map of two pictures, with frames around the blocks that are farthest off by `values`.
+    fn map(a: &Side, b: &Side, values: &[[f64; 3]]) -> RgbImage {
+        let (noise, steps) = (Noise::Spread, None);
+        let differences = Differences { width: a.width, values, noise, steps, tolerance: 1.0, rare: 0.0 };
+        let mut png = Cursor::new(Vec::new());
+        write(a, b, &BlockTest::of(&differences), &mut png).unwrap();
+        image::load_from_memory(png.get_ref()).unwrap().to_rgb8()
+    }
+
+    #[test]
+    fn the_five_blocks_that_are_farthest_off_have_frames_one_pixel_wide() {
+        // Two rows of three blocks, of which the one in the middle of the upper row is off least.
+        let off = [6.0, 1.0, 5.0, -4.0, 3.0, -2.0];
+        let block = |pixel: usize| pixel / 24 / 8 * 3 + pixel % 24 / 8;
+        let values: Vec<[f64; 3]> = (0..24 * 16).map(|pixel| [0.1 * off[block(pixel)]; 3]).collect();
+        let grey = floats([24, 16], &[]);
+        let map = map(&grey, &grey, &values);
+        for (x, y, colour) in map.enumerate_pixels() {
+            let is_edge = [0, 7].contains(&(x % 8)) || [0, 7].contains(&(y % 8));
+            let is_framed = is_edge && block((y * 24 + x) as usize) != 1;
+            assert_eq!(colour.0 == FRAME, is_framed, "{x},{y}");
+        }
+    }
+
+    #[test]
+    fn what_is_clipped_counts_as_the_least_that_it_can_be_and_what_is_unknown_as_equal() {
+        let nan = f64::NAN;
+        // Each value stands alone in the middle of a block.
+        let places = [3, 11, 19, 27, 35].map(|x| 3 * 40 + x);
+        let a = floats([40, 8], &[(places[0], 0.75), (places[1], 5.0), (places[2], nan), (places[4], nan)]);
+        let at_end = [places[0], places[1], places[2], places[3]].map(|place| (place, nan));
+        let steps = Some(vec![[0.01; 3]; 40 * 8]);
+        let b = Side { steps, limit: 0.875, ..floats([40, 8], &at_end) };
+        let map = map(&a, &b, &[[0.0; 3]; 40 * 8]);
+        let colours = places.map(|place| map.get_pixel(place as u32 % 40, 3).0);
+        let of = |difference: f64| HeatScale::ERROR.colour(difference);
+        // In turn: an eighth darker than the end of the format, brighter than it, no number beside it, three eighths
+        // darker, and no number beside a number.
+        let kind = of(f64::INFINITY);
+        assert_eq!(colours, [of(0.125), of(0.0), kind, of(0.375), kind]);
+        let both = floats([40, 8], &[(places[0], nan)]);
+        let map = self::map(&both, &both, &[[0.0; 3]; 40 * 8]);
+        assert_eq!(map.get_pixel(3, 3).0, of(0.0), "no number in both is equal");
+    }
 }

@@ -236,4 +236,13 @@ mod tests {
         let refused = check_memory(1 << 22, 1 << 22, 0).unwrap_err().to_string();
         assert!(refused.starts_with("comparing pictures of 4194304x4194304 needs "), "{refused}");
     }
+
+    #[test]
+    fn films_of_two_halves_count_beside_what_every_comparison_needs() {
+        // 2^40 pixels of 152 bytes, or of that and films of 48, and 64 MiB for everything else.
+        for (films, needed) in [(0, "167125.8 GB"), (2, "272679.0 GB"), (4, "378232.1 GB")] {
+            let refused = check_memory(1 << 20, 1 << 20, films).unwrap_err().to_string();
+            assert!(refused.contains(&format!(" needs {needed} of memory")), "{films}: {refused}");
+        }
+    }
 }

@@ -73,6 +73,7 @@ pub(super) fn narrow(test: &mut BlockTest, width: u32, is_moved: impl Fn(usize, 
 
 #[cfg(test)]
 mod tests {
+    use super::{CHANCE, largest_of};
     use crate::compare::{Comparison, Side, compare};
     use crate::film::Film;
     use crate::sampling::pcg4d;
@@ -129,6 +130,57 @@ mod tests {
             "{:?}",
             found.notes
         );
+    }
+
+    #[test]
+    fn a_thousandth_of_the_pixels_are_few_but_at_least_one() {
+        // Of 3840 pixels, 3.84 may differ.
+        let places = [(5, 20), (35, 20), (65, 20), (75, 40)];
+        let is_doubted =
+            |count: usize| changed(|x, y| places[..count].contains(&(x, y)), 0.5).unclear.is_some();
+        assert_eq!([0, 1, 3, 4].map(is_doubted), [false, true, true, false]);
+        // Of 128 pixels, one.
+        let small = |count: u32| {
+            let pixels = (0..128).map(|pixel| [noise(pixel, 0, 1) + f64::from(u8::from(pixel < count)); 3]);
+            let side = Side::of_film(String::new(), String::new(), Film::new(16, 8, 1));
+            Side { film: None, pixels: pixels.collect(), ..side }
+        };
+        let is_doubted = |count: u32| compare(&small(0), &small(count), None).unclear.is_some();
+        assert_eq!([0, 1, 2].map(is_doubted), [false, true, false]);
+    }
+
+    #[test]
+    fn a_difference_of_a_tenth_is_too_much_for_rounding() {
+        for (by, is_loud) in [(0.09, false), (-0.09, false), (0.11, true), (-0.11, true)] {
+            let found = changed(|x, y| (x, y) == (30, 20), by);
+            assert_eq!((found.unclear.is_some(), found.is_equal()), (is_loud, !is_loud), "{by}");
+            let is_noted = found.notes.iter().any(|note| note.starts_with("only 1 of 3840 pixels differ"));
+            assert_eq!(is_noted, !is_loud, "{by}: {:?}", found.notes);
+        }
+    }
+
+    #[test]
+    fn only_channels_of_blocks_that_differ_count_as_tries() {
+        let one = side(|x, y| noise(x, y, 1));
+        /// Column, row and channel.
+        type Place = (usize, usize, usize);
+        let limit = |places: &[Place]| {
+            let mut other = side(|x, y| noise(x, y, 1));
+            for (x, y, channel) in places {
+                other.pixels[y * 80 + x][*channel] += 0.05;
+            }
+            compare(&one, &other, None).test.largest_limit
+        };
+        let (red, blue) = (0, 2);
+        let cases: [(&[Place], usize); 4] = [
+            (&[], 0),
+            (&[(3, 3, red)], 1),
+            (&[(3, 3, red), (4, 5, red), (3, 3, blue)], 2),
+            (&[(7, 7, red), (8, 7, red), (7, 8, red), (79, 47, blue)], 4),
+        ];
+        for (places, tries) in cases {
+            assert_eq!(limit(places), largest_of(tries, CHANCE), "{places:?}");
+        }
     }
 
     #[test]

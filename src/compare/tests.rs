@@ -1,7 +1,7 @@
 //! Films whose noise is unusual: none, or more than their difference. What a backend renders beside a file.
 
 use super::side::Rendering;
-use super::{PairedSamples, Side, beside, both, compare, sides};
+use super::{PairedSamples, Side, beside, both, compare, compare_sides, sides};
 use crate::backends::BackendChoice;
 use crate::cli::{CompareOptions, CompareSide};
 use crate::film::{Description, Film, checkpoint, fixed_point};
@@ -9,7 +9,7 @@ use crate::output::Encoding;
 use crate::recipe::Recipe;
 use crate::recipe::file::to_picture_toml;
 use crate::render_cpu::CpuOptions;
-use crate::stages::Transfer;
+use crate::stages::{Diffuse, Transfer};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
@@ -207,5 +207,61 @@ fn two_backends_render_the_samples_that_were_asked_for_else_those_of_the_recipe(
             assert_eq!(side.film.as_ref().unwrap().samples().to_string(), format!("0..{count}"));
         }
         assert_eq!(paired.map(|paired| (paired.count, paired.parted)), Some((count * 8 * 6, 0)));
+    }
+}
+
+#[test]
+fn pictures_that_differ_in_width_or_height_are_not_compared() {
+    let side = |name: &str, width, height| {
+        Side::of_film(name.to_owned(), String::new(), Film::new(width, height, 1))
+    };
+    for ([width, height], told) in [
+        ([8, 7], Some("a.exr has 8x6 pixels and b.exr has 8x7; render both at the same size")),
+        ([9, 6], Some("a.exr has 8x6 pixels and b.exr has 9x6; render both at the same size")),
+        // As many pixels, but other rows.
+        ([6, 8], Some("a.exr has 8x6 pixels and b.exr has 6x8; render both at the same size")),
+        ([8, 6], None),
+    ] {
+        let found = compare_sides(&[side("a.exr", 8, 6), side("b.exr", width, height)], None);
+        assert_eq!(found.err().map(|error| error.to_string()).as_deref(), told);
+    }
+}
+
+#[test]
+fn jobs_are_remarked_on_if_they_explain_the_result() {
+    let side = |change: fn(&mut Recipe), samples| {
+        let mut recipe = small();
+        change(&mut recipe);
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(samples, 0).unwrap();
+        Side::of_rendered("a film".to_owned(), recipe, Arc::new(film)).unwrap()
+    };
+    let (same, other) = ("both hold the same samples", "these should be different pictures");
+    let remarks = |second: Side| -> Vec<&'static str> {
+        let found = compare_sides(&[side(|_| {}, 0..4), second], None).unwrap();
+        let is_noted = |part: &&str| found.notes.iter().any(|note| note.contains(*part));
+        [same, other].into_iter().filter(is_noted).collect()
+    };
+    assert_eq!(remarks(side(|_| {}, 0..4)), [same]);
+    assert_eq!(remarks(side(|_| {}, 4..8)), [""; 0]);
+    // Only the job counts, not how many samples the recipe asks for.
+    assert_eq!(remarks(side(|recipe| recipe.samples_per_pixel = 9, 0..4)), [same]);
+    type Change = fn(&mut Recipe);
+    let changes: [(Change, &[&str]); 5] = [
+        (|recipe| recipe.settings.seed = 1, &[]),
+        (|recipe| recipe.settings.max_depth = 3, &[]),
+        (|recipe| recipe.camera.vfov_degrees = 40.0, &[other]),
+        (|recipe| recipe.rules.diffuse = Diffuse::Hemisphere, &[other]),
+        (|recipe| recipe.scene = Recipe::find("metals").unwrap().scene, &[other]),
+    ];
+    for (change, expected) in changes {
+        assert_eq!(remarks(side(change, 0..4)), expected);
+    }
+    // Nothing is known of a picture without a film or a job.
+    for unknown in [
+        Side { film: None, ..side(|recipe| recipe.camera.vfov_degrees = 40.0, 0..4) },
+        Side { job: None, ..side(|recipe| recipe.camera.vfov_degrees = 40.0, 0..4) },
+    ] {
+        assert_eq!(remarks(unknown), [""; 0]);
     }
 }

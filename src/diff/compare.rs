@@ -83,8 +83,9 @@ pub fn departure(job: &RenderJob, path: &PathRecord, index: usize) -> Option<Dep
         }
         (Some(_), Look::Matte) => Departure::Scattered,
         (Some(_), Look::Mirror { .. }) => Departure::Reflected,
+        (None, _) if job.rules().shading != Shading::Path => Departure::Shown,
         (None, _) if index + 1 >= job.settings().max_depth as usize => Departure::CutOff,
-        (None, Look::Mirror { .. }) if job.rules().shading == Shading::Path => Departure::Absorbed,
+        (None, Look::Mirror { .. }) => Departure::Absorbed,
         (None, _) => Departure::Shown,
     })
 }
@@ -288,6 +289,48 @@ mod tests {
         assert_eq!(found(metal, None, last - 1), Some(Departure::Absorbed));
         assert_eq!(departure(&job, &path(), 1), None, "the sky");
         assert_eq!(departure(&job, &path(), 2), None, "nothing");
+    }
+
+    #[test]
+    fn a_stage_that_follows_no_rays_shows_what_the_first_one_hits() {
+        let path = |sphere: usize| {
+            let hit = Some(RecordedHit { sphere, distance: 1.0, position: None });
+            let ray =
+                RecordedRay { origin: [0.0; 3], direction: [0.0, 0.0, -1.0], throughput: [1.0; 3], hit };
+            PathRecord { rays: vec![ray], radiance: [0.5; 3] }
+        };
+        for shading in [Shading::FirstHitRed, Shading::Normals] {
+            for max_depth in [1, 24] {
+                let mut recipe = Recipe::find("three-spheres").expect("built in");
+                (recipe.rules.shading, recipe.settings.max_depth) = (shading, max_depth);
+                let job = recipe.job().expect("valid");
+                for sphere in 0..job.scene().spheres.len() {
+                    let found = departure(&job, &path(sphere), 0);
+                    assert_eq!(found, Some(Departure::Shown), "{shading:?} {max_depth} {sphere}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_comes_after_the_paths_have_parted_does_not_count() {
+        let mut changed = path();
+        changed.rays[0].direction[0] = 1e-3;
+        changed.rays[1].origin = [0.0, 2e-3, 0.0];
+        changed.rays[1].hit = Some(RecordedHit { sphere: 2, distance: 7.0, position: Some([0.0; 3]) });
+        changed.rays.push(RecordedRay { hit: None, ..changed.rays[1] });
+        changed.radiance = [0.25, 0.5, 0.75];
+        for (pair, tolerance) in
+            [([&path(), &changed], 1e-4), ([&changed, &path()], 1e-4), ([&path(), &changed], 1e-2)]
+        {
+            let found = compare(&job(), pair, tolerance);
+            let what = |difference: Difference| (difference.ray, difference.quantity);
+            assert_eq!(found.parting.map(what), Some((1, Quantity::Object)));
+            // The origin of the second ray is the path's largest coordinate, so all of it differs.
+            let first = if tolerance < 1e-3 { (0, Quantity::Direction) } else { (1, Quantity::Origin) };
+            assert_eq!(found.first.map(what), Some(first));
+            assert_eq!((found.largest, found.radiance), (1.0, 0.25 - 2.0 / FIXED_POINT_SCALE));
+        }
     }
 
     #[test]

@@ -45,3 +45,57 @@ pub fn find(
     }
     Ok(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::SideChoice;
+    use crate::recipe::Recipe;
+    use crate::render_cpu::{CpuOptions, Isa};
+
+    fn sides(choices: [SideChoice; 2]) -> [Side; 2] {
+        choices.map(|choice| Side::open(&choice).unwrap())
+    }
+
+    fn portable() -> SideChoice {
+        let isa = Some(Isa::Portable);
+        SideChoice::Cpu(CpuOptions { isa, threads: Some(1), ..CpuOptions::default() })
+    }
+
+    fn job() -> RenderJob {
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (12, 7);
+        recipe.job().unwrap()
+    }
+
+    /// Looks at each path by itself.
+    #[test]
+    fn the_sample_that_differs_most_is_found_in_its_pixel() {
+        let (job, tolerance) = (job(), 0.0);
+        let mut sides = sides([portable(), SideChoice::Reference]);
+        let (mut most, mut expected, mut differing) = (0.0, None, 0);
+        for sample in 0..3 {
+            for pixel in (0..7).flat_map(|y| (0..12).map(move |x| [x, y])) {
+                let [a, b] = sides.each_mut().map(|side| side.record(&job, pixel, sample).unwrap().radiance);
+                let by = (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f64::max);
+                differing += u64::from(radiance_amount(a, b) > tolerance);
+                if by > most {
+                    (most, expected) = (by, Some((pixel, sample)));
+                }
+            }
+        }
+        let (pixel, sample) = expected.unwrap();
+        assert!(0 < differing && differing < 3 * 7 * 12, "{differing}");
+        let found = find(&job, &mut sides, 3, tolerance).unwrap();
+        assert_eq!(found, Found { pixel, sample, searched: 3, differing });
+        // With a larger tolerance fewer samples differ, but the largest difference is the same.
+        let found = find(&job, &mut sides, 3, f64::INFINITY).unwrap();
+        assert_eq!(found, Found { pixel, sample, searched: 3, differing: 0 });
+    }
+
+    #[test]
+    fn between_equal_sides_no_sample_differs() {
+        let found = find(&job(), &mut sides([portable(), portable()]), 2, 0.0).unwrap();
+        assert_eq!(found, Found { pixel: [0, 0], sample: 0, searched: 2, differing: 0 });
+    }
+}

@@ -150,4 +150,68 @@ mod tests {
             assert!(!told(beside, false).contains("misses"), "{beside}");
         }
     }
+
+    /// Two paths that meet the second sphere; only the first goes on from there.
+    fn paths() -> [PathRecord; 2] {
+        let (direction, throughput) = ([0.0, 0.0, -1.0], [1.0; 3]);
+        let hit = Some(RecordedHit { sphere: 1, distance: 1.0, position: Some([0.0; 3]) });
+        let ray = RecordedRay { origin: [0.0; 3], direction, throughput, hit };
+        let on = RecordedRay { direction: [0.0, 1.0, 0.0], hit: None, ..ray };
+        [vec![ray, on], vec![ray]].map(|rays| PathRecord { rays, radiance: [0.5; 3] })
+    }
+
+    #[test]
+    fn each_quantity_has_its_sentence() {
+        let job = Recipe::find("three-spheres").unwrap().job().unwrap();
+        let [a, b] = paths();
+        let told = Told { job: &job, names: ["cpu", "gpu"], paths: [&a, &b], tolerance: 1e-4 };
+        let drift = "differ by 2.5e-3, but only 1e-4 is allowed";
+        for (quantity, expected) in [
+            (Quantity::Origin, format!("ray 1: the origins of the rays {drift}")),
+            (Quantity::Direction, format!("ray 1: the directions {drift}")),
+            (Quantity::Throughput, format!("ray 1: the throughputs {drift}")),
+            (Quantity::Distance, format!("ray 1: the distances {drift}")),
+            (Quantity::Radiance, format!("the radiances {drift}, although the rays agree")),
+            (
+                Quantity::Departure,
+                "ray 1: the paths part at sphere 1 (center): cpu is scattered, gpu is shown".to_owned(),
+            ),
+            (
+                Quantity::Object,
+                "ray 1: the paths part: cpu meets sphere 1 (center), gpu sphere 1 (center)".to_owned(),
+            ),
+        ] {
+            let said = told.sentence(&Difference { ray: 0, quantity, amount: 2.5e-3 });
+            assert_eq!(said, expected, "{quantity:?}");
+        }
+        // Of the second ray, only one side has anything to tell.
+        let said = told.sentence(&Difference { ray: 1, quantity: Quantity::Object, amount: f64::INFINITY });
+        assert_eq!(said, "ray 2: the paths part: cpu meets the sky, gpu nothing");
+    }
+
+    #[test]
+    fn a_verdict_names_the_first_difference_and_where_the_paths_part() {
+        let job = Recipe::find("three-spheres").unwrap().job().unwrap();
+        let [a, b] = paths();
+        let told = Told { job: &job, names: ["cpu", "gpu"], paths: [&a, &b], tolerance: 1e-4 };
+        let drift = Difference { ray: 0, quantity: Quantity::Direction, amount: 2e-3 };
+        let parting = Difference { ray: 0, quantity: Quantity::Departure, amount: f64::INFINITY };
+        let (of_drift, of_parting) = (told.sentence(&drift), told.sentence(&parting));
+        let agree = |most: &str| {
+            format!("the paths agree: the largest difference is {most}, and up to 1e-4 is allowed")
+        };
+        for (first, last, largest, radiance, expected) in [
+            (None, None, 0.0, 0.0, "the paths agree to the bit".to_owned()),
+            (None, None, 3e-5, 2e-5, agree("3.0e-5")),
+            (None, None, 2e-5, 4e-5, agree("4.0e-5")),
+            (None, None, 0.0, 4e-5, agree("4.0e-5")),
+            (None, None, 3e-5, 0.0, agree("3.0e-5")),
+            (Some(drift), None, 2e-3, 0.0, of_drift.clone()),
+            (Some(parting), Some(parting), 0.0, 0.5, of_parting.clone()),
+            (Some(drift), Some(parting), 2e-3, 0.5, format!("{of_drift}. Then {of_parting}")),
+        ] {
+            let comparison = PathComparison { first, parting: last, largest, radiance };
+            assert_eq!(told.verdict(&comparison), expected);
+        }
+    }
 }

@@ -140,6 +140,8 @@ mod tests {
             other => panic!("{other}"),
         };
         assert_eq!(kind_of(directory.path()), "a directory");
+        let told = open(directory.path()).unwrap_err().to_string();
+        assert!(told.ends_with(" is a directory, but a file is needed; name a file in it"), "{told}");
         assert!(matches!(read(&directory.path().join("x"), "a list", 1), Err(InputError::Unreadable { .. })));
         #[cfg(unix)]
         {

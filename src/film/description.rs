@@ -128,6 +128,8 @@ mod tests {
         assert_eq!(description.recipe(), "a\nb\nc\n");
         description.set(&"k".repeat(100), "two\nlines");
         assert_eq!(description.entries().next(), Some(("k".repeat(79).as_str(), "two lines")));
+        description.set(" Ort: Köln 1 ", " a: b ü ");
+        assert_eq!(description.entries().nth(1), Some(("Ort_ K_ln 1", "a: b ü")));
     }
 
     proptest! {

@@ -107,4 +107,17 @@ mod tests {
         let fine = dot(3, 3, 4, 1 << 20, 256);
         assert_eq!(fine.smoothed(), fine);
     }
+
+    #[test]
+    fn both_halves_of_any_shape_are_smoothed_and_an_edge_is_its_own_neighbour() {
+        let mut film = Film::new(4, 3, 2);
+        film.halves_mut()[0][6] = PixelSum([1600, 0, 0]);
+        film.halves_mut()[1][0] = PixelSum([1600, 0, 0]);
+        film.record(0..2, 0).unwrap();
+        let smooth = film.smoothed();
+        let [inner, corner] = [0, 1].map(|half: usize| smooth.halves()[half].iter().map(|sum| sum.0[0]));
+        assert!(inner.eq([0, 100, 200, 100, 0, 200, 400, 200, 0, 100, 200, 100]));
+        // Three quarters stay in the corner along each direction.
+        assert!(corner.eq([900, 300, 0, 0, 300, 100, 0, 0, 0, 0, 0, 0]));
+    }
 }

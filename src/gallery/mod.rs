@@ -96,6 +96,8 @@ fn listed(near: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::describe::counted;
+    use crate::stages::{DielectricLaws, Diffuse, SurfaceRule, Transfer};
     use std::collections::HashSet;
 
     #[test]
@@ -132,5 +134,45 @@ mod tests {
         assert_eq!(message("hollow-glas"), "there is no figure \"hollow-glas\"; did you mean hollow-glass?");
         assert!(message("quux-corge").ends_with(", defocus, book"), "{}", message("quux-corge"));
         assert_eq!(Figure::find("gamma").expect("a figure").stage().id, "lambertian-gamma");
+    }
+
+    #[test]
+    fn labels_say_what_is_true_of_their_pictures() {
+        let mut checked = 0;
+        for panel in Figure::ALL.iter().flat_map(|figure| figure.panels) {
+            let (label, setup) = (panel.label, &panel.stage.setup);
+            let (camera, rules) = (&setup.camera, &setup.rules);
+            let bounces = setup.max_depth - 1;
+            let is_true = match label {
+                "Pinhole" => camera.defocus_angle_degrees == 0.0,
+                "With a lens" => camera.defocus_angle_degrees > 0.0,
+                "Linear" => rules.transfer == Transfer::Linear,
+                "With gamma" => rules.transfer == Transfer::Gamma2,
+                "Uniform over the hemisphere" => rules.diffuse == Diffuse::Hemisphere,
+                "Lambertian" => rules.diffuse == Diffuse::Lambertian,
+                "Refraction only" => rules.dielectric == DielectricLaws::RefractOnly,
+                "Total reflection" => rules.dielectric == DielectricLaws::TotalReflection,
+                "Schlick's reflectance" => rules.dielectric == DielectricLaws::Schlick,
+                "Every distance above 0 counts" => rules.surface == SurfaceRule::Acne,
+                "Without acne" => rules.surface == SurfaceRule::Exact,
+                "At most four bounces" => bounces == 4,
+                "Two spheres" => (setup.scene)().spheres.len() == 2,
+                words if words.ends_with(" bounces") => words == format!("At most {bounces} bounces"),
+                words if words.ends_with(" spheres") => {
+                    words == format!("{} spheres", (setup.scene)().spheres.len())
+                }
+                words if words.ends_with(" degrees") => words == format!("{} degrees", camera.vfov_degrees),
+                words if words.ends_with(" per pixel") => {
+                    words == format!("{} per pixel", counted(setup.samples_per_pixel, "sample"))
+                }
+                words if words.ends_with(" pixels") => {
+                    words == format!("{} by {} pixels", setup.width, setup.height)
+                }
+                _ => continue,
+            };
+            assert!(is_true, "{}: {label}", panel.stage.id);
+            checked += 1;
+        }
+        assert_eq!(checked, 23, "labels with a number or the name of a rule");
     }
 }

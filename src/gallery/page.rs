@@ -141,6 +141,14 @@ mod tests {
                 page.contains(&figure.stage().url().replace('\'', "&#39;"))
                     || page.contains(&figure.stage().url())
             );
+            let stage = figure.stage();
+            let [section, chapter] = [
+                format!(">Section {}, {}</a>", stage.section, stage.section_title),
+                format!("<h2><span class=\"number\">{}</span> {}</h2>", stage.chapter(), stage.chapter_title),
+            ];
+            for part in [section, chapter] {
+                assert!(page.contains(&part) || page.contains(&part.replace('\'', "&#39;")), "{part}");
+            }
         }
         // Metal is in two figures.
         assert_eq!(page.matches("<img ").count(), 2, "{page}");

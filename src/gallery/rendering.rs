@@ -317,4 +317,27 @@ mod tests {
         let Failure::BrokeOff(error) = broke_off(anyhow!("full"), 1) else { panic!("not broken off") };
         assert_eq!(format!("{error:#}"), "broke off after 1 pictures, which are kept: full");
     }
+
+    #[test]
+    fn a_warning_of_a_render_is_told_once_and_the_still_is_finished() {
+        let directory = tempfile::tempdir().unwrap();
+        let broken = CpuOptions { threads: Some(1), panics_after: Some(0), ..CpuOptions::default() };
+        let order = Order {
+            directory: directory.path(),
+            stages: &[Stage::find("ppm-tiny").unwrap()],
+            quality: Quality::Quick,
+            backend: &BackendChoice::Cpu(broken),
+        };
+        let (mut warned, mut finished) = (Vec::new(), 0);
+        let outcome = render(&order, &Interrupt::unheard(), |event| match event {
+            Event::Warning(words) => warned.push(words.to_owned()),
+            Event::Finished(still) => {
+                finished += 1;
+                assert_eq!(still.samples_per_pixel, 1);
+            }
+            Event::Rendering(_) => {}
+        });
+        assert_eq!((outcome.unwrap().rendered, finished), (1, 1));
+        assert!(matches!(warned.as_slice(), [one] if one.contains("panicked")), "{warned:?}");
+    }
 }

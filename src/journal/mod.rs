@@ -75,23 +75,29 @@ pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
             return Err(JournalError::Filter { value, reason: "not UTF-8".to_owned() });
         }
     };
-    let wish = value.as_deref().map(str::trim).filter(|value| !value.is_empty());
-    let (words, target) = match (file, wish) {
-        (Some(path), wish) => {
+    let wish = wish_of(value.as_deref(), file.is_some());
+    let filter = filter_of(wish.unwrap_or("off"))?;
+    let target = match (file, wish) {
+        (Some(path), _) => {
             let file =
                 File::create(path).map_err(|source| JournalError::File { path: path.to_owned(), source })?;
-            (wish.unwrap_or(FILTER_OF_FILE), Target::File(Mutex::new(file)))
+            Target::File(Mutex::new(file))
         }
-        (None, Some(wish)) => (wish, Target::StandardError),
-        (None, None) => ("off", Target::Nowhere),
+        (None, Some(_)) => Target::StandardError,
+        (None, None) => Target::Nowhere,
     };
-    let filter = filter_of(words)?;
     let most = filter.filter().max(LevelFilter::Info);
     let journal = Journal { filter, target, began: Instant::now() };
     if log::set_boxed_logger(Box::new(journal)).is_ok() {
         log::set_max_level(most);
     }
     Ok(())
+}
+
+/// What is to be logged if [`VARIABLE`] has this value; `None` if nothing is.
+fn wish_of(value: Option<&str>, has_file: bool) -> Option<&str> {
+    let given = value.map(str::trim).filter(|value| !value.is_empty());
+    given.or(has_file.then_some(FILTER_OF_FILE))
 }
 
 fn filter_of(words: &str) -> Result<Filter, JournalError> {
@@ -158,5 +164,45 @@ mod tests {
         let kept = |level, target| is_kept(&Metadata::builder().level(level).target(target).build());
         assert!(kept(Level::Info, "weekender::backends") && kept(Level::Warn, "wgpu_hal"));
         assert!(!kept(Level::Debug, "weekender::backends") && !kept(Level::Info, "wgpu_hal"));
+    }
+
+    #[test]
+    fn a_file_has_a_filter_of_its_own_unless_the_variable_has_one() {
+        for (value, has_file, expected) in [
+            (None, false, None),
+            (Some("  "), false, None),
+            (None, true, Some("warn,weekender=debug")),
+            (Some(""), true, Some("warn,weekender=debug")),
+            (Some(" info "), false, Some("info")),
+            (Some("info"), true, Some("info")),
+        ] {
+            assert_eq!(wish_of(value, has_file), expected, "{value:?}, {has_file}");
+        }
+    }
+
+    #[test]
+    fn a_file_gets_what_the_filter_lets_through() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("run.log");
+        let journal = |words: &str| Journal {
+            filter: filter_of(words).unwrap(),
+            target: Target::File(Mutex::new(File::create(&path).unwrap())),
+            began: Instant::now(),
+        };
+        let logged = |words: &str| -> Vec<String> {
+            let journal = journal(words);
+            for (level, target) in
+                [(Level::Debug, "weekender::a"), (Level::Info, "weekender::b"), (Level::Debug, "wgpu_core")]
+            {
+                journal.log(
+                    &Record::builder().level(level).target(target).args(format_args!("x\u{1b}")).build(),
+                );
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            text.lines().map(|line| line.split_once(" s ").unwrap().1.to_owned()).collect()
+        };
+        assert_eq!(logged(FILTER_OF_FILE), ["DEBUG weekender::a: x\\u{1b}", "INFO  weekender::b: x\\u{1b}"]);
+        assert_eq!(logged("wgpu_core=trace"), ["DEBUG wgpu_core: x\\u{1b}"]);
+        assert_eq!(logged("off"), [""; 0]);
     }
 }

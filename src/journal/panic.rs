@@ -101,7 +101,10 @@ mod tests {
     #[test]
     fn a_report_says_what_ran_and_what_happened() {
         let text = report("weekender 1.2 (abc)", "weekender --batch", "it broke", "0.1 s INFO adapter X");
-        for part in ["weekender 1.2 (abc)", "weekender --batch", "it broke", "adapter X", "directory  /"] {
+        for part in [
+            "\n\nversion    weekender 1.2 (abc)\ncommand    weekender --batch\ndirectory  /",
+            "\n\nit broke\n\nLog (seconds since the start):\n0.1 s INFO adapter X\n",
+        ] {
             assert!(text.contains(part), "{part} in {text}");
         }
         assert!(report("", "", "", "").ends_with("(empty)\n"));

@@ -138,6 +138,7 @@ pub(super) fn tell(lines: &[String], is_good: bool) -> Result<ExitCode, Failure>
 
 #[cfg(test)]
 mod tests {
+    use super::super::parts::tests::{planned, save};
     use super::*;
 
     #[test]
@@ -155,5 +156,18 @@ mod tests {
         ] {
             assert_eq!(with(all.clone(), &more), both, "{all} and {more}");
         }
+    }
+
+    #[test]
+    fn films_that_are_not_in_the_plan_are_listed_by_name() {
+        let (_directory, plan) = planned();
+        for name in ["part-0.exr", "picture.exr", "b.exr"] {
+            save(&plan, name, 7..30);
+        }
+        for name in ["A.EXR", "note.txt", "exr"] {
+            std::fs::write(plan.beside(name), "x").unwrap();
+        }
+        let told = ["A.EXR is not in the plan (no film)", "b.exr is not in the plan (samples 7..30)"];
+        assert_eq!(strays(&plan), told);
     }
 }

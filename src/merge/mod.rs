@@ -94,14 +94,15 @@ fn repeated(films: &[PathBuf]) -> impl Iterator<Item = (usize, String)> {
 
 /// Warns of samples that are lost because `film` replaces a film that has others.
 fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
-    for out in out {
-        let is_kept = |samples: &SampleRanges| {
-            samples.iter().all(|range| film.samples().first_gap(range, u64::MAX).is_none())
-        };
-        if let Some(words) = Replaced::at(out, description.recipe()).warning(out, is_kept) {
-            console::note(&format!("warning: {words}"));
-        }
-    }
+    losses(out, film, description).iter().for_each(|words| console::note(&format!("warning: {words}")));
+}
+
+/// What is lost if `film` replaces what is at `out`, in words.
+fn losses(out: &[PathBuf], film: &Film, description: &Description) -> Vec<String> {
+    let is_kept = |samples: &SampleRanges| {
+        samples.iter().all(|range| film.samples().first_gap(range, u64::MAX).is_none())
+    };
+    out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept)).collect()
 }
 
 /// Writes the film to each file.
@@ -115,3 +116,28 @@ fn wrote(out: &[PathBuf]) -> String {
 
 /// The parts of a plan that are not whole.
 type Lacking = Vec<(usize, State)>;
+
+#[cfg(test)]
+mod tests {
+    use super::parts::tests::{film, planned, save};
+    use super::*;
+
+    #[test]
+    fn only_samples_that_the_result_does_not_have_are_lost() {
+        let (_directory, plan) = planned();
+        for (name, samples) in [("inner.exr", 10..13), ("same.exr", 7..30), ("more.exr", 29..31)] {
+            save(&plan, name, samples);
+        }
+        std::fs::write(plan.beside("empty.exr"), "").unwrap();
+        let out = ["inner.exr", "same.exr", "more.exr", "empty.exr", "new.exr"].map(|name| plan.beside(name));
+        let description = PlanSum::new(&plan).unwrap().description();
+        let lost = losses(&out, &film(&plan, 7..30), &description);
+        let words = "more.exr, which holds 2 samples per pixel of this picture (29..31)";
+        assert!(lost.len() == 1 && lost[0].contains(words), "{lost:?}");
+        // With a gap, other films have what is not in the sum.
+        let mut gappy = film(&plan, 7..12);
+        gappy.merge(&film(&plan, 13..31)).unwrap();
+        let lost = losses(&out, &gappy, &description);
+        assert!(lost.len() == 2 && lost[0].contains("inner.exr") && lost[1].contains("same.exr"), "{lost:?}");
+    }
+}

@@ -337,4 +337,24 @@ pub(super) mod tests {
         assert!(lines[2].starts_with("... and 1 more command; all of them: w merge "), "{told}");
         assert!(lines[2].ends_with("plan.json --check"), "{told}");
     }
+
+    #[test]
+    fn a_sum_says_how_its_plan_was_made() {
+        let (_directory, mut plan) = planned();
+        (plan.manifest.command, plan.manifest.stage) = ("w plan".to_owned(), Some("metal".to_owned()));
+        save(&plan, "part-0.exr", 7..17);
+        let mut sum = PlanSum::new(&plan).unwrap();
+        assert_eq!(sum.add(0, false).unwrap(), &State::Unfinished { missing: 13 });
+        assert_eq!(sum.film().sample_count(), 0, "only what is whole");
+        assert_eq!(sum.add(0, true).unwrap(), &State::Unfinished { missing: 13 });
+        let description = sum.description();
+        for (name, value) in [
+            (key::COMMAND, "w plan"),
+            (key::STAGE, "metal"),
+            (key::SCENE, "three-spheres"),
+            (key::SAMPLES, "10"),
+        ] {
+            assert_eq!(description.get(name), Some(value));
+        }
+    }
 }

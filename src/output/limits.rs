@@ -30,3 +30,22 @@ pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
     )
     .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_has_some_pixels_and_not_too_many() {
+        for (width, height, count) in
+            [(1, 1, Some(1)), (13, 7, Some(91)), (16_384, 16_384, Some(1 << 28)), (0, 5, None), (5, 0, None)]
+        {
+            assert_eq!(pixel_count(width, height).ok(), count, "{width}x{height}");
+        }
+        for [width, height] in [[16_385, 16_384], [(1 << 28) + 1, 1], [u32::MAX, u32::MAX]] {
+            let told = pixel_count(width, height).unwrap_err().to_string();
+            let words = format!("its size is {width}x{height}; only 1 to 268435456 pixels can be read");
+            assert_eq!(told, words);
+        }
+    }
+}

@@ -123,4 +123,18 @@ mod tests {
         let frames: Vec<String> = files.names().filter(|name| name.ends_with(".png")).collect();
         assert_eq!(frames, ["frame-0005.png", "frame-0006.png", "frame-0007.png", "frame-0008.png"]);
     }
+
+    #[test]
+    fn a_plan_that_was_copied_beside_itself_has_its_own_name_among_its_files() {
+        let directory = tempfile::tempdir().unwrap();
+        written(directory.path(), Samples::new(&(0..8), &divide(0..8, 2).unwrap()));
+        let copy = directory.path().join("copy.json");
+        std::fs::copy(directory.path().join(MANIFEST), &copy).unwrap();
+        let files = PlanFiles::of(&copy).unwrap();
+        let names: Vec<String> = files.names().collect();
+        assert_eq!(files.directory, directory.path());
+        for name in ["copy.json", "plan.json", "scene.toml", "part-1.exr"] {
+            assert!(names.iter().any(|found| found == name), "{name} is not in {names:?}");
+        }
+    }
 }

@@ -140,11 +140,34 @@ mod tests {
     #[test]
     fn gaps_and_frames_twice_are_found() {
         let good = Frames::new(&(0..9), None, RATE, 3).unwrap();
-        for (part, frames) in [(0, [0, 4]), (1, [4, 6]), (2, [6, 8]), (1, [3, 3])] {
+        for (part, frames, told) in [
+            (0, [0, 4], "part 1 has the frames 3..6, but 4 comes next"),
+            (1, [4, 6], "part 1 has the frames 4..6, but 3 comes next"),
+            (1, [3, 3], "part 1 has the frames 3..3, but 3 comes next"),
+            (2, [6, 8], "its parts end at frame 8, but it has 9"),
+            (2, [6, 10], "its parts end at frame 10, but it has 9"),
+        ] {
             let mut wrong = good.clone();
             wrong.parts[part] = FramePart { frames };
-            assert!(wrong.check().is_err(), "{frames:?}");
+            assert_eq!(wrong.check(), Err(told.to_owned()));
         }
+    }
+
+    #[test]
+    fn turntables_and_rates_that_cannot_be_are_refused() {
+        let check = |turntable, frames, seconds| {
+            Frames::new(&(0..4), turntable, FrameRate { frames, seconds }, 2).unwrap().check()
+        };
+        for turn in [None, Some(Turn::FramesPerTurn(1)), Some(Turn::DegreesPerFrame(-3.0))] {
+            assert_eq!(check(turn, 1, 1), Ok(()), "{turn:?}");
+        }
+        let refused = Err("its turntable or its rate cannot be".to_owned());
+        for turn in
+            [Turn::FramesPerTurn(0), Turn::DegreesPerFrame(f64::NAN), Turn::DegreesPerFrame(f64::INFINITY)]
+        {
+            assert_eq!(check(Some(turn), 1, 1), refused, "{turn:?}");
+        }
+        assert_eq!((check(None, 0, 1), check(None, 1, 0)), (refused.clone(), refused));
     }
 
     #[test]

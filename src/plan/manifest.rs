@@ -269,3 +269,53 @@ fn checksum(text: &[u8]) -> String {
     sum.text(text);
     sum.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::{Keyframe, Turn};
+    use crate::output::FrameRate;
+    use crate::plan::Frames;
+
+    fn recipe() -> Recipe {
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 6);
+        recipe
+    }
+
+    /// Plans four frames of a recipe.
+    fn write(directory: &Path, recipe: &Recipe, frames_per_turn: u32) -> Result<Plan<Frames>, PlanError> {
+        let rate = FrameRate { frames: 30, seconds: 1 };
+        let work = Frames::new(&(0..4), Some(Turn::FramesPerTurn(frames_per_turn)), rate, 2).unwrap();
+        Plan::write(directory, recipe, &recipe.job().unwrap(), Manifest::new(work))
+    }
+
+    #[test]
+    fn a_directory_keeps_the_plan_of_one_picture_with_its_samples_and_keyframes() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path();
+        write(path, &recipe(), 8).unwrap();
+        let changes: [fn(&mut Recipe); 3] = [
+            |recipe| recipe.samples_per_pixel = 7,
+            |recipe| recipe.settings.seed = 1,
+            |recipe| recipe.keyframes.push(Keyframe { frame: 2, camera: recipe.camera }),
+        ];
+        for (index, change) in changes.into_iter().enumerate() {
+            let mut other = recipe();
+            change(&mut other);
+            assert!(matches!(write(path, &other, 8), Err(PlanError::Taken { .. })), "{index}");
+        }
+        assert!(matches!(write(path, &recipe(), 9), Err(PlanError::Taken { .. })));
+        // The name is not part of the picture.
+        write(path, &Recipe { name: "other".to_owned(), ..recipe() }, 8).unwrap();
+    }
+
+    #[test]
+    fn a_plan_without_a_directory_is_in_the_current_one() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut plan = write(directory.path(), &recipe(), 8).unwrap();
+        assert_eq!((plan.directory(), plan.beside("x")), (directory.path(), directory.path().join("x")));
+        plan.path = PathBuf::from(MANIFEST);
+        assert_eq!((plan.directory(), plan.beside("x")), (Path::new("."), PathBuf::from("x")));
+    }
+}

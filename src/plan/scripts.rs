@@ -182,6 +182,8 @@ $(parts):
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::{Manifest, Samples, divide};
+    use crate::recipe::Recipe;
 
     fn values(kind: ScriptKind) -> [String; 4] {
         let part = if kind == ScriptKind::Make { "w render-part 'a $$b'" } else { "w render-part 'a b'" };
@@ -224,5 +226,61 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         std::fs::create_dir(&path).unwrap();
         assert!(check(ScriptKind::Make).is_err());
+    }
+
+    #[test]
+    fn each_script_has_the_commands_and_the_numbers_of_its_plan() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        let work = Samples::new(&(0..6), &divide(0..6, 3).unwrap());
+        let manifest = Manifest { flags: vec!["--every=5s".to_owned()], ..Manifest::new(work) };
+        let plan = Plan::write(directory.path(), &recipe, &recipe.job().unwrap(), manifest).unwrap();
+        let merge = "w merge plan.json --out picture.exr";
+        let expected = [
+            (
+                ScriptKind::Slurm,
+                "submit.sh",
+                vec!["sbatch --dependency=\"afterany:${parts%%;*}\" \"$@\" merge.sbatch"],
+            ),
+            (
+                ScriptKind::Slurm,
+                "parts.sbatch",
+                vec![
+                    "#SBATCH --array=0-2",
+                    "w render-part plan.json --part \"$SLURM_ARRAY_TASK_ID\" --every=5s &",
+                ],
+            ),
+            (ScriptKind::Slurm, "merge.sbatch", vec![merge]),
+            (
+                ScriptKind::Parallel,
+                "run.sh",
+                vec!["seq 0 2 |", "    'w render-part plan.json --part {} --every=5s' || exit", merge],
+            ),
+            (
+                ScriptKind::Make,
+                "Makefile",
+                vec![
+                    "parts := 0 1 2",
+                    "\tw merge plan.json --out picture.exr",
+                    "\tw render-part plan.json --part $@ --every=5s",
+                ],
+            ),
+        ];
+        for kind in ScriptKind::ALL {
+            let files = write_scripts(kind, &plan, "w").unwrap();
+            let own: Vec<PathBuf> = expected
+                .iter()
+                .filter(|(of, ..)| *of == kind)
+                .map(|(_, name, _)| plan.beside(name))
+                .collect();
+            assert_eq!(files, own, "the one to start comes first");
+        }
+        for (_, name, lines) in expected {
+            let text = std::fs::read_to_string(plan.beside(name)).unwrap();
+            for line in lines {
+                assert!(text.lines().any(|found| found == line), "{line:?} is not in {name}: {text}");
+            }
+        }
     }
 }

@@ -213,9 +213,11 @@ fn by_baseline(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backends::BackendChoice;
     use crate::film::PixelSum;
     use crate::recipe::Recipe;
     use crate::render::{BackendInfo, RenderError, Stats};
+    use crate::render_cpu::CpuOptions;
     use std::ops::Range;
 
     /// A measurement without errors that took so long.
@@ -303,6 +305,42 @@ mod tests {
         assert_eq!(measured(2), (2, 0.25, Some(1.0), 2));
         assert_eq!(measured(4), (4, 0.5, Some(2.0), 4));
         assert_eq!(clocked.traced, [0..1, 0..2, 2..4]);
+    }
+
+    #[test]
+    fn each_point_is_measured_on_the_samples_so_far() {
+        let cpu = BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() });
+        let mut recipe = Recipe::find("metals").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.settings.seed) = (16, 9, 3);
+        let job = recipe.job().unwrap();
+        let film_of = |samples| {
+            let mut film = job.new_film();
+            let mut renderer = backends::create(&cpu).unwrap();
+            renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+            film
+        };
+        let transfer = recipe.rules.transfer;
+        let reference = ReferencePicture::of_film("metals", "", &film_of(64), transfer).unwrap();
+        let [scene, backend, sampler] = ["metals", "cpu", "sobol"].map(str::to_owned);
+        let curve = Curve { scene, backend, sampler };
+        let limits = Limits { seconds: 1e9, samples: 4 };
+        let mut candidate = Candidate::of(&ReportBackend::Renderer(cpu.clone())).unwrap().unwrap();
+        let run = candidate.run(&curve, &job, &reference, limits, &|| true).unwrap().unwrap();
+        assert_eq!((&run.curve, run.seed, run.points.len()), (&curve, 3, 3));
+        let BackendInfo { name, device, lanes, .. } = backends::create(&cpu).unwrap().info();
+        assert_eq!(run.about, format!("{name} {device}, {lanes} lanes, 1 threads"));
+        for (point, samples) in run.points.iter().zip([1, 2, 4]) {
+            let film = film_of(samples);
+            let errors = reference.errors(&film_means(&film));
+            assert_eq!((point.samples, point.rejected, point.device_seconds), (samples, 0, None));
+            assert_eq!((point.mse, point.rel_mse, point.flip), (errors.mse, errors.rel_mse, errors.flip));
+            assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
+            assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
+        }
+        assert!(run.points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{run:?}");
+        assert!(candidate.run(&curve, &job, &reference, limits, &|| false).unwrap().is_none());
+        let asked = [SamplerKind::Sobol, SamplerKind::Independent];
+        assert_eq!(candidate.samplers(&asked), asked);
     }
 
     #[test]

@@ -156,15 +156,18 @@ mod tests {
     use super::*;
     use crate::film::{Description, checkpoint, fixed_point};
     use crate::recipe::file;
+    use crate::stages::Diffuse;
     use glam::DVec3;
 
     #[test]
     fn only_a_film_of_the_same_paths_is_a_reference() {
         let (_directory, path) = place();
         let recipe = small();
-        make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
+        let made = make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
         let read = |recipe: &Recipe| read(&path, recipe, &[SamplerKind::Sobol], 8);
-        assert_eq!(read(&recipe).unwrap().used.samples, 2);
+        assert_eq!(read(&recipe).unwrap().used, made.used);
+        assert_eq!((made.used.scene.as_str(), made.used.samples), ("metals", 2));
+        assert!(made.used.about.starts_with("cpu "), "{}", made.used.about);
         let mut moved = recipe.clone();
         moved.camera.look_from += DVec3::new(0.25, 0.5, 1.0);
         let mut other = Recipe::find("three-spheres").unwrap();
@@ -174,7 +177,18 @@ mod tests {
         wider.settings.width += 1;
         let mut shorter = recipe.clone();
         shorter.settings.max_depth -= 1;
-        for (what, recipe) in [("camera", moved), ("scene", other), ("size", wider), ("depth", shorter)] {
+        let mut taller = recipe.clone();
+        taller.settings.height += 1;
+        let mut ruled = recipe.clone();
+        ruled.rules.diffuse = Diffuse::Hemisphere;
+        for (what, recipe) in [
+            ("camera", moved),
+            ("scene", other),
+            ("width", wider),
+            ("height", taller),
+            ("depth", shorter),
+            ("rules", ruled),
+        ] {
             let error = read(&recipe).err().map(|error| error.to_string()).unwrap_or_default();
             assert!(error.contains("is not a picture of"), "{what}: {error}");
         }

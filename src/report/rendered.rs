@@ -177,6 +177,32 @@ mod tests {
     }
 
     #[test]
+    fn the_film_of_another_backend_is_replaced() {
+        let (_directory, path) = place();
+        let exact = BackendChoice::Reference { threads: Some(1) };
+        let job = recipe_of(&small()).job().unwrap();
+        let film_of = |choice: &BackendChoice, samples: u64| {
+            let mut film = job.new_film();
+            let mut renderer = backends::create(choice).unwrap();
+            renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+            film
+        };
+        for (choice, samples, backend) in [
+            (cpu(None), 2, "cpu "),
+            (cpu(None), 6, "cpu "),
+            (exact.clone(), 4, "reference f64"),
+            (exact, 8, "reference f64"),
+        ] {
+            make(&path, &small(), &choice, samples, |_| true).unwrap().unwrap();
+            let kept = checkpoint::load(&path).unwrap();
+            assert!(kept.film == film_of(&choice, samples), "{backend}, {samples}");
+            let told = |key| kept.description.get(key).unwrap_or_default();
+            assert_eq!((told(key::SCENE), told(key::SAMPLES)), ("metals", samples.to_string().as_str()));
+            assert!(told(key::BACKEND).starts_with(backend), "{}", told(key::BACKEND));
+        }
+    }
+
+    #[test]
     fn the_film_of_another_picture_is_replaced() {
         let (_directory, path) = place();
         let mut other = small();

@@ -84,4 +84,44 @@ mod tests {
         let found = rounding("s", "b", &exact, &exact);
         assert_eq!((found.bias, found.rms, found.floor, found.floor_limit), (0.0, 0.0, None, 0.0));
     }
+
+    /// Three samples per pixel, two in the first half and one in the second. In sixteenths, the mean of a half is 8 and
+    /// what `more` says of it.
+    fn uneven(more: &[[[f64; 3]; 2]]) -> Film {
+        let mut film = Film::new(more.len() as u32, 1, 2);
+        for (pixel, halves) in more.iter().enumerate() {
+            for (half, samples) in [2.0, 1.0].into_iter().enumerate() {
+                let sum = halves[half].map(|more| samples * (8.0 + more) / 16.0);
+                film.halves_mut()[half][pixel] = fixed_point(sum).unwrap();
+            }
+        }
+        film.record(0..3, 0).unwrap();
+        film
+    }
+
+    #[test]
+    fn rounding_is_worked_out_by_hand() {
+        let pixels = [[[1.0, 2.0, 3.0], [3.0, -2.0, 1.0]], [[-1.0, 0.0, 2.0], [1.0, 4.0, 2.0]]];
+        let of = |pixels: &[[[f64; 3]; 2]]| {
+            rounding("a scene", "a backend", &uneven(pixels), &uneven(&vec![[[0.0; 3]; 2]; pixels.len()]))
+        };
+        let close = |found: f64, sixteenths: f64| (found - sixteenths / 16.0).abs() < 1e-12;
+        let found = of(&pixels);
+        assert_eq!(
+            (found.scene.as_str(), found.backend.as_str(), found.samples),
+            ("a scene", "a backend", 3)
+        );
+        // Half the sums are 2, 0, 2 and 0, 2, 2.
+        assert!(close(found.bias, 8.0 / 6.0) && close(found.rms, (16.0_f64 / 6.0).sqrt()), "{found:?}");
+        // The products of the pixels sum to 2 and 3, so they are 5/6 on average, with a deviation of the root of 13 over 6.
+        let limit = (5.0_f64 / 6.0 + 2.0 * 13.0_f64.sqrt() / 6.0).sqrt();
+        assert!(found.floor.is_none() && close(found.floor_limit, limit), "{found:?}");
+        // Nine pixels of 2 each: 2/3 on average, with a deviation of 6/27.
+        let found = of(&[pixels[0]; 9]);
+        assert!(close(found.floor.unwrap(), (2.0_f64 / 3.0).sqrt()), "{found:?}");
+        assert!(close(found.floor_limit, (2.0_f64 / 3.0 + 4.0 / 9.0).sqrt()), "{found:?}");
+        // A mean product below 0 counts as 0 for the limit: here it is -1, with a deviation of 1.
+        let found = of(&[[[1.0; 3], [-1.0; 3]]]);
+        assert!(found.floor.is_none() && close(found.floor_limit, 2.0_f64.sqrt()), "{found:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::backends::BackendChoice;
+use crate::cli::ProgressChoice;
 use crate::kept;
 use crate::render_cpu::CpuOptions;
 use data::{Measured, ReferenceUsed, Rounding, Run};
@@ -170,4 +171,57 @@ fn what_was_measured_against_another_reference_is_discarded() {
     assert!(data.runs.iter().all(|run| run.curve.scene == second.scene));
     assert_eq!(data.rounding[0].scene, second.scene);
     assert_eq!(data.references, [better, second]);
+}
+
+#[test]
+fn what_a_report_depends_on_is_in_its_settings() {
+    let make = || ReferenceChoice::Make { name: "portable".to_owned(), choice: cpu(None), samples: 512 };
+    let options = |reference| ReportOptions {
+        scenes: vec![small()],
+        backends: Vec::new(),
+        samplers: vec![SamplerKind::Sobol],
+        seeds: 3,
+        size: (16, 9),
+        time_limit: 2.5,
+        max_samples: 64,
+        estimate_error: false,
+        targets: vec![0.01],
+        reference,
+        out: PathBuf::from("found"),
+        progress: ProgressChoice::Off,
+        command: "weekender report".to_owned(),
+    };
+    let expected = Settings {
+        software: SOFTWARE.to_owned(),
+        size: (16, 9),
+        seeds: 3,
+        time_limit: 2.5,
+        max_samples: 64,
+        estimate_error: false,
+        reference_samples: 512,
+        reference: "portable".to_owned(),
+    };
+    assert_eq!(super::settings(&options(make())), expected);
+    let of_file = Settings { reference_samples: 0, reference: "given/a.exr".to_owned(), ..expected.clone() };
+    assert_eq!(super::settings(&options(ReferenceChoice::File(PathBuf::from("given/a.exr")))), of_file);
+    let with_estimates = ReportOptions { estimate_error: true, ..options(make()) };
+    assert_eq!(super::settings(&with_estimates), Settings { estimate_error: true, ..expected });
+}
+
+#[test]
+fn a_curve_has_its_own_sampler_and_each_of_its_pictures_its_own_seed() {
+    let mut recipe = small();
+    recipe.settings.max_depth = 7;
+    for (sampler, seed, estimate_error) in
+        [(SamplerKind::Sobol, 0, true), (SamplerKind::Independent, 5, false), (SamplerKind::Sobol, 2, false)]
+    {
+        let job = job(&recipe, sampler, seed, estimate_error).unwrap();
+        let expected = RenderSettings { sampler, seed, estimate_error, ..recipe.settings };
+        assert_eq!((*job.settings(), job.scene()), (expected, &*recipe.scene));
+        let film = film(backends::create(&cpu(None)).unwrap().as_mut(), &job, 3).unwrap();
+        assert_eq!(
+            (film.samples().to_string(), film.halves().len()),
+            ("0..3".to_owned(), job.settings().half_count())
+        );
+    }
 }

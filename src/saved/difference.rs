@@ -95,6 +95,15 @@ mod tests {
                 "look-from is 0,0,0 here, 13,-2.5,0.001 there",
             ),
             (
+                |recipe| recipe.camera.look_at = DVec3::new(0.0, 0.5, -2.0),
+                "look-at is 0,0,-1 here, 0,0.5,-2 there",
+            ),
+            (|recipe| recipe.camera.vup.z = 0.25, "vup is 0,1,0 here, 0,1,0.25 there"),
+            (
+                |recipe| recipe.camera.defocus_angle_degrees = 0.6,
+                "defocus-angle is 0 degrees here, 0.6 degrees there",
+            ),
+            (
                 |recipe| recipe.camera.focus_distance = Some(3.4),
                 "focus-distance is that to the point looked at here, 3.4 there",
             ),

@@ -91,6 +91,12 @@ mod tests {
         description.set(key::SAMPLES, 1);
         write(&description);
         told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
+        let mut silent = Description::new(description.recipe());
+        write(&silent);
+        told(&recipe, "Weekender 1", "of no samples per pixel, not 2");
+        silent.set(key::SAMPLES, 2);
+        write(&silent);
+        told(&recipe, "Weekender 1", "from another program, not Weekender 1");
         std::fs::write(&path, "no picture").unwrap();
         told(&recipe, "Weekender 1", "frame.png");
     }

@@ -141,4 +141,31 @@ mod tests {
         assert!(found.warning(&path, |_| false).is_none());
         assert!(found.refusal(&path).unwrap().contains("is damaged"));
     }
+
+    #[test]
+    fn samples_of_another_version_are_not_lost_without_a_word() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("a.exr");
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        let text = file::to_picture_toml(&recipe);
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(0..1, 0).unwrap();
+        checkpoint::save(&path, &film, &Description::new(&text)).unwrap();
+        let told = Replaced::at(&path, &text).refusal(&path).unwrap();
+        assert!(told.contains("a.exr already holds 1 sample per pixel of this picture (0..1)"), "{told}");
+
+        let version = b"sample_version = 3";
+        let mut bytes = std::fs::read(&path).unwrap();
+        let place = bytes.windows(version.len()).position(|window| window == version).unwrap();
+        bytes[place + version.len() - 1] = b'2';
+        std::fs::write(&path, bytes).unwrap();
+        let found = Replaced::at(&path, &text);
+        let (warning, refusal) = (found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap());
+        assert!(warning.contains("a.exr, whose samples cannot be read: "), "{warning}");
+        assert!(refusal.contains("a.exr is there, but its samples cannot be read ("), "{refusal}");
+        for told in [warning, refusal] {
+            assert!(told.contains("samples of version 2"), "{told}");
+        }
+    }
 }

@@ -133,5 +133,6 @@ mod tests {
         assert_eq!(kept.parent(), Some(free.as_path()));
         let lost = keep_in(std::slice::from_ref(&full), "a", &film, &description).unwrap_err();
         assert!(lost.ends_with(&format!("failed, too: {} (no free name)", full.display())), "{lost}");
+        assert!(lost.starts_with("the samples are lost (6 per pixel); saving them elsewhere"), "{lost}");
     }
 }

@@ -143,3 +143,25 @@ pub struct UnknownStage {
     /// Similar ids, the most similar first.
     pub near: Vec<&'static str>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_books_pictures_are_400_pixels_wide_and_1200_in_its_last_chapter() {
+        for stage in Stage::ALL {
+            let expected = if stage.chapter() == "14" { 1200 } else { 400 };
+            assert_eq!(stage.book_width(), expected, "{}", stage.id);
+        }
+        assert_eq!(Stage::find("book").map(Stage::chapter), Ok("14"));
+    }
+
+    #[test]
+    fn a_chapter_and_a_section_have_addresses_of_their_own() {
+        let chapter = "Surface Normals and Multiple Objects";
+        let address = format!("{BOOK_URL}#surfacenormalsandmultipleobjects");
+        assert_eq!(book_url(chapter, None), address);
+        assert_eq!(book_url(chapter, Some("An Interval Class")), format!("{address}/anintervalclass"));
+    }
+}

@@ -27,7 +27,7 @@ impl PowerLaw {
         let count = points.len() as f64;
         let mean = |of: fn((f64, f64)) -> f64| logs().map(of).sum::<f64>() / count;
         let (mean_log_time, mean_log_error) = (mean(|p| p.0), mean(|p| p.1));
-        let spread: f64 = logs().map(|(t, _)| (t - mean_log_time).powi(2)).sum();
+        let spread = spread_of_times(points);
         let both: f64 = logs().map(|(t, e)| (t - mean_log_time) * (e - mean_log_error)).sum();
         if points.len() < 2 || spread.is_nan() || spread <= 0.0 {
             return None;
@@ -38,6 +38,13 @@ impl PowerLaw {
         let scatter = if points.len() > 2 { (squares / (count - 2.0)).sqrt() } else { 0.0 };
         Some(PowerLaw { slope, slope_deviation: scatter / spread.sqrt(), scatter })
     }
+}
+
+/// Sum of the squares of the times' logarithms around their mean.
+fn spread_of_times(points: &[Point]) -> f64 {
+    let logs = || points.iter().map(|point| point.time.ln());
+    let mean = logs().sum::<f64>() / points.len() as f64;
+    logs().map(|log| (log - mean).powi(2)).sum()
 }
 
 /// When a target is reached.
@@ -107,8 +114,7 @@ pub fn predict(history: &[Point], now: Point, target: f64) -> Option<Prediction>
     let (mut slope, mut slope_deviation, mut scatter) = (SLOPES[0], PRIOR_SLOPE_DEVIATION, LEAST_SCATTER);
     if let Some(law) = PowerLaw::through(tail).filter(|_| tail.len() > 2) {
         scatter = law.scatter.max(LEAST_SCATTER);
-        let deviation = law.slope_deviation * scatter / law.scatter.max(f64::MIN_POSITIVE);
-        let (prior, measured) = (PRIOR_SLOPE_DEVIATION.powi(-2), deviation.powi(-2));
+        let (prior, measured) = (PRIOR_SLOPE_DEVIATION.powi(-2), spread_of_times(tail) / scatter.powi(2));
         slope = (slope * prior + law.slope * measured) / (prior + measured);
         slope_deviation = (prior + measured).sqrt().recip();
     }
@@ -191,6 +197,60 @@ mod tests {
         let alone = predict(&[], now, now.error / 2.0).unwrap();
         assert!((alone.time / now.time - 4.0).abs() < 1e-6);
         assert!(alone.range[1] - alone.range[0] > found.range[1] - found.range[0]);
+    }
+
+    /// The measured slope counts by its uncertainty, at least that of a scatter of .02, beside a slope of -.5 +- .08.
+    #[test]
+    fn a_steep_or_flat_history_is_believed_only_as_far_as_pictures_are_known_to_fall() {
+        // The logarithms of four times, each twice the last, have squares around their mean of 5 ln(2)^2.
+        let measured = 5.0 * 2.0_f64.ln().powi(2) / 0.02_f64.powi(2);
+        let prior = 1.0 / 0.08_f64.powi(2);
+        let mean = |slope: f64| (slope * measured - 0.5 * prior) / (measured + prior);
+        let of = |slope: f64| {
+            let points = curve(slope, 6);
+            let now = points[5];
+            let found = predict(&points[..5], now, now.error / 2.0).unwrap();
+            (found.time / now.time, found.range.map(|time| time / now.time))
+        };
+        for (slope, expected) in
+            [(-0.6, mean(-0.6)), (-0.45, mean(-0.45)), (-1.5, -0.75), (-0.3, -0.42), (0.0, -0.42)]
+        {
+            let (factor, [early, late]) = of(slope);
+            let log_factor = 2.0_f64.ln() / -expected;
+            assert!((factor / log_factor.exp() - 1.0).abs() < 1e-9, "{slope}: {factor}");
+            let deviation =
+                ((0.02 / expected).powi(2) + (log_factor / expected).powi(2) / (measured + prior)).sqrt();
+            assert!((late / (log_factor + 2.0 * deviation).exp() - 1.0).abs() < 1e-9, "{slope}: {late}");
+            assert!((early / (log_factor - 2.0 * deviation).exp() - 1.0).abs() < 1e-9, "{slope}: {early}");
+        }
+        // Earlier points than the last four do not count.
+        let mut points = curve(-0.6, 9);
+        let now = points.pop().unwrap();
+        let of_last = predict(&points[5..], now, now.error / 2.0);
+        assert_eq!(predict(&points, now, now.error / 2.0), of_last);
+        assert_ne!(predict(&points[6..], now, now.error / 2.0), of_last);
+    }
+
+    #[test]
+    fn what_is_reached_or_cannot_be_reached_has_no_prediction() {
+        let points = curve(-0.5, 6);
+        let now = points[5];
+        for (now, target) in [
+            (now, now.error),
+            (now, 2.0 * now.error),
+            (now, 0.0),
+            (now, -0.01),
+            (Point { time: 0.0, ..now }, 0.5 * now.error),
+        ] {
+            assert_eq!(predict(&points[..5], now, target), None, "{now:?} {target}");
+        }
+        // An estimate at no time has no logarithm.
+        let begun = [&[Point { time: 0.0, error: 1.0 }][..], &points[3..5]].concat();
+        let target = 0.5 * now.error;
+        assert_eq!(predict(&begun, now, target), predict(&points[3..5], now, target));
+        // The prediction of a target that is nearly reached does not lie in the past.
+        let near = predict(&points[..5], now, 0.999 * now.error).unwrap();
+        assert!(near.range[0] == now.time && near.time > now.time && near.range[1] > near.time, "{near:?}");
     }
 
     #[test]

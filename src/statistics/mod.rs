@@ -26,5 +26,6 @@ mod tests {
         assert_eq!(median([3.0, 1.0, 2.0]), Some(2.0));
         assert_eq!(median([4.0, 1.0, 2.0, 3.0]), Some(2.5));
         assert_eq!(median([]), None);
+        assert_eq!(median([f64::NAN, 5.0, -2.0]), Some(5.0), "NaN sorts last");
     }
 }

@@ -61,6 +61,13 @@ mod tests {
         assert!((largest_of(1, 0.01) - 2.575_829).abs() < 1e-5);
         // 240 blocks have a tail of 4.2e-5.
         assert!((largest_of(240, 0.01) - 4.096).abs() < 1e-3, "{}", largest_of(240, 0.01));
+        assert_eq!(largest_of(0, 0.01), largest_of(1, 0.01));
+    }
+
+    #[test]
+    fn what_is_certain_has_no_limit_above_0_and_what_never_happens_one_that_is_not_reached() {
+        assert!(two_sided_quantile(1.0) < 1e-12 && two_sided_quantile(3.0) < 1e-12);
+        assert!((38.0..=40.0).contains(&two_sided_quantile(0.0)), "{}", two_sided_quantile(0.0));
     }
 
     #[test]

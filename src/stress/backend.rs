@@ -92,6 +92,15 @@ impl Backend {
     }
 }
 
+#[cfg(test)]
+impl Backend {
+    /// A backend that renders with `renderer` until that breaks, and then like the reference.
+    pub(super) fn of_renderer(name: &str, renderer: Box<dyn Renderer>) -> Self {
+        let choice = BackendChoice::Reference { threads: Some(1) };
+        Backend { name: name.to_owned(), choice, renderer: Some(renderer) }
+    }
+}
+
 fn accumulate(
     renderer: &mut dyn Renderer,
     job: &RenderJob,
@@ -127,6 +136,7 @@ fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -
 mod tests {
     use super::*;
     use crate::stress::families::build::{one_ball, sized};
+    use crate::stress::painted::{fill, painted};
 
     #[test]
     fn what_cannot_be_traced_is_said_and_the_next_picture_is_traced() {
@@ -138,6 +148,47 @@ mod tests {
         assert!(reason.starts_with("refused: look_from and look_at are both"), "{reason}");
         let traced = backend.trace(&sized(one_ball(), [2, 2], 2), &go_on).unwrap();
         assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (2, [0.5; 3]));
+    }
+
+    #[test]
+    fn a_renderer_that_broke_is_said_to_and_not_used_again() {
+        let small = sized(one_ball(), [2, 2], 4);
+        let cancelled = || Err(RenderError::Cancelled);
+        let failed = || Err(RenderError::Backend { backend: "cpu", reason: "it is gone".to_owned() });
+        let broken: [(Backend, bool, &str); 4] = [
+            (painted("a", |_, _, _| panic!("on purpose")), false, "the tracer panicked"),
+            (painted("b", move |_, _, _| cancelled()), false, "took more than 20 s"),
+            (painted("c", move |_, _, _| cancelled()), true, "interrupted"),
+            (painted("d", move |_, _, _| failed()), false, "cpu failed: it is gone"),
+        ];
+        for (mut backend, is_interrupted, expected) in broken {
+            let reason = backend.trace(&small, &AtomicBool::new(is_interrupted)).err();
+            assert_eq!(reason.as_deref(), Some(expected));
+            // The reference takes its place.
+            let traced = backend.trace(&small, &AtomicBool::new(false)).unwrap();
+            assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (4, [0.5; 3]), "{expected}");
+        }
+    }
+
+    #[test]
+    fn a_film_must_hold_all_samples_and_warnings_belong_to_their_picture() {
+        let go_on = AtomicBool::new(false);
+        let mut backend = painted("some", |job, samples, film| {
+            // The last sample is left out if paths are short.
+            fill(film, if job.settings().max_depth < 9 { 0..samples.end - 1 } else { samples }, 0.25)?;
+            Ok(if job.settings().max_depth > 50 { vec!["deep".to_owned()] } else { Vec::new() })
+        });
+        let mut traced = |max_depth: u32| {
+            let mut recipe = sized(one_ball(), [2, 2], 6);
+            recipe.settings.max_depth = max_depth;
+            backend.trace(&recipe, &go_on)
+        };
+        let deep = traced(60).unwrap();
+        assert_eq!((deep.warnings, deep.film.mean(0)), (vec!["deep".to_owned()], [0.25; 3]));
+        assert_eq!(traced(50).unwrap().warnings, [""; 0]);
+        let told = traced(8).err();
+        assert_eq!(told.as_deref(), Some("the film holds 5 samples per pixel instead of 6"));
+        assert!(traced(9).is_ok());
     }
 
     #[test]

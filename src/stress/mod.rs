@@ -10,6 +10,8 @@ mod exact;
 pub mod families;
 mod far;
 mod figures;
+#[cfg(test)]
+mod painted;
 mod pictures;
 mod report;
 mod search;

@@ -38,13 +38,7 @@ pub fn write_pictures(
     backend: &mut Backend,
     interrupt: &AtomicBool,
 ) -> Result<()> {
-    let [width, height] = SIZE;
-    let shape = &case.recipe.settings;
-    let is_square = shape.width == shape.height;
-    let ours = sized(case.recipe.clone(), [if is_square { height } else { width }, height], SAMPLES);
-    let many = ours.scene.spheres.len() > BOOK_SPHERES;
-    let recipes = [Some(ours.clone()), (!many).then(|| by_the_book(&ours))];
-    for (kind, recipe) in KINDS.into_iter().zip(recipes) {
+    for (kind, recipe) in KINDS.into_iter().zip(recipes(&case.recipe)) {
         let Some(recipe) = recipe else { continue };
         if let Ok(traced) = backend.trace(&recipe, interrupt) {
             let path = directory.join(file_name(&case.id, kind));
@@ -52,6 +46,16 @@ pub fn write_pictures(
         }
     }
     Ok(())
+}
+
+/// A recipe as both pictures of the page show it.
+fn recipes(recipe: &Recipe) -> [Option<Recipe>; 2] {
+    let [width, height] = SIZE;
+    let is_square = recipe.settings.width == recipe.settings.height;
+    let ours = sized(recipe.clone(), [if is_square { height } else { width }, height], SAMPLES);
+    let many = ours.scene.spheres.len() > BOOK_SPHERES;
+    let book = (!many).then(|| by_the_book(&ours));
+    [Some(ours), book]
 }
 
 fn description(recipe: &Recipe) -> Description {
@@ -121,6 +125,8 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::backends::BackendChoice;
+    use crate::stages::SurfaceRule;
+    use crate::stress::families::build::one_ball;
     use crate::stress::families::cases;
 
     #[test]
@@ -176,6 +182,63 @@ mod tests {
         assert_eq!([read.width, read.height], [80, 80]);
         // A ball of albedo .5 under a white sky, after the square root.
         assert!(read.pixels.iter().flatten().all(|x| (x - 0.5).abs() < 0.005), "{:?}", read.pixels[0]);
+    }
+
+    #[test]
+    fn the_page_shows_both_arithmetics_unless_the_book_would_take_too_long() {
+        let mut recipe = one_ball();
+        for (size, expected) in [([24, 16], SIZE), ([8, 6], SIZE), ([8, 8], [80, 80])] {
+            let [ours, book] = recipes(&sized(recipe.clone(), size, 4)).map(Option::unwrap);
+            assert_eq!((ours.scene.clone(), ours.camera), (recipe.scene.clone(), recipe.camera));
+            assert_eq!(([ours.settings.width, ours.settings.height], ours.samples_per_pixel), (expected, 32));
+            assert_eq!((ours.rules, book.rules.surface), (recipe.rules, SurfaceRule::Book));
+            assert_eq!(Recipe { rules: ours.rules, ..book }, ours);
+        }
+        for (count, has_book) in [(5000, true), (5001, false)] {
+            let scene = std::sync::Arc::make_mut(&mut recipe.scene);
+            scene.spheres = vec![scene.spheres[0]; count];
+            assert_eq!(recipes(&recipe).map(|recipe| recipe.is_some()), [true, has_book], "{count}");
+        }
+    }
+
+    #[test]
+    fn a_picture_that_is_missing_has_its_cell() {
+        let directory = tempfile::tempdir().unwrap();
+        let [first, second] = [("a/1", "book"), ("b/2", "ours")];
+        for (id, kind) in [first, second] {
+            std::fs::write(directory.path().join(file_name(id, kind)), "").unwrap();
+        }
+        let case = |(id, _): (&str, &str)| CaseReport {
+            id: id.to_owned(),
+            family: "",
+            stiff: "stiff".to_owned(),
+            expected: "1".to_owned(),
+            why: "so",
+            tolerance: 0.0,
+            spheres: 1,
+            measured: Vec::new(),
+            first_hits: None,
+            book: Vec::new(),
+        };
+        let report = StressReport {
+            schema: 1,
+            version: "",
+            backends: Vec::new(),
+            seconds: 1.0,
+            chosen: 2,
+            interrupted: false,
+            cases: [first, second].map(case).into(),
+        };
+        let page = page(directory.path(), &report);
+        let none = "<td>no picture</td>\n";
+        let of = |name: &str, alt: &str| format!("<td><img src=\"{name}\" alt=\"{alt}\"></td>\n");
+        for cells in [
+            format!("{none}{}</tr>\n", of("a-1-book.png", "a/1 book")),
+            format!("{}{none}</tr>\n", of("b-2-ours.png", "b/2 ours")),
+        ] {
+            assert!(page.contains(&cells), "{cells}: {page}");
+        }
+        assert_eq!(page.matches(none).count(), 2);
     }
 
     #[test]

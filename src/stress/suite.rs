@@ -57,15 +57,18 @@ fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
         let Some(ray) = record.rays.first() else { continue };
         let exact = first_hit(&recipe.scene, eye, DVec3::from_array(ray.direction));
         found.rays += 1;
-        found.agree += usize::from(match (ray.hit, exact) {
-            (None, None) => true,
-            (Some(hit), Some((_, distance))) => {
-                (hit.distance - distance).abs() <= DISTANCE_TOLERANCE * distance + margin
-            }
-            _ => false,
-        });
+        let hit = ray.hit.map(|hit| hit.distance);
+        found.agree += usize::from(agrees(hit, exact.map(|(_, distance)| distance), margin));
     }
     Some(found)
+}
+
+/// Whether the distance of a hit is the exact one, or both rays hit nothing.
+fn agrees(hit: Option<f64>, exact: Option<f64>, margin: f64) -> bool {
+    match (hit, exact) {
+        (Some(hit), Some(exact)) => (hit - exact).abs() <= DISTANCE_TOLERANCE * exact + margin,
+        (hit, exact) => hit.is_none() && exact.is_none(),
+    }
 }
 
 /// The eye; if `f64` cannot tell it from a surface, it is moved outside by the smallest distance that `f64` can tell.

@@ -119,6 +119,7 @@ mod tests {
     use crate::recipe::Recipe;
     use crate::scene::Scene;
     use crate::scene::builtin::{LeftSphere, metals, three_spheres};
+    use crate::stages::Stage;
     use glam::DVec3;
 
     /// The sliders of a scene whose records are those of its spheres from the last to the first.
@@ -181,5 +182,30 @@ mod tests {
         };
         assert_eq!(keys(2), ["vfov", "defocus", "focus", "fuzz", "index", "depth", "samples"]);
         assert_eq!(keys(1), ["vfov", "fuzz", "index", "depth"]);
+    }
+
+    #[test]
+    fn every_slider_can_show_the_value_of_its_stage() {
+        for stage in Stage::ALL {
+            let (recipe, id) = (stage.recipe(), stage.id);
+            let job = recipe.job().unwrap();
+            let scene_index: Vec<u32> = (0..job.scene().spheres.len() as u32).collect();
+            for slider in sliders(&job, recipe.samples_per_pixel, &scene_index) {
+                let Slider { key, min, max, step, unit, .. } = slider;
+                let value = if key == "samples" { slider.value.log2() } else { slider.value };
+                assert!(min <= value && value <= max, "{id}, {key}: {value}");
+                assert!(step > 0.0 && 10.0 * step <= max - min, "{id}, {key}: {step}");
+                assert_eq!(unit == "°", ["vfov", "defocus"].contains(&key), "{id}, {key}");
+                let expected = match key {
+                    "vfov" => recipe.camera.vfov_degrees,
+                    "defocus" => recipe.camera.defocus_angle_degrees,
+                    "focus" => recipe.camera.effective_focus_distance(),
+                    "depth" => f64::from(recipe.settings.max_depth),
+                    "samples" => recipe.samples_per_pixel as f64,
+                    _ => continue,
+                };
+                assert_eq!(slider.value, expected, "{id}, {key}");
+            }
+        }
     }
 }

@@ -202,3 +202,28 @@ fn an_animated_png_has_all_frames_and_exact_delays() {
     assert!(description.get(key::COMMAND).unwrap().contains("--turntable=6"));
     parse(description.recipe(), "turn").unwrap().job().unwrap();
 }
+
+#[test]
+fn the_figures_tell_the_picture_and_the_files() {
+    let directory = temp();
+    let json = render(directory.path(), &["--turntable=9", "--frames", "2..5", "--out", "d"]);
+    for (key, value) in [
+        ("schema", 1.into()),
+        ("version", env!("CARGO_PKG_VERSION").into()),
+        ("scene", "three-spheres".into()),
+        ("width", 24.into()),
+        ("height", 14.into()),
+        ("samples_per_pixel", 4.into()),
+        ("directory", "d".into()),
+        ("first_file", "d/frame-0002.png".into()),
+        ("last_file", "d/frame-0004.png".into()),
+        ("animation", serde_json::Value::Null),
+    ] {
+        assert_eq!(json[key], value, "{key}");
+    }
+    let seconds = ["rendering_seconds", "total_seconds"].map(|key| json[key].as_f64().unwrap());
+    assert!(0.0 < seconds[0] && seconds[0] <= seconds[1], "{json}");
+    // Frames that are there take no time.
+    let again = render(directory.path(), &["--turntable=9", "--frames", "2..5", "--out", "d"]);
+    assert_eq!((&again["rendering_seconds"], &again["kept"]), (&0.0.into(), &3.into()));
+}

@@ -259,3 +259,55 @@ fn frames_go_to_the_directory_that_out_names() {
         assert_eq!(file, animation, "{out}");
     }
 }
+
+/// A frame with the camera at `x`, focused at `e^focus`.
+fn at_and_focused(frame: u32, x: f64, focus: f64) -> Keyframe {
+    let look_from = DVec3::new(x, 2.0, 9.0);
+    Keyframe { frame, camera: Camera { look_from, focus_distance: Some(focus.exp()), ..camera() } }
+}
+
+/// Between 0, 1 and 0 a path without curvature at its ends is `1.5 t - 0.5 t^3`, there and back.
+#[test]
+fn a_path_begins_and_ends_without_curvature() {
+    let keyframes = [(0, 0.0), (8, 1.0), (16, 0.0)].map(|(frame, x)| at_and_focused(frame, x, 0.0));
+    let path = keyframed(keyframes.to_vec());
+    for frame in 0..=8 {
+        let t = f64::from(frame) / 8.0;
+        let expected = 1.5 * t - 0.5 * t * t * t;
+        for found in [path.camera(frame), path.camera(16 - frame)] {
+            assert!((found.look_from.x - expected).abs() < 1e-12, "{frame}: {}", found.look_from.x);
+        }
+    }
+}
+
+/// With the slopes 1 and 1/6 over 2 and 6 frames, that at the keyframe is `3 (2 + 6) / ((2 + 12) / 1 + (4 + 6) 6)`.
+#[test]
+fn the_focus_bends_by_the_slopes_on_both_sides_and_the_shorter_side_counts_more() {
+    let keyframes = [(0, 0.0), (2, 2.0), (8, 3.0)].map(|(frame, focus)| at_and_focused(frame, 0.0, focus));
+    let path = keyframed(keyframes.to_vec());
+    let slope = 24.0 / 74.0;
+    // Halfway, the slopes at both ends count with an eighth of the length.
+    for (frame, expected) in
+        [(1, 1.0 + 2.0 / 8.0 * (1.0 - slope)), (5, 2.5 + 6.0 / 8.0 * (slope - 1.0 / 6.0))]
+    {
+        let focus = path.camera(frame).focus_distance.unwrap().ln();
+        assert!((focus - expected).abs() < 1e-12, "{frame}: {focus}, expected {expected}");
+    }
+}
+
+#[test]
+fn a_lens_opens_evenly_and_its_focus_moves_evenly_to_the_eye() {
+    let keyframes = [(0, 0.0, 2.0), (4, 10.0, 32.0)].map(|(frame, defocus_angle_degrees, distance)| {
+        let camera = Camera { defocus_angle_degrees, focus_distance: Some(distance), ..camera() };
+        Keyframe { frame, camera }
+    });
+    let path = keyframed(keyframes.to_vec());
+    let radius = |degrees: f64| (degrees.to_radians() / 2.0).tan();
+    for frame in 0..=4 {
+        let now = path.camera(frame);
+        let opened = radius(now.defocus_angle_degrees) / radius(10.0);
+        assert!((opened - f64::from(frame) / 4.0).abs() < 1e-12, "{frame}: {opened}");
+        let distance = now.focus_distance.unwrap();
+        assert!((distance.log2() - f64::from(frame + 1)).abs() < 1e-12, "{frame}: {distance}");
+    }
+}

@@ -190,7 +190,10 @@ fn a_picture_that_is_dark_enough_for_rounding_to_matter_says_so() {
 fn a_black_picture_says_whether_samples_can_help() {
     let black = even_film(0.0, 64, 0);
     let told = |brightest| black.doubt(black.error().as_ref(), brightest).unwrap();
-    assert!(told(1.0).ends_with("more samples may find some"));
+    // Rounding can cost more than a hundredth of the light below 2.98e-6.
+    for brightest in [3e-6, 1.0] {
+        assert!(told(brightest).ends_with("more samples may find some"), "{brightest}");
+    }
     assert_eq!(
         told(0.0),
         "the picture is black, because the scene has no light; give the sky values above 0"
@@ -198,6 +201,7 @@ fn a_black_picture_says_whether_samples_can_help() {
     for (brightest, parts) in [
         (2.9e-8, ["is 2.9e-8 and", "every sample becomes 0"]),
         (1e-7, ["is 1e-7, and", "much of what paths find becomes 0"]),
+        (2.9e-6, ["is 2.9e-6, and", "much of what paths find becomes 0"]),
     ] {
         let told = told(brightest);
         assert!(parts.iter().all(|part| told.contains(part)) && !told.contains("more samples"), "{told}");
@@ -207,4 +211,41 @@ fn a_black_picture_says_whether_samples_can_help() {
     single.record(0..1, 0).unwrap();
     assert_eq!(single.doubt(None, 1.0), None);
     assert_eq!(Film::new(4, 3, 2).doubt(None, 0.0), None);
+}
+
+#[test]
+fn every_channel_counts_in_the_error_and_dark_ones_count_more_in_the_relative_one() {
+    // Two halves of one sample each, of two pixels.
+    let halves = [[[0.75, 0.25, 0.5], [0.0, 1.0, 0.125]], [[0.25, 0.25, 1.0], [0.5, 0.25, 0.0625]]];
+    let mut film = Film::new(2, 1, 2);
+    let (mut square, mut relative) = (0.0, 0.0);
+    for pixel in 0..2 {
+        for (half, sums) in halves.iter().enumerate() {
+            add(&mut film, pixel, half as u64, sums[pixel]);
+        }
+        let [first, second] = halves.map(|half| half[pixel]);
+        for (a, b) in first.into_iter().zip(second) {
+            let (error, mean): (f64, f64) = (0.5 * (a - b), 0.5 * (a + b));
+            square += error * error / 6.0;
+            relative += error * error / (mean * mean + 0.01) / 6.0;
+        }
+    }
+    film.record(0..2, 0).unwrap();
+    let error = film.error().unwrap();
+    assert!((error.rmse / square.sqrt() - 1.0).abs() < 1e-12, "{error:?}, but {square}");
+    assert!((error.rel_mse / relative - 1.0).abs() < 1e-12, "{error:?}, but {relative}");
+}
+
+#[test]
+fn a_doubt_says_how_many_pixels_and_how_much_of_the_brightness() {
+    let film = film_with_noise_in(1000, 50);
+    let told = film.doubt(film.error().as_ref(), 1.0).unwrap();
+    // 1 / (1/50 - 1/1000) = 52.6
+    assert!(told.contains("it effectively rests on 53 of 1000 pixels, but needs 100;"), "{told}");
+    // One unit in a thousand samples: rounding can cost much more than what is there.
+    let mut faint = Film::new(4, 3, 2);
+    faint.halves_mut()[0][5].0[1] = 1;
+    faint.record(0..1000, 0).unwrap();
+    let told = faint.doubt(faint.error().as_ref(), 1.0).unwrap();
+    assert!(told.contains("its brightness is 6.0e-11") && told.contains("can cost 100 % of it"), "{told}");
 }

@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{CheckpointError, Film, checkpoint, merge_files};
+use weekender::film::{CheckpointError, FIXED_POINT_MAX, Film, checkpoint, merge_files};
 use weekender::output::decode_description;
 
 proptest! {
@@ -249,4 +249,45 @@ fn a_missing_channel_is_named() {
     spoil(&path, b"rest.R.lo", 8, b'p');
     let message = load_error(&path).to_string();
     assert!(message.contains("rest.R.lo is missing"), "{message}");
+}
+
+#[test]
+fn the_head_of_a_film_file_tells_everything_but_the_sums() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    let mut film = noisy_film(5, 3, 1, &[2..4, 9..12]);
+    film.record(20..21, 6).unwrap();
+    checkpoint::save(&path, &film, &description()).unwrap();
+    let head = checkpoint::read_head(&path).unwrap();
+    assert_eq!((head.width, head.height, head.halves), (5, 3, 1));
+    assert_eq!((&head.samples, head.rejected), (film.samples(), 6));
+    assert_eq!((head.version, head.sample_version), (4, 3));
+    assert_eq!(head.bytes, std::fs::metadata(&path).unwrap().len());
+    assert_eq!(head.description, description());
+    assert_eq!(checkpoint::check(&path).unwrap(), head);
+}
+
+#[test]
+fn sums_that_their_samples_cannot_give_are_refused_with_their_rows() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    let most = u64::from(FIXED_POINT_MAX);
+    // Of three samples, two are in the first half.
+    for (half, sum, is_possible) in
+        [(0, 2 * most, true), (0, 2 * most + 1, false), (1, most, true), (1, most + 1, false)]
+    {
+        let mut film = Film::new(2, 20, 2);
+        film.halves_mut()[half][39].0[1] = sum;
+        film.record(0..3, 0).unwrap();
+        checkpoint::save(&path, &film, &description()).unwrap();
+        let (checked, loaded) = (checkpoint::check(&path), checkpoint::load(&path));
+        if is_possible {
+            assert!(checked.is_ok() && loaded.unwrap().film == film, "{sum} in half {half}");
+        } else {
+            for told in [checked.unwrap_err(), loaded.unwrap_err()].map(|error| error.to_string()) {
+                let part = "the rows 16 to 19: a sum is larger than its samples can give";
+                assert!(told.contains(part), "{sum} in half {half}: {told}");
+            }
+        }
+    }
 }

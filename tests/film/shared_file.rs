@@ -152,3 +152,56 @@ fn writers_at_once_lose_nothing() {
     });
     assert!(at(&path) == film(&[0..2, 100..114, 200..214, 300..314]), "{}", at(&path).samples());
 }
+
+#[test]
+fn a_film_that_must_go_elsewhere_takes_the_first_free_number() {
+    let directory = tempfile::tempdir().unwrap();
+    let at_name = |name: &str| directory.path().join(name);
+    let path = at_name("g.exr");
+    let mut run = SharedFile::new(&path);
+    // A film of another shape has come.
+    let mut other = Film::new(2, 3, 2);
+    other.record(0..4, 0).unwrap();
+    checkpoint::save(&path, &other, &Description::new("r")).unwrap();
+    std::fs::write(at_name("g-2.exr"), "mine").unwrap();
+    let saved = run.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+    assert_eq!((saved.path, saved.is_elsewhere), (at_name("g-3.exr"), true));
+    let note = saved.note.unwrap();
+    for part in ["it now holds a film of another shape", "g.exr in the meantime", "are in ", "g-3.exr"] {
+        assert!(note.contains(part), "{part:?} is not in {note:?}");
+    }
+    assert!(at(&path) == other && at(&at_name("g-3.exr")) == film(&[0..2]));
+    assert_eq!(std::fs::read(at_name("g-2.exr")).unwrap(), b"mine");
+}
+
+#[test]
+fn a_file_that_holds_more_is_told_of_once_until_it_grows() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("g.exr");
+    let mut run = SharedFile::new(&path);
+    put(&path, &[0..20]);
+    let mut told = |samples: Range<u64>| {
+        let saved = run.save(&film(&[samples]), &Description::new("r"), &same).unwrap();
+        assert_eq!((&saved.path, saved.is_elsewhere), (&path, false));
+        saved.note
+    };
+    let note = told(0..10).unwrap();
+    assert!(note.contains("g.exr already holds all samples of this run, and also 10..20"), "{note}");
+    assert_eq!(told(0..12), None);
+    put(&path, &[0..24]);
+    let note = told(0..14).unwrap();
+    assert!(note.contains("and also 14..24"), "{note}");
+    assert!(at(&path) == film(&[0..24]));
+}
+
+#[test]
+fn another_picture_is_told_from_the_side_of_this_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("g.exr");
+    let mut run = SharedFile::new(&path);
+    checkpoint::save(&path, &film(&[0..4]), &Description::new("theirs")).unwrap();
+    let compared = |first: &str, second: &str| Err(format!("it is {first} here, {second} there"));
+    let saved = run.save(&film(&[0..2]), &Description::new("mine"), &compared).unwrap();
+    let note = saved.note.unwrap();
+    assert!(note.contains("a film of another picture: it is mine here, theirs there"), "{note}");
+}

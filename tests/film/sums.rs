@@ -2,7 +2,7 @@
 
 use super::common::{add, noisy_film};
 use weekender::film::{
-    FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, PixelSum, RADIANCE_LIMIT, fixed_point, to_byte,
+    FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, PixelSum, RADIANCE_LIMIT, SampleRanges, fixed_point, to_byte,
 };
 use weekender::stages::Transfer;
 
@@ -160,4 +160,34 @@ fn only_what_can_be_a_film_becomes_one() {
     beyond[1][11].0[2] = 5 * u64::from(FIXED_POINT_MAX) + 1;
     let message = build(4, beyond, 0).unwrap_err().to_string();
     assert!(message.contains("pixel 11"), "{message}");
+}
+
+#[test]
+fn a_film_may_have_all_that_its_samples_can_give_and_no_more() {
+    let most = u64::from(FIXED_POINT_MAX);
+    // Of five samples, three are in the first half.
+    let samples = SampleRanges::from_ranges([0..5]).unwrap();
+    let is_film = |width: u32, [a, b]: [u64; 2], rejected| {
+        let halves = [a, b].map(|k| vec![PixelSum([0, 0, k]); width as usize]).to_vec();
+        Film::from_parts(width, 1, halves, samples.clone(), rejected).is_ok()
+    };
+    assert!(is_film(2, [3 * most, 2 * most], 10));
+    assert!(!is_film(2, [3 * most + 1, 0], 0) && !is_film(2, [0, 2 * most + 1], 0));
+    assert!(!is_film(2, [0, 0], 11) && !is_film(0, [0, 0], 0));
+}
+
+#[test]
+fn a_film_takes_24_bytes_for_each_pixel_and_half() {
+    assert_eq!([1, 2].map(|halves| Film::bytes(1200, 675, halves)), [19_440_000, 38_880_000]);
+    assert_eq!(Film::bytes(u32::MAX, u32::MAX, 2), u64::MAX, "and never too few");
+}
+
+#[test]
+fn some_rows_of_the_means_are_those_of_the_picture() {
+    for halves in [1, 2] {
+        let film = noisy_film(7, 5, halves, &[0..6]);
+        let mut rows = vec![[0.0; 3]; 14];
+        film.mean_rows(2..4, &mut rows);
+        assert_eq!(rows, film.means()[14..28]);
+    }
 }

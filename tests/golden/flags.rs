@@ -4,7 +4,7 @@ use crate::common::{at_once, check, digest_of, fields, told};
 use crate::program_common::names;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
-use std::sync::LazyLock;
+use std::sync::{LazyLock, Mutex};
 use tempfile::TempDir;
 use weekender::cli::{Request, command, parse};
 
@@ -84,10 +84,10 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--simulate-panic 3",
             "--simulate-crash 5",
             "--frames 3..5 --turntable --out d",
-            "--frames 3..5 --turntable 90 --out a.png",
+            "--frames 3..5 --turntable=90 --out a.png",
             "--frames 3..5 --turntable=-1.5deg --out a-###.png",
             "--frames 3..5 --turntable --out a.png --fps 24",
-            "--turntable 4 --out d --samples 3",
+            "--turntable=4 --out d --samples 3",
             "--scene k.toml --frames 0..3 --out d",
             "--log x.log",
         ],
@@ -107,7 +107,7 @@ const COMMANDS: &[(&str, &[&str])] = &[
     ("--list", &[]),
     ("--version", &["--verbose"]),
     (
-        "bench --threads 2",
+        "bench",
         &[
             "--scene metals",
             "--scene metals --scene s.toml",
@@ -134,9 +134,8 @@ const COMMANDS: &[(&str, &[&str])] = &[
     (
         "plan --out d --parts 3",
         &[
-            "--parts 5",
             "--scene metals",
-            "--scene s.toml",
+            "--scene s.toml --samples 6",
             "--stage metal",
             "--size 20x10",
             "--depth 7",
@@ -153,17 +152,18 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--estimate-error off",
             "--format slurm",
             "--format make",
-            "--format gnu-parallel",
+            "--format parallel",
             "--program w",
             "--device cpu --threads 3",
             "--device reference",
             "--adapter some",
             "--simd 4 --isa avx2",
             "--every 5m",
-            "--frames 0..9 --turntable 90",
-            "--frames 0..9 --turntable 2deg --fps 24",
+            "--frames 0..9 --turntable=90",
+            "--frames 0..9 --turntable=2deg --fps 24",
         ],
     ),
+    ("plan --out d --parts 5", &["--frames 0..9 --turntable"]),
     (
         "compare portable reference",
         &[
@@ -180,9 +180,9 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--vfov 30",
             "--defocus-angle 2",
             "--focus-distance 3",
-            "--adapter some",
         ],
     ),
+    ("compare portable gpu", &["--adapter some"]),
     (
         "render-part p/plan.json --part 1 --device cpu",
         &[
@@ -191,13 +191,13 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--threads 3",
             "--every 5m",
             "--simulate-panic 3",
-            "--device gpu --adapter some",
-            "--device reference",
             "--simd 1 --isa portable",
         ],
     ),
-    ("merge f.exr g.exr", &["--out m.exr"]),
-    ("merge p/plan.json", &["--out m.exr", "--check", "--watch", "--every 5s", "--watch --every 5s"]),
+    ("render-part p/plan.json --part 1", &["--device gpu --adapter some", "--device reference"]),
+    ("merge f.exr g.exr --out m.exr", &["--out m.png"]),
+    ("merge p/plan.json --out m.exr", &["--out m.png", "--watch", "--watch --every 5s"]),
+    ("merge p/plan.json --check", &[]),
     ("info f.exr", &["--json"]),
     (
         "diff --sides portable,reference --pixel 2,3",
@@ -210,8 +210,6 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--tolerance .5",
             "--json j.json",
             "--json -",
-            "--sides cpu,scalar",
-            "--sides gpu,portable --adapter some",
             "--depth 7",
             "--sampler independent",
             "--estimate-error off",
@@ -221,10 +219,18 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--vfov 30",
             "--defocus-angle 2",
             "--focus-distance 3",
-            "--isa portable",
         ],
     ),
-    ("diff --sides portable,reference --find", &["--find=9", "--tolerance .5"]),
+    (
+        "diff --pixel 2,3",
+        &[
+            "--sides cpu,portable",
+            "--sides gpu,portable --adapter some",
+            "--sides cpu,reference --isa portable",
+        ],
+    ),
+    ("diff --sides portable,reference --find", &["--tolerance .5"]),
+    ("diff --sides portable,reference --find=9", &["--tolerance .5"]),
     (
         "compare f.exr portable",
         &[
@@ -235,7 +241,6 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--encoding srgb",
             "--encoding gamma2",
             "--seed 3",
-            "--adapter some",
             "--size 8x4",
         ],
     ),
@@ -253,9 +258,9 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--calibration",
             "--estimate-error off",
             "--target .02",
-            "--reference f.exr",
+            "--scenes three-spheres --reference f.exr",
             "--reference-backend portable",
-            "--adapter some",
+            "--backends gpu --adapter some",
             "--progress on",
         ],
     ),
@@ -264,7 +269,7 @@ const COMMANDS: &[(&str, &[&str])] = &[
         &[
             "--filter copies",
             "--search 3",
-            "--seed 4",
+            "--search 3 --seed 4",
             "--adapter some",
             "--out d",
             "--json j.json",
@@ -272,17 +277,8 @@ const COMMANDS: &[(&str, &[&str])] = &[
         ],
     ),
     ("companion --out d", &["--quick", "--source .", "--bench b.json", "--progress on"]),
-    (
-        "gallery --out d --device cpu",
-        &[
-            "--quick",
-            "--only metal,sky",
-            "--progress on",
-            "--threads 3",
-            "--device reference",
-            "--device gpu --adapter some",
-        ],
-    ),
+    ("gallery --out d --device cpu", &["--quick", "--only metal,sky", "--progress on", "--threads 3"]),
+    ("gallery --out d", &["--device reference", "--device gpu --adapter some"]),
     ("check p.png", &["--stage metal", "--json j.json", "--json -", "--out d"]),
 ];
 
@@ -336,21 +332,27 @@ fn changes(base: &Request, request: &Request) -> String {
 #[test]
 fn every_flag_changes_what_it_should() {
     let here = PLACE.path().to_str().unwrap().to_owned();
+    let refused = Mutex::new(Vec::new());
+    let refuse = |line: &str, message: String| refused.lock().unwrap().push(format!("{line}: {message}"));
     let texts = at_once(COMMANDS, |(base, additions)| {
         let mut text = format!("{base}\n");
         let before = match request(base) {
             Ok(before) => before,
-            Err(message) => return format!("{text}    refused: {message}\n"),
+            Err(message) => {
+                refuse(base, message);
+                return text;
+            }
         };
         for addition in *additions {
             writeln!(text, "  {addition}").unwrap();
             match request(&format!("{base} {addition}")) {
                 Ok(after) => text.push_str(&changes(&before, &after)),
-                Err(message) => writeln!(text, "    refused: {}", message.lines().next().unwrap()).unwrap(),
+                Err(message) => refuse(&format!("{base} {addition}"), message),
             }
         }
         text
     });
+    assert_eq!(refused.into_inner().unwrap(), [""; 0], "what is refused shows nothing");
     check("flags", &texts.concat().replace(&here, "DIR"));
     assert!(names(PLACE.path()).contains(&"k.toml".to_owned()));
 }

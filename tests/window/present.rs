@@ -325,6 +325,19 @@ fn is_finished(window: &Window) -> bool {
     has_samples(16)(window) && window.status().phase.is_over()
 }
 
+/// A later stage is at the right of the divider.
+#[test]
+fn the_lens_over_a_later_stage_does_not_tell_the_radiance_of_this_one() {
+    let mut harness = present("--stage metal --size 64x36 --samples 16", [1280.0, 720.0]);
+    until(&mut harness, "the end", is_finished);
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "the other picture", |window| window.has_other_picture());
+    for (x, is_told) in [(0.02, true), (0.98, false)] {
+        let (_, _, radiance) = told_by_lens(&mut harness, [x, 0.74]);
+        assert_eq!(radiance.is_some(), is_told, "at {x}");
+    }
+}
+
 #[test]
 fn the_lens_over_another_stage_does_not_tell_the_radiance_of_this_one() {
     let mut harness = finished();

@@ -113,7 +113,9 @@ impl Dialogs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{facts_of, part, rest_at};
     use crate::output::OutputFormat;
+    use eframe::egui;
     use std::path::Path;
 
     const PNG: Purpose = Purpose::Save(OutputFormat::Png);
@@ -143,5 +145,37 @@ mod tests {
         dialogs.open(Dialog::Help);
         assert_eq!(choose(&mut dialogs, Path::new("a.png")), Some(Ok((PNG, "a.png".into()))));
         assert!(dialogs.is_open());
+    }
+
+    #[test]
+    fn without_a_dialog_of_the_system_the_box_stays_and_the_user_is_told() {
+        let mut dialogs = Dialogs::default();
+        dialogs.open(Dialog::Path(PathBox::new(PNG, "a", None)));
+        assert_eq!(dialogs.browsed(), None, "there is no answer yet");
+        dialogs.browsed.answer(&Context::default()).give((PNG, Chosen::NoDialog));
+        let told = dialogs.browsed().unwrap().unwrap_err();
+        assert!(told.contains("cannot be shown") && dialogs.is_open(), "{told}");
+        assert_eq!(dialogs.browsed(), None, "it is told once");
+    }
+
+    #[test]
+    fn what_is_behind_a_dialog_does_not_see_the_pointer() {
+        let facts = facts_of("--stage metal --size 32x18");
+        let mut dialogs = Dialogs::default();
+        for is_open in [false, true] {
+            if is_open {
+                dialogs.open(Dialog::Help);
+            }
+            let mut seen = Vec::new();
+            let mut harness = part([800.0, 600.0], |ui| {
+                dialogs.begin(ui.ctx());
+                let behind = ui.ctx().input(|input| input.pointer.hover_pos());
+                assert_eq!(dialogs.ui(ui, &facts, &mut Vec::new()), None);
+                seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
+            });
+            rest_at(&mut harness, egui::pos2(400.0, 300.0));
+            drop(harness);
+            assert_eq!(seen.last(), Some(&[!is_open, true]));
+        }
     }
 }

@@ -189,6 +189,7 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::remembered::Bookmark;
     use crate::app::tests::{Drawings, alone, dressed, facts_of, rest_at};
     use crate::stages::Stage;
     use eframe::egui::pos2;
@@ -340,5 +341,38 @@ mod tests {
             press(&mut dialog, Key::Enter, 1);
             assert_eq!(dialog.state().commands, [best]);
         });
+    }
+
+    #[test]
+    fn the_palette_begins_with_what_is_typed_in_the_frame_that_opens_it() {
+        let text = |letters: &str| egui::Event::Text(letters.to_owned());
+        let events = vec![text("zo"), egui::Event::PointerGone, text("om")];
+        let context = egui::Context::default();
+        let mut opened = Palette { text: "before".to_owned(), chosen: 3 };
+        let _ = context.run_ui(egui::RawInput { events, ..egui::RawInput::default() }, |ui| {
+            opened = Palette::typed(ui.ctx());
+        });
+        assert_eq!((opened.text.as_str(), opened.chosen), ("zoom", 0));
+    }
+
+    #[test]
+    fn bookmarks_and_recent_files_are_found_by_their_own_names() {
+        let mut facts = facts_of("--stage glass-schlick --size 32x18");
+        facts.model.remembered.recent = ["/of/a.png", "/of/b.exr"].map(std::path::PathBuf::from).to_vec();
+        let camera = facts.document().camera;
+        facts.model.remembered.bookmarks =
+            ["my first view", "my second view"].map(|name| Bookmark::new(name.to_owned(), &camera)).to_vec();
+        for (text, command) in [
+            ("b.exr", Command::Recent(1)),
+            ("go to my second view", Command::Bookmark(1)),
+            ("my first", Command::Bookmark(0)),
+        ] {
+            let found = matching(text, listed(&facts), |_| true);
+            assert_eq!(found.first().map(|(command, _)| *command), Some(command), "{text}");
+        }
+        assert!(listed(&facts).any(|(command, _)| command == Command::Palette));
+        assert!(
+            matching("", listed(&facts), |_| true).iter().all(|(command, _)| *command != Command::Palette)
+        );
     }
 }

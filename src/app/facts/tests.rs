@@ -14,9 +14,10 @@ use crate::app::model::view::{ViewState, With};
 use crate::app::tests::Case;
 use crate::film::Film;
 use crate::kept;
-use crate::progressive::{EndReason, HistoryPoint, ReferenceMeans, Stop};
+use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
 use crate::recipe::Recipe;
 use crate::scene::Camera;
+use crate::stages::{Rules, SurfaceRule};
 use crate::stress::shown_cases;
 
 /// A window with this view in which nothing has been traced yet.
@@ -350,4 +351,45 @@ fn views_are_those_of_the_picture_on_the_screen() {
             }
         }
     }
+}
+
+#[test]
+fn pictures_by_the_books_arithmetic_have_nothing_to_be_compared_with() {
+    let recipe = Recipe::builtin("two-spheres").unwrap();
+    let rules = Rules { surface: SurfaceRule::Book, ..recipe.rules };
+    let by_the_book = Recipe { rules, ..recipe.clone() };
+    let built_in = |recipe| Document::new(Origin::new(recipe, Source::Builtin));
+    for (document, has_other, has_book) in [
+        (built_in(recipe), true, true),
+        (built_in(by_the_book), false, false),
+        (stage("metal"), true, true),
+        // The stage has a neighbour, but another threshold than the book.
+        (stage("shadow-acne"), true, false),
+    ] {
+        let facts = early(document, ViewState::default());
+        let is_enabled = |command| facts.disabled_reason(command).is_none();
+        let found = [Command::Wipe, Command::WipeDifference, Command::BookArithmetic].map(is_enabled);
+        assert_eq!(found, [has_other, has_other, has_book], "{}", facts.title());
+    }
+}
+
+#[test]
+fn what_to_look_for_needs_its_view() {
+    // The sight of this stage is a view of the standard error.
+    let mut document = stage("three-spheres");
+    let reason =
+        |document: &Document| early(document.clone(), ViewState::default()).disabled_reason(Command::ShowMe);
+    assert_eq!(reason(&document), None);
+    document.settings.estimate_error = false;
+    assert_eq!(reason(&document).as_deref(), Some("The film has one half; switch on Estimate error"));
+}
+
+#[test]
+fn a_bookmark_needs_rays_and_a_reload_a_scene_file() {
+    let is_enabled =
+        |document, command| early(document, ViewState::default()).disabled_reason(command).is_none();
+    assert!(is_enabled(stage("metal"), Command::Bookmark(0)));
+    assert!(!is_enabled(stage("ppm-tiny"), Command::Bookmark(0)));
+    let origin = Origin::new(stage("metal").recipe(), Source::File("a.toml".into()));
+    assert!(is_enabled(Document::new(origin), Command::Reload));
 }

@@ -1,15 +1,21 @@
 //! Tests of frames.
 
 use super::*;
+use crate::app::answers::caught;
+use crate::app::command::{Command, SlotCommand};
+use crate::app::dialogs::Purpose;
 use crate::app::kept::on_screen::small_film;
 use crate::app::model::crop::Crop;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::kept_view::ShownSlots;
+use crate::app::model::sizing::Sizing;
 use crate::app::model::slots::{Slot, SlotNumber};
-use crate::app::tests::{until, window};
+use crate::app::model::view::{Mode, With};
+use crate::app::tests::{sleep_after, until, window};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
+use crate::progressive::ReferenceMeans;
 use egui::vec2;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -181,4 +187,196 @@ fn the_picture_that_a_key_would_flip_to_is_at_hand() {
     let is_there = |window: &Window| window.slot_actions.picture.shown(&kept).is_some();
     until(&mut window, &egui::Context::default(), "its picture", is_there);
     assert_eq!(window.looked(), None);
+}
+
+/// Looks at a kept picture of the same size.
+fn look_at_a_slot(window: &mut Window) {
+    let document = window.document().clone();
+    keep(window, document, Film::new(16, 9, 2));
+    window.model.view.look(Some(SlotNumber::ALL[0]));
+}
+
+fn present(window: &mut Window) {
+    window.toggle_presentation(&egui::Context::default());
+}
+
+#[test]
+fn escape_leaves_what_is_in_front() {
+    type Prepare = fn(&mut Window);
+    let live = Command::Slot(SlotCommand::LookLive);
+    // What the window shows, what Escape then does, and whether the card with what others left stays.
+    let cases: [(&str, Prepare, Option<Command>, bool); 21] = [
+        ("nothing", |_| {}, None, false),
+        ("full screen", |window| window.model.is_full_screen = true, Some(Command::FullScreen), false),
+        ("a presentation", present, Some(Command::Present), false),
+        ("a slot", look_at_a_slot, Some(live), false),
+        (
+            "a view",
+            |window| window.model.view.choose(Show::Normals),
+            Some(Command::Show(Show::Picture)),
+            false,
+        ),
+        (
+            "a wipe",
+            |window| window.model.view.toggle(Mode::Wipe, With::Stage),
+            Some(Command::Show(Show::Picture)),
+            false,
+        ),
+        ("a sight", Window::toggle_sight, Some(Command::ShowMe), false),
+        ("a selection", |window| window.model.selected = Some(1), Some(Command::Deselect), false),
+        (
+            "a selection behind a slot",
+            |window| {
+                window.model.selected = Some(1);
+                look_at_a_slot(window);
+            },
+            Some(live),
+            false,
+        ),
+        ("a crop", |window| window.model.view.crop = Some(None), Some(Command::Crop), false),
+        ("first steps", |window| window.model.has_first_steps = true, Some(Command::FirstSteps), false),
+        (
+            "first steps behind a presentation",
+            |window| {
+                window.model.has_first_steps = true;
+                present(window);
+            },
+            Some(Command::Present),
+            false,
+        ),
+        ("the code", |window| window.model.remembered.has_code = true, Some(Command::Code), false),
+        (
+            "hidden code",
+            |window| (window.model.remembered.has_code, window.model.remembered.has_panels) = (true, false),
+            None,
+            false,
+        ),
+        (
+            "the code behind a presentation",
+            |window| {
+                window.model.remembered.has_code = true;
+                present(window);
+            },
+            Some(Command::Present),
+            false,
+        ),
+        ("a control", |window| (window.had_focus, window.model.selected) = (true, Some(1)), None, false),
+        (
+            "a dialog",
+            |window| {
+                window.model.selected = Some(1);
+                window.ask_path(Purpose::Open);
+            },
+            None,
+            false,
+        ),
+        (
+            "the card over a selection",
+            |window| (window.model.has_recovered, window.model.selected) = (true, Some(1)),
+            None,
+            false,
+        ),
+        (
+            "the card in place of the first steps",
+            |window| (window.model.has_recovered, window.model.has_first_steps) = (true, true),
+            None,
+            false,
+        ),
+        (
+            "the code over the card",
+            |window| (window.model.has_recovered, window.model.remembered.has_code) = (true, true),
+            Some(Command::Code),
+            true,
+        ),
+        (
+            "a presentation over the card",
+            |window| {
+                window.model.has_recovered = true;
+                present(window);
+            },
+            Some(Command::Present),
+            true,
+        ),
+    ];
+    for (name, prepare, expected, has_card) in cases {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
+        prepare(&mut window);
+        let (key, physical_key, modifiers) = (egui::Key::Escape, None, egui::Modifiers::NONE);
+        let press = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
+        let input = egui::RawInput { events: vec![press], ..egui::RawInput::default() };
+        let _ = egui::Context::default().run_ui(input, |ui| window.take_input(ui.ctx()));
+        assert_eq!(window.commands, Vec::from_iter(expected), "{name}");
+        assert_eq!(window.model.has_recovered, has_card, "{name}");
+    }
+}
+
+#[test]
+fn what_is_typed_after_a_tab_waits_for_frames_of_its_own() {
+    let (mut window, context) = (window("weekender --stage normals"), egui::Context::default());
+    let text = |text: &str| egui::Event::Text(text.to_owned());
+    let (key, physical_key, modifiers) = (egui::Key::Tab, None, egui::Modifiers::NONE);
+    let tab = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
+    let mut arriving = vec![text("1"), tab.clone(), text("2")];
+    for (expected, is_more) in [(text("1"), true), (tab, true), (text("2"), false)] {
+        let mut raw = egui::RawInput { events: std::mem::take(&mut arriving), ..egui::RawInput::default() };
+        let sleep = sleep_after(&context, |context| {
+            eframe::App::raw_input_hook(&mut window, context, &mut raw);
+        });
+        assert_eq!(raw.events, [expected]);
+        assert_eq!(sleep == Duration::ZERO, is_more);
+    }
+}
+
+#[test]
+fn a_film_that_is_about_to_go_on_keeps_its_size() {
+    for (is_pending, is_read, size) in
+        [(false, false, [400, 225]), (true, false, [16, 9]), (false, true, [16, 9])]
+    {
+        let mut window = window("weekender --stage metal --device cpu");
+        window.model.remembered.sizing = Sizing::Book;
+        window.model.document.set_size([16, 9]);
+        window.pending_film = is_pending.then(|| Film::new(16, 9, 2));
+        window.recovery.resuming = is_read.then(|| window.document().clone());
+        window.follow_size(&egui::Context::default());
+        assert_eq!(window.document().size(), size, "{is_pending} {is_read}");
+    }
+}
+
+#[test]
+fn a_picture_that_a_film_is_subtracted_from_keeps_its_size() {
+    let mut window = window("weekender --stage normals --device cpu");
+    let context = egui::Context::default();
+    until(&mut window, &context, "a picture", |window| window.main.has_samples(window.document()));
+    let [width, height] = window.document().size();
+    let means = vec![[0.0; 3]; (width * height) as usize];
+    let reference = ReferenceMeans { width, height, means, identity: None };
+    window.model.view.reference = Some(Arc::new(reference));
+    window.model.view.choose(Show::Difference);
+    window.model.remembered.has_panels = false;
+    let has_decided =
+        |window: &Window| window.sizer.offer().is_some() || window.document().size() != [width, height];
+    until(&mut window, &context, "another room", has_decided);
+    assert_eq!((window.document().size(), window.show()), ([width, height], Show::Difference));
+}
+
+#[test]
+fn an_injected_crash_comes_with_the_samples_that_it_waits_for() {
+    let mut window = window("weekender --stage normals --size 16x9 --samples 1 --device cpu");
+    let context = egui::Context::default();
+    until(&mut window, &context, "a picture", |window| window.main.has_samples(window.document()));
+    for (samples, crashes) in [(2, false), (1, true)] {
+        window.crashes_at = Some(samples);
+        assert_eq!(caught(|| window.poll(&context)).is_err(), crashes, "{samples}");
+    }
+}
+
+#[test]
+fn a_document_that_cannot_be_rendered_says_why_until_it_can() {
+    let mut window = window("weekender --stage normals --size 16x9 --samples 1 --device cpu");
+    let context = egui::Context::default();
+    for (angle, is_invalid) in [(90.0, false), (0.0, true), (80.0, false)] {
+        window.model.document.camera.vfov_degrees = angle;
+        let _ = context.run_ui(egui::RawInput::default(), |ui| window.follow(ui.ctx()));
+        assert_eq!(window.facts().invalid.is_some(), is_invalid, "{angle} degrees");
+    }
 }

@@ -273,3 +273,40 @@ fn what_is_typed_before_and_after_tab_comes_in_frames_of_its_own() {
         ]
     );
 }
+
+#[test]
+fn every_digit_with_alt_is_known_by_its_place() {
+    let typed = |place| commands(Key::Quote, Some(place), Modifiers::ALT);
+    assert_eq!(typed(Key::Num0), [Command::Slot(SlotCommand::LookLive)]);
+    assert_eq!(typed(Key::Num9), [Command::Slot(SlotCommand::Look(SlotNumber::ALL[8]))]);
+    // Other keys are known by what they type.
+    assert!(typed(Key::M).is_empty());
+    assert_eq!(commands(Key::M, Some(Key::Num9), Modifiers::NONE), [Command::Slot(SlotCommand::Keep)]);
+}
+
+#[test]
+fn a_key_that_was_pressed_with_ctrl_flies_when_it_is_pressed_again() {
+    let context = egui::Context::default();
+    let before = Camera { look_from: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, ..Camera::BOOK };
+    let pressed = |pressed, modifiers| egui::Event::Key {
+        key: Key::D,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers,
+    };
+    let (none, ctrl) = (Modifiers::NONE, Modifiers::COMMAND);
+    let has_moved = |events: Vec<egui::Event>| {
+        let input = egui::RawInput { events, ..egui::RawInput::default() };
+        let (mut camera, mut has_moved) = (before, false);
+        let _ = context.run_ui(input, |ui| has_moved = fly(ui.ctx(), &mut camera));
+        has_moved
+    };
+    let held = egui::Event::ModifiersChanged;
+    assert!(!has_moved(vec![held(ctrl), pressed(true, ctrl)]));
+    assert!(!has_moved(vec![held(none)]), "Ctrl was released first");
+    assert!(!has_moved(vec![pressed(false, none)]));
+    assert!(has_moved(vec![pressed(true, none)]));
+    assert!(has_moved(vec![]), "it is held");
+    assert!(!has_moved(vec![pressed(false, none)]));
+}

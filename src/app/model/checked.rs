@@ -65,3 +65,48 @@ impl CheckedScene {
 pub(crate) fn stamp_of(path: &Path) -> Option<Stamp> {
     Stamp::of(path).ok().flatten()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+
+    #[test]
+    fn a_scene_is_in_its_file_as_long_as_nobody_changes_that() {
+        let directory = tempfile::tempdir().unwrap();
+        let [path, other] = ["mine.toml", "other.toml"].map(|name| directory.path().join(name));
+        let scene = CheckedScene::new(Arc::default(), Rules::FINISHED);
+        assert_eq!(scene.file(), None);
+        std::fs::write(&path, "one").unwrap();
+        scene.note_file(&path);
+        assert_eq!(scene.file(), Some(path.clone()));
+        std::fs::write(&path, "another length").unwrap();
+        assert_eq!(scene.file(), None);
+        scene.note_file(&path);
+        assert_eq!(scene.file(), Some(path.clone()), "it was saved again");
+        std::fs::write(&other, "two").unwrap();
+        scene.note_file(&other);
+        assert_eq!(scene.file(), Some(other.clone()), "the file that it was saved in last");
+        std::fs::remove_file(other).unwrap();
+        assert_eq!(scene.file(), None);
+    }
+
+    #[test]
+    fn a_job_has_the_scene_with_its_rules_and_the_camera_and_settings_asked_for() {
+        let stage = Stage::find("lambertian-linear").unwrap().recipe();
+        let checked = CheckedScene::new(Arc::clone(&stage.scene), stage.rules);
+        let camera = Camera { vfov_degrees: 33.0, ..stage.camera };
+        let settings = RenderSettings { width: 31, seed: 9, ..stage.settings };
+        let expected = RenderJob::new(Arc::clone(&stage.scene), camera, settings, stage.rules).unwrap();
+        checked.check().unwrap();
+        assert_eq!(checked.job(camera, settings).unwrap(), expected);
+        assert!(checked.job(Camera { vfov_degrees: 0.0, ..camera }, settings).is_err());
+        assert!(checked.job(camera, RenderSettings { width: 0, ..settings }).is_err());
+        let mut broken = (*stage.scene).clone();
+        broken.spheres[0].radius = f64::NAN;
+        let broken = CheckedScene::new(Arc::new(broken), stage.rules);
+        let reason = broken.check().unwrap_err();
+        assert!(reason.to_string().contains("radius"), "{reason}");
+        assert_eq!(broken.job(camera, settings).unwrap_err().to_string(), reason.to_string());
+    }
+}

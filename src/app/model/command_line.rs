@@ -95,13 +95,15 @@ impl Document {
 mod tests {
     use super::*;
     use crate::animation::Keyframe;
+    use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::Origin;
     use crate::cli::{Request, parse};
     use crate::recipe::{Recipe, file};
-    use crate::render::RenderJob;
+    use crate::render::{RenderJob, SamplerKind};
     use crate::scene::Camera;
     use crate::stages::Stage;
     use glam::DVec3;
+    use std::sync::Arc;
 
     /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
@@ -207,5 +209,63 @@ mod tests {
         for name in ["my scene's.toml", "$HOME/a b", "a\"b", ""] {
             assert_eq!(shlex::split(&quoted(name)), Some(vec![name.to_owned()]), "{name}");
         }
+    }
+
+    #[test]
+    fn all_but_the_scene_is_repeated_for_a_changed_scene() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("saved.toml");
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut scene = document.scene().clone();
+        scene.spheres[0].radius = 7.0;
+        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+        // It was saved with a camera and settings that all differ from the present ones, which are the stage's.
+        let camera = Camera {
+            look_from: DVec3::new(1.0, 2.0, 3.0),
+            look_at: DVec3::new(4.0, 5.0, -6.0),
+            vup: DVec3::new(0.25, 1.0, 0.0),
+            vfov_degrees: 20.0,
+            defocus_angle_degrees: 3.0,
+            focus_distance: Some(9.0),
+        };
+        let settings = RenderSettings {
+            width: 31,
+            height: 17,
+            max_depth: 7,
+            sampler: SamplerKind::Independent,
+            seed: 9,
+            estimate_error: false,
+        };
+        let saved = Recipe { camera, settings, ..document.recipe() };
+        std::fs::write(&path, file::to_toml(&saved)).unwrap();
+        document.checked.note_file(&path);
+        for (defocus_angle_degrees, focus_distance) in [(0.0, None), (2.5, None), (2.5, Some(3.0))] {
+            document.camera = Camera { defocus_angle_degrees, focus_distance, ..document.camera };
+            let line = document.command_line(4, "cpu", None);
+            let (theirs, mine) = (job_of(&line), document.job(1).unwrap());
+            let acting = |camera: &Camera| {
+                let has_lens = camera.defocus_angle_degrees > 0.0;
+                Camera { focus_distance: has_lens.then(|| camera.effective_focus_distance()), ..*camera }
+            };
+            assert_eq!(acting(theirs.camera()), acting(mine.camera()), "{line}");
+            assert_eq!((theirs.scene(), theirs.settings()), (mine.scene(), mine.settings()), "{line}");
+            assert_eq!(theirs.rules(), mine.rules(), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_scene_file_is_named_as_long_as_it_holds_the_picture() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("mine.toml");
+        std::fs::write(&path, file::to_toml(&Stage::find("metal").unwrap().recipe())).unwrap();
+        let document = Document::new(Origin::new(file::load(&path).unwrap(), Source::File(path.clone())));
+        let line = document.command_line(4, "cpu", None);
+        let begin = format!("weekender --batch --scene={} --samples=4 ", path.display());
+        assert!(line.starts_with(&begin) && line.ends_with(" --out=mine.png"), "{line}");
+        assert_eq!(job_of(&line), document.job(1).unwrap());
+        document.origin.note_file(None);
+        let line = document.command_line(4, "cpu", None);
+        assert!(line.starts_with("weekender --batch --scene=mine-changed.toml --size=480x270 "), "{line}");
+        assert_eq!((document.scene_name().as_str(), document.name().as_str()), ("mine-changed", "mine"));
     }
 }

@@ -214,4 +214,18 @@ mod tests {
         let threads = if cores > 2 { Some(cores - 1) } else { None };
         assert_eq!(usual, BackendChoice::Reference { threads });
     }
+
+    #[test]
+    fn the_kernel_of_the_command_line_is_kept() {
+        let cpu = CpuOptions { isa: Some(Isa::Portable), general: true, ..CpuOptions::default() };
+        let options = DeviceOptions::of(&BackendChoice::Cpu(cpu));
+        for device in [Device::Cpu, Device::Both] {
+            let (BackendChoice::Cpu(found) | BackendChoice::Both(found, _)) =
+                device.backend(&options, None, None)
+            else {
+                panic!("no CPU")
+            };
+            assert_eq!((found.isa, found.general), (Some(Isa::Portable), true));
+        }
+    }
 }

@@ -300,4 +300,89 @@ mod tests {
         other.share_with(&first);
         assert!(other == before);
     }
+
+    #[test]
+    fn only_what_is_equal_is_shared() {
+        let recipe = Stage::find("metal").unwrap().recipe();
+        let of_file =
+            |recipe: &Recipe| Document::new(Origin::new(recipe.clone(), Source::File("a.toml".into())));
+        // The same picture from elsewhere.
+        let mut file = of_file(&recipe);
+        file.share_with(&metal());
+        assert_eq!(file.origin.source, Source::File("a.toml".into()));
+        assert!(!file.has_changed_scene());
+        // The same file, which holds another camera by now.
+        let camera = Camera { vfov_degrees: 33.0, ..recipe.camera };
+        let newer = Recipe { camera, ..recipe.clone() };
+        let mut document = of_file(&newer);
+        document.share_with(&of_file(&recipe));
+        assert_eq!(document.origin.recipe, newer);
+        // Equal changed scenes under other rules.
+        let rules = Rules { antialiasing: false, ..recipe.rules };
+        let mut aliased = edited(&of_file(&Recipe { rules, ..recipe }));
+        aliased.share_with(&edited(&metal()));
+        assert_eq!(*aliased.job(1).unwrap().rules(), rules);
+        // Changed scenes of one picture that differ.
+        let mut scene = metal().scene().clone();
+        scene.spheres[0].radius *= 2.0;
+        let mut larger = metal();
+        larger.checked = Arc::new(CheckedScene::new(Arc::new(scene.clone()), *larger.rules()));
+        larger.share_with(&edited(&metal()));
+        assert_eq!(larger.scene(), &scene);
+    }
+
+    #[test]
+    fn a_reset_gives_a_file_its_own_size_again() {
+        let recipe = Stage::find("metal").unwrap().recipe();
+        let mut document = Document::new(Origin::new(recipe, Source::File("a.toml".into())));
+        assert_eq!((document.size(), document.has_own_size), ([480, 270], true));
+        document.has_own_size = false;
+        document.set_size([64, 36]);
+        assert!(document.is_changed());
+        document.reset();
+        assert_eq!((document.size(), document.has_own_size), ([480, 270], true));
+    }
+
+    #[test]
+    fn the_document_of_a_film_is_its_stage_as_the_film_shows_it() {
+        let stage = Stage::find("metal").unwrap();
+        let mut recipe = stage.recipe();
+        recipe.camera.vfov_degrees = 33.0;
+        (recipe.settings.width, recipe.settings.height, recipe.settings.seed) = (64, 36, 5);
+        let document = Document::of_film(&recipe, Some(stage));
+        assert_eq!((document.camera, document.settings), (recipe.camera, recipe.settings));
+        assert_eq!((document.stage(), document.has_own_size), (Some(stage), true));
+        assert_eq!(document.origin.recipe, stage.recipe());
+        assert!(document.is_changed() && !document.has_changed_scene());
+    }
+
+    #[test]
+    fn a_change_of_the_samples_is_another_film_and_one_of_the_user_another_document() {
+        let usual = metal();
+        type Change = fn(&mut Document);
+        // A change, whether the film is still the same, and whether the document is.
+        let changes: [(Change, bool, bool); 8] = [
+            (|_| {}, true, true),
+            (|document| document.camera.look_at.x += 1.0, false, false),
+            (|document| document.settings.max_depth = 9, false, false),
+            (|document| *document = edited(document), false, false),
+            (|document| document.set_size([33, 22]), false, true),
+            (|document| document.stop = Stop::at_samples(9), true, false),
+            (|document| document.has_own_size = true, true, false),
+            (
+                |document| {
+                    let recipe = document.origin.recipe.clone();
+                    document.origin = Arc::new(document.origin.with_recipe(recipe));
+                },
+                false,
+                false,
+            ),
+        ];
+        for (index, (change, has_same_film, is_same)) in changes.into_iter().enumerate() {
+            let mut document = usual.clone();
+            change(&mut document);
+            assert_eq!(document.has_same_film(&usual), has_same_film, "change {index}");
+            assert_eq!(document == usual, is_same, "change {index}");
+        }
+    }
 }

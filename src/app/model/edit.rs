@@ -199,4 +199,46 @@ mod tests {
         }
         assert!(scene.materials.is_empty());
     }
+
+    #[test]
+    fn a_material_of_one_sphere_is_changed_in_its_place() {
+        let before = scene();
+        let green = Material::Lambertian { albedo: DVec3::new(0.0, 0.75, 0.0) };
+        let names = |scene: &Scene| -> Vec<String> {
+            scene.materials.iter().map(|named| named.name.clone()).collect()
+        };
+        // A move changes no material, also where two spheres share one.
+        for index in 0..3 {
+            let old = Body::of(&before, index).unwrap();
+            let body = Body { center: DVec3::new(1.0, 2.0, 3.0), radius: 0.25, ..old };
+            let (after, _) = Edit::Change(index, body).apply(&before);
+            assert_eq!((Body::of(&after, index), &after.materials), (Some(body), &before.materials));
+        }
+        let body = Body { material: green, ..Body::of(&before, 0).unwrap() };
+        let (after, _) = Edit::Change(0, body).apply(&before);
+        assert_eq!((Body::of(&after, 0), names(&after)), (Some(body), names(&before)));
+        // A shared material stays as it is; the name of another kind is new.
+        let mut taken = before.clone();
+        taken.add_material("metal", METAL);
+        let body = Body { material: METAL, ..Body::of(&before, 2).unwrap() };
+        let (after, _) = Edit::Change(2, body).apply(&taken);
+        after.validate().unwrap();
+        assert_eq!((Body::of(&after, 2), Body::of(&after, 1)), (Some(body), Body::of(&before, 1)));
+        assert_eq!(names(&after), ["grey", "glass", "metal", "metal-2"]);
+    }
+
+    #[test]
+    fn a_shared_material_stays_until_its_last_sphere_is_deleted() {
+        let before = scene();
+        let (once, _) = Edit::Delete(1).apply(&before);
+        assert_eq!((once.materials.len(), once.spheres.len()), (2, 2));
+        assert_eq!([0, 1].map(|index| Body::of(&once, index)), [0, 2].map(|index| Body::of(&before, index)));
+        let (twice, _) = Edit::Delete(1).apply(&once);
+        assert_eq!((twice.materials.len(), Body::of(&twice, 0)), (1, Body::of(&before, 0)));
+        assert_eq!(Edit::Duplicate(9, DVec3::X).apply(&before), (before.clone(), None));
+        let (more, _) = Edit::Duplicate(1, DVec3::X).apply(&before);
+        let copy = Body { center: DVec3::new(2.0, 0.0, 0.0), ..Body::of(&before, 1).unwrap() };
+        assert_eq!((Body::of(&more, 3), first_difference(&before, &more)), (Some(copy), Some(3)));
+        assert_eq!(first_difference(&more, &before), None, "what is left has not changed");
+    }
 }

@@ -86,4 +86,17 @@ mod tests {
         let same = Fitted::new([32, 18], [32, 18]);
         assert_eq!((same.pixel([7, 9]), same.words().as_str()), (Some([7, 9]), ""));
     }
+
+    #[test]
+    fn only_a_whole_row_or_column_beside_the_picture_is_a_bar() {
+        let row = Fitted::new([4, 3], [4, 4]);
+        assert_eq!(row.part(), [0.0, 0.125, 1.0, 0.875]);
+        assert_eq!(row.words(), ", scaled from 4x3, with bars");
+        let column = Fitted::new([3, 4], [4, 4]);
+        assert_eq!(column.part(), [0.125, 0.0, 0.875, 1.0]);
+        // All but half a column.
+        let rounded = Fitted::new([640, 360], [1037, 583]);
+        assert_eq!((rounded.part(), rounded.is_exact()), ([0.0, 0.0, 1.0, 1.0], false));
+        assert_eq!(rounded.words(), ", scaled from 640x360");
+    }
 }

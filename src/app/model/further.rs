@@ -115,4 +115,43 @@ mod tests {
             assert_eq!(document.further(&done(reason, 0.00195)).unwrap().stop, expected, "{reason:?}");
         }
     }
+
+    #[test]
+    fn the_next_end_lies_beyond_what_was_reached() {
+        let samples = Stop::at_samples;
+        let noise = |noise: f64| Stop { noise: Some(noise), ..Stop::default() };
+        let after = |samples_per_pixel| Status { samples_per_pixel, ..done(EndReason::Samples, 0.01) };
+        let unknown = Status { error: None, ..done(EndReason::NoiseTarget, 0.0) };
+        for (stop, status, words) in [
+            // The last pass went on after the end, or a stop was chosen that lies further ahead.
+            (samples(60), after(100), Some("200 spp")),
+            (samples(300), after(100), Some("600 spp")),
+            (samples(SAMPLE_LIMIT - 1), after(SAMPLE_LIMIT - 1), Some("4294967296 spp")),
+            (samples(SAMPLE_LIMIT), after(SAMPLE_LIMIT), None),
+            (noise(0.002), unknown, Some("0.001")),
+            (noise(0.002), done(EndReason::NoiseTarget, 0.01), Some("0.001")),
+            (noise(0.002), done(EndReason::NoiseTarget, 1e-6), None),
+            (samples(100), done(EndReason::Stopped, 0.01), None),
+            // There is no such end by now.
+            (Stop::default(), after(100), None),
+            (Stop::default(), done(EndReason::NoiseTarget, 0.01), None),
+            (Stop::default(), done(EndReason::TimeLimit, 0.01), None),
+        ] {
+            let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
+            document.stop = stop;
+            let found = document.further(&status).map(|further| further.words);
+            assert_eq!(found.as_deref(), words, "{stop:?} {:?}", status.phase);
+        }
+    }
+
+    #[test]
+    fn more_samples_are_offered_where_any_two_of_them_can_differ() {
+        let is_offered = |id| {
+            let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
+            document.stop = Stop::at_samples(100);
+            document.further(&done(EndReason::Samples, 0.01)).is_some()
+        };
+        // Samples are spread over a pixel, paths are traced, or neither.
+        assert_eq!(["antialiased", "sky", "normals"].map(is_offered), [true, true, false]);
+    }
 }

@@ -195,4 +195,28 @@ mod tests {
         let renamed = second.with_id(first.id.clone());
         assert_eq!((renamed.id, renamed.number), (first.id, number));
     }
+
+    #[test]
+    fn a_thumbnail_has_the_transfer_of_the_rows_that_it_shows() {
+        // Linear in the upper half and the square root in the lower one: a quarter becomes 64 or 128.
+        let document = Document::new(Origin::of_stage(Stage::find("gamut").unwrap()));
+        for (height, rows) in [(4, [1, 2]), (512, [63, 64])] {
+            let Thumbnail { size, rgb8 } = Thumbnail::of(&film(1, height, 64), &document);
+            assert_eq!(size, [1, height.min(128)]);
+            assert_eq!(rows.map(|row| rgb8[3 * row]), [64, 128], "{height} rows");
+        }
+    }
+
+    #[test]
+    fn the_picture_to_subtract_is_made_once_and_knows_its_film() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut two_halves = Film::new(4, 2, 2);
+        two_halves.record(0..2, 0).unwrap();
+        let kept = Kept::new(document, two_halves, Arc::default(), None);
+        assert_eq!((kept.bytes(), kept.samples(), kept.size()), (8 * 48, 2, [4, 2]));
+        assert!(kept.known_means().is_none());
+        let means = Arc::clone(kept.means());
+        assert!(kept.known_means().is_some_and(|known| Arc::ptr_eq(known, &means)));
+        assert!(means.identity.as_ref().is_some_and(|identity| identity.is_of(&kept.film)));
+    }
 }

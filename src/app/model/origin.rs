@@ -146,6 +146,7 @@ impl Origin {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::{Rules, Transfer};
     use glam::DVec3;
 
     #[test]
@@ -173,5 +174,76 @@ mod tests {
         recipe.settings.estimate_error = false;
         recipe.samples_per_pixel = 12;
         assert_eq!(Origin::new(recipe, Source::Embedded).usual_stop(), Stop::at_samples(12));
+    }
+
+    #[test]
+    fn a_recipe_is_known_by_its_spheres_and_its_rules() {
+        let (stage, sky) = (Stage::find("metal").unwrap(), Stage::find("sky").unwrap());
+        let builtin = Recipe::builtin("metals").unwrap();
+        let linear = |recipe: &Recipe| {
+            let rules = Rules { transfer: Transfer::Linear, ..recipe.rules };
+            Recipe { rules, ..recipe.clone() }
+        };
+        let named = Recipe { name: "mine".to_owned(), ..builtin.clone() };
+        let other = Recipe { scene: Recipe::builtin("two-spheres").unwrap().scene, ..builtin.clone() };
+        for (index, (recipe, stage, source)) in [
+            (stage.recipe(), Some(stage), Source::Stage(stage)),
+            (stage.recipe(), Some(sky), Source::Embedded),
+            (stage.recipe(), None, Source::Embedded),
+            (linear(&stage.recipe()), Some(stage), Source::Embedded),
+            (builtin.clone(), None, Source::Builtin),
+            (builtin.clone(), Some(sky), Source::Builtin),
+            (linear(&builtin), None, Source::Embedded),
+            (named, None, Source::Embedded),
+            (other, None, Source::Embedded),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let origin = Origin::guess(&recipe, stage);
+            assert_eq!((origin.source, origin.recipe), (source, recipe), "recipe {index}");
+        }
+        // Its camera is that of the built-in scene, to which a reset leads.
+        let mut moved = builtin.clone();
+        moved.camera.vfov_degrees = 33.0;
+        assert_eq!(Origin::guess(&moved, None).recipe, builtin);
+    }
+
+    #[test]
+    fn a_built_in_scene_that_is_also_a_stage_is_opened_as_that() {
+        let origin = Origin::of_builtin(Recipe::builtin("three-spheres").unwrap());
+        assert_eq!(origin.source, Source::Stage(Stage::find("three-spheres").unwrap()));
+        // The stage of this name has other spheres.
+        let other = Recipe { name: "metal".to_owned(), ..Recipe::builtin("two-spheres").unwrap() };
+        let origin = Origin::of_builtin(other.clone());
+        assert_eq!((origin.source, origin.recipe), (Source::Builtin, other));
+    }
+
+    #[test]
+    fn only_paths_that_differ_within_a_pixel_are_traced_until_the_noise_is_low() {
+        for (id, expected) in [
+            ("sky", Stop::at_samples(1)),
+            ("normals", Stop::at_samples(1)),
+            ("antialiased", Stop::at_samples(64)),
+            ("diffuse", Stop { noise: Some(Stop::NOISE), ..Stop::default() }),
+        ] {
+            assert_eq!(Origin::of_stage(Stage::find(id).unwrap()).usual_stop(), expected, "{id}");
+        }
+    }
+
+    #[test]
+    fn the_books_arithmetic_traces_the_edited_spheres() {
+        let origin = Origin::of_stage(Stage::find("metal").unwrap());
+        let mut scene = (*origin.recipe.scene).clone();
+        scene.spheres[0].radius += 0.25;
+        let edited = CheckedScene::new(Arc::new(scene.clone()), origin.recipe.rules);
+        let book = origin.by_the_book(&edited);
+        assert_eq!((&*book.recipe.scene, &**book.scene.scene()), (&scene, &scene));
+        let rules = Rules { surface: SurfaceRule::Book, ..origin.recipe.rules };
+        assert_eq!((&book.source, book.recipe.rules), (&Source::ByTheBook, rules));
+        assert!(origin.is_other_by_the_book() && !book.is_other_by_the_book(), "it is that already");
+        let is_other = |id| Origin::of_stage(Stage::find(id).unwrap()).is_other_by_the_book();
+        // The first one traces no rays, and the last one has another threshold than the book.
+        assert_eq!(["ppm-tiny", "normals", "shadow-acne"].map(is_other), [false, true, false]);
     }
 }

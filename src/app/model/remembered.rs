@@ -227,4 +227,26 @@ mod tests {
             assert_eq!(remembered.recent, std::slice::from_ref(&absolute));
         }
     }
+
+    #[test]
+    fn lanes_and_threads_that_this_machine_has_stay() {
+        let cores = device::core_count();
+        for (threads, expected) in [(0, None), (1, Some(1)), (cores, Some(cores)), (cores + 1, None)] {
+            let strange = Remembered { threads: Some(threads), ..Remembered::default() };
+            assert_eq!(strange.mended().threads, expected, "{threads} of {cores}");
+        }
+        let counts = device::lane_counts();
+        for lanes in &counts {
+            let mended = Remembered { lanes: Some(*lanes), ..Remembered::default() }.mended();
+            assert_eq!((mended.lanes, mended.lanes_in_use()), (Some(*lanes), *lanes));
+        }
+        assert!(counts.contains(&Remembered::default().lanes_in_use()));
+    }
+
+    #[test]
+    fn of_too_many_files_the_newest_stay() {
+        let names = |count: usize| (0..count).map(|number| PathBuf::from(format!("/of/{number}.png")));
+        let long = Remembered { recent: names(12).collect(), ..Remembered::default() };
+        assert_eq!(long.mended().recent, names(RECENT_LIMIT).collect::<Vec<_>>());
+    }
 }

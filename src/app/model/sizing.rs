@@ -191,4 +191,44 @@ mod tests {
         document.give_size([64, 36]);
         assert_eq!(document.size_words(Sizing::Viewport), "64x36");
     }
+
+    #[test]
+    fn only_pictures_from_files_keep_their_size() {
+        let recipe = Stage::find("metal").unwrap().recipe();
+        for (source, keeps) in [
+            (Source::Builtin, false),
+            (Source::ByTheBook, false),
+            (Source::File("a.toml".into()), true),
+            (Source::Embedded, true),
+        ] {
+            let document = Document::new(Origin::new(recipe.clone(), source.clone()));
+            assert_eq!(document.has_own_size, keeps, "{source:?}");
+            // The room decides, or else the size of the recipe.
+            let expected = if keeps { [480, 270] } else { [160, 90] };
+            assert_eq!(document.fitting_size(Sizing::Viewport, [160, 100]), Some(expected), "{source:?}");
+            assert_eq!(document.fitting_size(Sizing::Book, [160, 100]), Some([480, 270]), "{source:?}");
+            let words = if keeps { "480x270" } else { "480x270, as the scene defines it" };
+            assert_eq!(document.size_words(Sizing::Book), words, "{source:?}");
+        }
+    }
+
+    #[test]
+    fn a_size_is_rounded_and_never_empty() {
+        let size_in = |[width, height]: [u32; 2], room| {
+            let mut recipe = Stage::find("metal").unwrap().recipe();
+            (recipe.settings.width, recipe.settings.height) = (width, height);
+            Origin::new(recipe, Source::Builtin).size_in(room)
+        };
+        for (size, room, expected) in [
+            ([3, 2], [10, 7], Some([10, 7])),
+            ([3, 2], [100, 5], Some([7, 5])),
+            ([16, 9], [3, 1], Some([1, 1])),
+            // A fifth of a row.
+            ([1000, 10], [20, 20], Some([20, 1])),
+            ([10, 1000], [20, 300], Some([3, 300])),
+            ([10, 1000], [20, 99], None),
+        ] {
+            assert_eq!(size_in(size, room), expected, "{size:?} in {room:?}");
+        }
+    }
 }

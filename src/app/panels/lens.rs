@@ -55,3 +55,59 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
         camera.focus_distance = Some(distance);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{dressed, facts_of};
+    use eframe::egui::Role;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+    use glam::DVec3;
+
+    /// The controls of a lens of 10 degrees that is focused at 3.4, and their camera.
+    fn controls() -> Harness<'static, Camera> {
+        let facts = facts_of("--stage defocus --size 32x18");
+        let camera = facts.document().camera;
+        assert_eq!(lens(&camera), (10.0, Some(3.4)));
+        let mut harness =
+            dressed([260.0, 300.0]).build_ui_state(move |ui, camera| super::ui(ui, camera, &facts), camera);
+        harness.run_steps(2);
+        harness
+    }
+
+    #[test]
+    fn a_typed_number_can_be_beyond_the_slider_beside_it() {
+        let mut harness = controls();
+        for (name, role, value, angle, focus) in [
+            ("Defocus angle", Role::Slider, 100.0, 30.0, 3.4),
+            ("Defocus angle", Role::SpinButton, 100.0, 100.0, 3.4),
+            ("Defocus angle", Role::SpinButton, 1000.0, WIDEST_DEFOCUS_DEGREES, 3.4),
+            ("Defocus angle", Role::SpinButton, 5.0, 5.0, 3.4),
+            ("Focus distance", Role::Slider, 5000.0, 5.0, 1000.0),
+            ("Focus distance", Role::SpinButton, 5000.0, 5.0, 5000.0),
+            ("Focus distance", Role::Slider, 0.0, 5.0, 0.01),
+            ("Focus distance", Role::SpinButton, 0.001, 5.0, 0.001),
+        ] {
+            let mut named = harness.get_all_by_label(name);
+            named.find(|node| node.accesskit_node().role() == role).unwrap().set_value_accesskit(value);
+            drop(named);
+            harness.run_steps(3);
+            let found = lens(harness.state());
+            let error = (found.0 - angle).abs().max((found.1.unwrap() - focus).abs());
+            assert!(error < 1e-9, "{name}, {role:?}, {value}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_focus_that_no_longer_follows_stays_where_it_is() {
+        let mut harness = controls();
+        // 7 units before the eye.
+        harness.state_mut().look_at = harness.state().look_from + DVec3::new(0.0, 0.0, -7.0);
+        for expected in [None, Some(7.0)] {
+            harness.get_by_label("Focus on Look at").click();
+            harness.run_steps(3);
+            assert_eq!(lens(harness.state()), (10.0, expected));
+        }
+    }
+}

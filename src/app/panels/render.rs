@@ -167,4 +167,17 @@ mod tests {
         }
         assert_eq!((harness.state().lanes, harness.state().threads), (None, None));
     }
+
+    #[test]
+    fn a_device_that_is_chosen_by_key_closes_the_list() {
+        let mut harness: Harness<'_, Device> = dressed([260.0, 300.0]).build_ui_state(device, Device::Cpu);
+        harness.get_by_role(egui::Role::ComboBox).click();
+        harness.run_steps(4);
+        harness.get_by_label(Device::Reference.label()).focus();
+        harness.run_steps(4);
+        harness.key_press(egui::Key::Enter);
+        harness.run_steps(4);
+        assert!(harness.query_by_label(Device::Reference.label()).is_none(), "the list is still open");
+        assert_eq!(*harness.state(), Device::Reference);
+    }
 }

@@ -185,12 +185,9 @@ fn colour(ui: &mut Ui, albedo: &mut DVec3, disabled_reason: Option<&str>) {
             let mut all = ui.color_edit_button_rgb(&mut rgb);
             named(&all, "Albedo");
             all = explained(ui, all, about);
-            for (index, (old, new)) in before.into_iter().zip(rgb).enumerate() {
-                // The button rounds a colour that nobody changes, too.
-                if all.changed() && old != new {
-                    // As many digits as a scene file needs.
-                    albedo[index] = ((f64::from(new) * 1e4).round() / 1e4).clamp(0.0, 1.0);
-                }
+            // The button rounds a colour that nobody changes, too.
+            if all.changed() {
+                *albedo = picked(*albedo, before, rgb);
             }
             let width = (ui.available_width() - 8.0) / 3.0;
             for (name, component) in ["red", "green", "blue"].into_iter().zip(albedo.as_mut()) {
@@ -204,10 +201,22 @@ fn colour(ui: &mut Ui, albedo: &mut DVec3, disabled_reason: Option<&str>) {
     });
 }
 
+/// The colour after the user has picked another one. Components that stay keep all their digits; the others get as many
+/// as a scene file needs.
+fn picked(albedo: DVec3, before: [f32; 3], after: [f32; 3]) -> DVec3 {
+    let component = |index: usize| match after[index] {
+        same if same == before[index] => albedo[index],
+        other => ((f64::from(other) * 1e4).round() / 1e4).clamp(0.0, 1.0),
+    };
+    DVec3::from_array([0, 1, 2].map(component))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{facts_of, part};
+    use crate::app::tests::{dressed, facts_of, part};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn a_colour_that_nobody_changes_keeps_its_digits() {
@@ -226,6 +235,21 @@ mod tests {
     }
 
     #[test]
+    fn a_picked_colour_has_four_decimals_and_leaves_what_stays() {
+        let albedo = DVec3::new(0.123_456_789, 0.345_678_912, 0.5);
+        let before = [0.123_456_79, 0.345_678_9, 0.5];
+        for (after, expected) in [
+            (before, albedo),
+            ([0.25, before[1], before[2]], DVec3::new(0.25, albedo.y, 0.5)),
+            ([before[0], 1.0 / 3.0, before[2]], DVec3::new(albedo.x, 0.3333, 0.5)),
+            ([before[0], before[1], 2.0 / 3.0], DVec3::new(albedo.x, albedo.y, 0.6667)),
+            ([1.5, -0.5, 0.0], DVec3::new(1.0, 0.0, 0.0)),
+        ] {
+            assert_eq!(picked(albedo, before, after), expected, "{after:?}");
+        }
+    }
+
+    #[test]
     fn a_selected_sphere_that_nobody_changes_keeps_all_its_digits() {
         let facts = facts_of("--stage metal-fuzzy --size 32x18");
         let albedo = DVec3::new(0.123_456_789, 0.345_678_912, 0.987_654_321);
@@ -241,6 +265,31 @@ mod tests {
             harness.run_steps(3);
             drop(harness);
             assert!(after.iter().all(|found| *found == body), "{after:?}");
+        }
+    }
+
+    #[test]
+    fn another_kind_of_material_keeps_the_albedo_and_the_same_kind_everything() {
+        let gold = DVec3::new(0.8, 0.6, 0.2);
+        let grey = DVec3::splat(0.8);
+        let metal = Material::Metal { albedo: gold, fuzz: 0.3 };
+        let water = Material::Dielectric { refraction_index: 1.33 };
+        for (material, chosen, expected) in [
+            (metal, "lambertian", Material::Lambertian { albedo: gold }),
+            (metal, "metal", metal),
+            (metal, "dielectric", Material::Dielectric { refraction_index: 1.5 }),
+            (Material::Lambertian { albedo: gold }, "metal", Material::Metal { albedo: gold, fuzz: 0.0 }),
+            (water, "lambertian", Material::Lambertian { albedo: grey }),
+            (water, "metal", Material::Metal { albedo: grey, fuzz: 0.0 }),
+            (water, "dielectric", water),
+        ] {
+            let draw = |ui: &mut Ui, material: &mut Material| *material = kind(ui, *material, None);
+            let mut harness: Harness<'_, Material> = dressed([260.0, 300.0]).build_ui_state(draw, material);
+            harness.get_by_role(egui::Role::ComboBox).click();
+            harness.run_steps(3);
+            harness.get_all_by_label(chosen).last().unwrap().click();
+            harness.run_steps(3);
+            assert_eq!(*harness.state(), expected, "{material:?}: {chosen}");
         }
     }
 }

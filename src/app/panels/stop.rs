@@ -75,3 +75,30 @@ fn row(
         });
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{dressed, facts_of};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn a_limit_is_switched_on_with_its_usual_value() {
+        let facts = facts_of("--stage defocus --size 32x18");
+        let usual = facts.document().origin.recipe.samples_per_pixel;
+        let draw = move |ui: &mut Ui, stop: &mut Stop| super::ui(ui, stop, &facts);
+        let mut harness: Harness<'_, Stop> = dressed([260.0, 200.0]).build_ui_state(draw, Stop::default());
+        for (name, expected) in [
+            ("Samples", Stop { samples: Some(usual), ..Stop::default() }),
+            ("Time", Stop { seconds: Some(10.0), ..Stop::default() }),
+            ("Error", Stop { noise: Some(0.002), ..Stop::default() }),
+        ] {
+            for (is_on, expected) in [(true, expected), (false, Stop::default())] {
+                harness.get_by_label(name).click();
+                harness.run_steps(3);
+                assert_eq!(*harness.state(), expected, "{name}, on: {is_on}");
+            }
+        }
+    }
+}

@@ -2,23 +2,18 @@
 
 use super::*;
 use crate::app::model::crop::Crop;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
 use crate::app::model::kept_view::ShownSlots;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::model::view::Other;
 use crate::app::tests::{until, window};
-use crate::film::Film;
 use crate::kept;
 use crate::progressive::Stop;
-use crate::recipe::file;
 use crate::stages::Stage;
 use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, ViewportId, vec2};
+use std::cell::Cell;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// A window in which most commands have something to do.
-fn prepared() -> Window {
+pub(super) fn prepared() -> Window {
     let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
     let Model { document, view, remembered, selected, .. } = &mut window.model;
     remembered.bookmarks =
@@ -173,14 +168,6 @@ fn a_difference_is_from_the_stage_once_the_books_arithmetic_was_left() {
 }
 
 #[test]
-fn what_is_saved_is_said_in_words() {
-    let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
-    assert_eq!(window.size_words(), "The picture: 16x9");
-    window.model.document.has_own_size = false;
-    assert_eq!(window.size_words(), "The picture: 16x9, as in the viewport");
-}
-
-#[test]
 fn the_picture_is_zoomed_in_steps() {
     let mut window = window("weekender --stage normals --size 160x90 --samples 1 --device cpu");
     let (context, screen) = (Context::default(), Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0)));
@@ -254,89 +241,92 @@ fn a_view_that_a_picture_has_not_is_left() {
     }
 }
 
-/// Shows a slot whose picture is another one than the live one and has 7 samples per pixel.
-fn look_at_another(window: &mut Window) -> Arc<Kept> {
-    let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-    document.give_size([4, 2]);
-    let mut film = Film::new(4, 2, 2);
-    film.record(0..7, 0).unwrap();
-    let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
-    let slot = Slot { name: "mine".to_owned(), kept: Arc::clone(&kept) };
-    window.model.view.slots.put(SlotNumber::ALL[0], slot);
-    window.model.view.look(Some(SlotNumber::ALL[0]));
-    kept
+#[test]
+fn a_command_is_no_part_of_a_move_of_the_camera() {
+    let mut window = prepared();
+    window.changes.note_move();
+    window.perform(&Context::default(), Command::Darker);
+    assert!(!window.changes.is_moving());
 }
 
-/// The command line that is copied.
-fn copied(context: &Context, window: &mut Window) -> String {
-    let output = context.run_ui(RawInput::default(), |ui| window.perform(ui.ctx(), Command::CopyCommand));
-    let [OutputCommand::CopyText(line)] = &output.platform_output.commands[..] else {
-        panic!("{:?}", output.platform_output.commands)
+#[test]
+fn what_is_asked_for_while_all_panels_are_hidden_is_shown() {
+    let (mut window, context) = (prepared(), Context::default());
+    let panels = |window: &Window| {
+        let remembered = &window.model.remembered;
+        [remembered.has_panels, remembered.has_controls]
     };
-    line.clone()
-}
-
-/// The texts of the open dialog.
-fn dialog(context: &Context, window: &mut Window) -> Vec<String> {
-    let (facts, mut texts) = (window.facts(), Vec::new());
-    let screen = Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0));
-    for _ in 0..3 {
-        let input = RawInput { screen_rect: Some(screen), ..RawInput::default() };
-        let output = context.run_ui(input, |ui| {
-            assert!(window.dialogs.ui(ui, &facts, &mut Vec::new()).is_none());
-        });
-        let shapes = output.shapes.into_iter().map(|clipped| clipped.shape);
-        texts = shapes
-            .filter_map(|shape| match shape {
-                egui::Shape::Text(text) => Some(text.galley.text().to_owned()),
-                _ => None,
-            })
-            .collect();
-    }
-    texts
-}
-
-#[test]
-fn what_is_copied_named_and_saved_is_the_picture_of_the_slot_that_is_shown() {
-    let (context, mut window) = (Context::default(), prepared());
-    window.model.view.crop = None;
-    let kept = look_at_another(&mut window);
-    let line = copied(&context, &mut window);
-    for part in [" --stage=metal ", " --size=4x2 ", " --samples=7 ", " --out=metal.png"] {
-        assert!(line.contains(part), "{line}");
-    }
-    assert_eq!(window.size_words(), "slot 1: mine: 4x2");
-    for (command, name) in
-        [(Command::Save(OutputFormat::Png), "metal.png"), (Command::SaveScene, "metal.toml")]
-    {
+    for command in [Command::Controls, Command::Stages] {
+        window.model.remembered.has_panels = false;
         window.perform(&context, command);
-        let texts = dialog(&context, &mut window);
-        assert!(texts.iter().any(|text| text == name), "{texts:?}");
-        let is_size_told = texts.iter().any(|text| text == "slot 1: mine: 4x2");
-        assert_eq!(is_size_told, command != Command::SaveScene, "{texts:?}");
+        assert_eq!(panels(&window), [true; 2], "{command:?}");
     }
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("a.toml");
-    window.use_path(&context, Purpose::SaveScene, path.clone());
-    assert_eq!(window.files.saved.wait(), Some(Ok(path.clone())));
-    assert_eq!(std::fs::read_to_string(path).unwrap(), file::to_toml(&kept.document.recipe()));
+    window.perform(&context, Command::Controls);
+    assert_eq!(panels(&window), [true, false], "it was to be seen");
 }
 
 #[test]
-fn a_copied_command_has_the_samples_of_the_film_if_that_is_of_the_picture() {
+fn a_bookmark_is_named_after_its_picture() {
+    for (words, name) in
+        [("--stage glass-schlick", "11.4 view 1"), ("--scene touching-spheres", "touching-spheres view 1")]
+    {
+        let mut window = window(&format!("weekender {words} --size 16x9 --device cpu"));
+        window.perform(&Context::default(), Command::AddBookmark);
+        assert_eq!(window.model.remembered.bookmarks[0].name, name);
+    }
+}
+
+#[test]
+fn going_from_stage_to_stage_is_a_first_step_while_the_card_is_shown() {
+    for (command, has_card, is_noted) in [
+        (Command::NextStage, true, true),
+        (Command::PreviousStage, true, true),
+        (Command::NextStage, false, false),
+        (Command::Stage(&Stage::ALL[3]), true, false),
+    ] {
+        let mut window = prepared();
+        window.model.has_first_steps = has_card;
+        window.perform(&Context::default(), command);
+        let steps = &window.model.remembered.first_steps;
+        assert_eq!(steps.has(Step::Leaf), is_noted, "{command:?} {has_card}");
+    }
+}
+
+#[test]
+fn a_render_that_has_ended_goes_on_to_twice_its_samples() {
     let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
     let context = Context::default();
-    let is_over =
-        |window: &Window| window.main.has_samples(window.document()) && window.status().phase.is_over();
-    until(&mut window, &context, "the end", is_over);
-    let mut has = |change: fn(&mut Document), samples: u64| {
-        change(&mut window.model.document);
-        let line = copied(&context, &mut window);
-        assert!(line.contains(&format!(" --samples={samples} ")), "{samples}: {line}");
-    };
-    has(|document| document.stop = Stop::at_samples(100), 4);
-    // That would be another film, which has no samples yet.
-    has(|document| document.settings.seed = 9, 100);
-    let usual = prepared().document().origin.recipe.samples_per_pixel;
-    has(|document| document.stop = Stop::default(), usual);
+    until(&mut window, &context, "the end", |window| {
+        window.main.has_samples(window.document()) && window.status().phase.is_over()
+    });
+    window.perform(&context, Command::GoOn);
+    assert_eq!(window.document().stop, Stop::at_samples(8));
+    until(&mut window, &context, "more samples", |window| window.status().samples_per_pixel == 8);
+}
+
+#[test]
+fn what_a_picture_is_compared_with_pauses_and_goes_on_with_it() {
+    for command in [Command::Pause, Command::Restart] {
+        let mut window =
+            window("weekender --stage glass-schlick --size 16x9 --samples 4000000000 --device cpu");
+        let context = Context::default();
+        let samples = |window: &Window| window.second.shown().map_or(0, |shown| shown.samples);
+        window.perform(&context, Command::Wipe);
+        until(&mut window, &context, "both pictures", |window| {
+            samples(window) > 0 && window.status().samples_per_pixel > 0
+        });
+        window.perform(&context, Command::Pause);
+        assert!(window.is_paused());
+        // The samples of the last frame, and in how many frames there have been as many.
+        let seen = Cell::new((0, 0));
+        until(&mut window, &context, "a rest", |window| {
+            let ((last, frames), now) = (seen.get(), samples(window));
+            seen.set((now, if now == last { frames + 1 } else { 0 }));
+            frames >= 30
+        });
+        let before = samples(&window);
+        window.perform(&context, command);
+        assert!(!window.is_paused(), "{command:?}");
+        until(&mut window, &context, "more samples", |window| samples(window) > before);
+    }
 }

@@ -196,3 +196,26 @@ fn it_is_said_why_a_picture_is_not_written() {
     window.take_news(News::NotWritten { id: None, words: Some("the disk is full".to_owned()) });
     assert_eq!(window.messages(), ["the disk is full"]);
 }
+
+#[test]
+fn of_what_another_window_left_as_many_come_as_there_is_room_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let [one, two, ..] = SlotNumber::ALL;
+    drop(holding(directory.path(), &[entry(Some(one), "a", [4, 2]), entry(Some(two), "b", [4, 2])]));
+    let mut window = window(STAGE);
+    window.recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
+    window.recovery.left = Left::all_in(directory.path());
+    // Its second slot is free.
+    for number in SlotNumber::ALL.into_iter().filter(|number| *number != two) {
+        let coming = entry(Some(number), &number.to_string(), [4, 2]).coming();
+        window.model.view.slots.expect(number, coming);
+    }
+    window.take_left_slots(&Context::default(), 0);
+    let told = "Not opened: 1 kept picture: all nine slots are in use; delete one and open them again";
+    assert_eq!(window.messages(), [told]);
+    assert_eq!(window.model.view.slots.coming(two).map(|coming| coming.id.as_str()), Some("a"));
+    let own = window.recovery.files.as_ref().unwrap().slots();
+    assert_eq!([own.may_have("a"), own.may_have("b")], [true, false]);
+    let stays: Vec<&str> = window.recovery.left[0].kept().iter().map(|entry| entry.id.as_str()).collect();
+    assert_eq!(stays, ["b"]);
+}

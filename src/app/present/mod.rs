@@ -314,4 +314,20 @@ mod tests {
         assert_eq!(black.output().platform_output.cursor_icon, CursorIcon::None);
         drawings.keep("present_words");
     }
+
+    #[test]
+    fn the_window_sleeps_except_while_the_keys_fade() {
+        let mut harness = presented("--stage metal --size 32x18", [1280.0, 720.0]);
+        let context = harness.ctx.clone();
+        harness.state_mut().presenter.begin(&context);
+        let begin = context.input(|input| input.time);
+        for (age, [least, most]) in [(4.0, [3.99, 4.01]), (8.5, [0.0, 0.0]), (11.0, [3600.0, f64::INFINITY])]
+        {
+            while context.input(|input| input.time) < begin + age {
+                harness.step();
+            }
+            let sleep = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay.as_secs_f64();
+            assert!((least..=most).contains(&sleep), "after {age} s: {sleep}");
+        }
+    }
 }

@@ -230,8 +230,10 @@ impl Writing {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::app::tests::{until, window};
+    use crate::app::tests::{sleep_after, until, window};
     use crate::app::window::Window;
+    use crate::film::key;
+    use crate::recipe::file;
 
     #[test]
     fn slow_writing_takes_a_small_share_of_the_time() {
@@ -332,5 +334,46 @@ mod tests {
         assert!(!is_long(&other, &traced(3600), None), "it has no film yet");
         let none = Status { samples_per_pixel: 0, ..traced(3600) };
         assert!(!is_long(document, &none, None));
+    }
+
+    #[test]
+    fn a_film_is_not_written_again_before_its_time() {
+        let (context, directory) = (Context::default(), tempfile::tempdir().unwrap());
+        let (window, path) = (finished(&context), directory.path().join("film.exr"));
+        let (document, status) = (window.document().clone(), window.status());
+        let hour = Duration::from_secs(3600);
+        let mut autosave = Autosave::new(hour);
+        autosave.holds(Some(Saved { document: document.clone(), samples: 3 }));
+        let begin = Instant::now();
+        for (due, samples) in [(begin + hour, 3), (begin, 4)] {
+            autosave.due = due;
+            let look = |context: &Context| {
+                let shown = (&document, &window.main);
+                assert_eq!(autosave.look(context, &path, shown, status, Some(1e6)), None);
+                autosave.finish();
+            };
+            let sleep = sleep_after(&context, look);
+            assert_eq!((autosave.saved().unwrap().samples, path.exists()), (samples, samples == 4));
+            assert!(samples == 4 || sleep <= hour, "it is looked at again");
+        }
+        assert!(autosave.due >= begin + hour);
+    }
+
+    #[test]
+    fn a_film_of_changed_spheres_does_not_say_that_it_is_the_stage() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.give_size([4, 2]);
+        let changed = Document { checked: Document::new(Origin::usual()).checked, ..document.clone() };
+        let mut film = Film::new(4, 2, 2);
+        film.record(0..3, 0).unwrap();
+        for (document, stage) in [(&document, Some("metal")), (&changed, None)] {
+            write_film(&path, &film, (document, &Status::default()), None).unwrap();
+            let read = checkpoint::load(&path).unwrap();
+            assert_eq!(read.description.get(key::STAGE), stage);
+            let recipe = file::parse(read.description.recipe(), "kept").unwrap();
+            assert_eq!((recipe.samples_per_pixel, &recipe.scene), (3, document.checked.scene()));
+        }
     }
 }

@@ -223,6 +223,12 @@ fn ago(age: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::{Origin, Source};
+    use crate::app::recovery::write_film;
+    use crate::film::Film;
+    use crate::progressive::Status;
+    use crate::recipe::Recipe;
 
     #[test]
     fn ages_are_short() {
@@ -341,5 +347,25 @@ mod tests {
         all[0].settle(Part::Picture);
         drop(all);
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn a_film_is_named_after_its_scene_unless_a_note_knows_better() {
+        let directory = tempfile::tempdir().unwrap();
+        let recipe = Recipe { name: "mine".to_owned(), ..Stage::find("metal").unwrap().recipe() };
+        let mut document = Document::new(Origin::new(recipe, Source::Embedded));
+        document.give_size([4, 2]);
+        let mut film = Film::new(4, 2, 2);
+        film.record(0..1, 0).unwrap();
+        let path = directory.path().join("window-1-1.exr");
+        write_film(&path, &film, (&document, &Status::default()), None).unwrap();
+        for (has_film, title) in [(false, "mine"), (true, "noted")] {
+            let note = format!(r#"{{ "title": "noted", "has_film": {has_film} }}"#);
+            std::fs::write(path.with_extension("json"), note).unwrap();
+            let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+            let [row] = left.rows().collect::<Vec<_>>().try_into().ok().unwrap();
+            assert_eq!((row.part, row.title.as_str(), row.fault), (Part::Film, title, None));
+            assert_eq!(row.about, "1 sample per pixel, 4x2, just now");
+        }
     }
 }

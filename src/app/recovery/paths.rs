@@ -95,4 +95,44 @@ mod tests {
         File::create(&paths.note).unwrap();
         assert!(!paths.are_ours(&locked, false), "the newer of two files counts");
     }
+
+    #[test]
+    fn files_are_old_after_a_day() {
+        let directory = tempfile::tempdir().unwrap();
+        let paths = Paths::of(directory.path(), "window-1-1");
+        let locked = Err(TryLockError::Error(io::ErrorKind::Unsupported.into()));
+        let film = File::create(&paths.film).unwrap();
+        for (hours, are_ours) in [(23, false), (25, true)] {
+            film.set_modified(SystemTime::now() - Duration::from_secs(hours * 3600)).unwrap();
+            assert_eq!(paths.are_ours(&locked, false), are_ours, "{hours} hours");
+        }
+    }
+
+    #[test]
+    fn a_lock_counts_only_where_it_can_be_seen() {
+        let directory = tempfile::tempdir().unwrap();
+        let paths = Paths::of(directory.path(), "window-1-1");
+        assert!(!paths.are_ours(&Ok(()), true), "another window has just deleted it");
+        File::create(&paths.lock).unwrap();
+        assert!(paths.are_ours(&Ok(()), false));
+        assert!(!paths.are_ours(&Err(TryLockError::WouldBlock), true), "another window has it");
+    }
+
+    #[test]
+    fn what_was_written_last_says_when_files_were_changed() {
+        let directory = tempfile::tempdir().unwrap();
+        let paths = Paths::of(directory.path(), "window-1-1");
+        assert_eq!(paths.changed(), None);
+        fs::create_dir(paths.slots.path()).unwrap();
+        let list = paths.slots.path().join("slots.json");
+        for newest in [&paths.film, &paths.note, &list] {
+            for path in [&paths.film, &paths.note, &list] {
+                let time =
+                    SystemTime::UNIX_EPOCH + Duration::from_secs(if path == newest { 9000 } else { 7000 });
+                File::create(path).unwrap().set_modified(time).unwrap();
+            }
+            let expected = SystemTime::UNIX_EPOCH + Duration::from_secs(9000);
+            assert_eq!(paths.changed(), Some(expected), "{}", newest.display());
+        }
+    }
 }

@@ -155,3 +155,39 @@ fn a_window_that_works_is_woken_for_the_next_look() {
     recovery.is_working = false;
     assert!(!is_woken(&mut recovery));
 }
+
+#[test]
+fn a_note_that_cannot_be_restored_matters_only_to_its_picture() {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("window-1-1.exr"), "a film").unwrap();
+    // It names no picture.
+    let note = r#"{ "title": "mine", "is_changed": true, "has_film": true }"#;
+    std::fs::write(directory.path().join("window-1-1.json"), note).unwrap();
+    let (mut recovery, context) = (Recovery::new(Duration::from_secs(3600)), Context::default());
+    recovery.left = Left::all_in(directory.path());
+    for (part, has_opened, has_restored) in [(Part::Film, true, false), (Part::Picture, false, true)] {
+        recovery.open(&context, 0, part);
+        let Arrival { opened, restored } = recovery.arrivals.wait().unwrap();
+        assert_eq!((opened.is_some(), restored.is_some()), (has_opened, has_restored), "{part:?}");
+        assert!(restored.is_none_or(|restored| restored.is_err()));
+        let (left, _) = recovery.opening.take().unwrap();
+        recovery.put_back(0, left);
+    }
+}
+
+#[test]
+fn a_note_has_the_view_with_zoom_and_pan() {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut recovery, context) = (Recovery::new(Duration::from_secs(3600)), Context::default());
+    recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
+    let (mut document, mut view) = (metal(), ViewState::default());
+    document.give_size([16, 9]);
+    view.tone.exposure = 1.5;
+    let framing = Framing { times: 2.0, middle: [0.25, 0.75], size: [16, 9] };
+    recovery.note_soon();
+    assert_eq!(recovery.note(&context, (&document, &view, Some(framing)), false), None);
+    recovery.finish_notes();
+    let restored = recovery.files.as_ref().unwrap().note().unwrap().unwrap().restore().unwrap();
+    assert_eq!((restored.framing, restored.is_paused), (Some(framing), false));
+    assert_eq!(restored.view.tone.exposure, 1.5);
+}

@@ -76,4 +76,18 @@ mod tests {
             assert_eq!(file.into_inner(), b"HEADtail.."[..written]);
         }
     }
+
+    #[test]
+    fn it_goes_where_it_is_sent_whether_or_not_all_is_written() {
+        for limit in [10, 3] {
+            let mut file = Cursor::new(Vec::new());
+            let mut bounded = Bounded::new(&mut file, limit);
+            bounded.write_all(b"0123456789").unwrap();
+            let to = [SeekFrom::Current(-3), SeekFrom::Current(2), SeekFrom::End(-4), SeekFrom::Start(2)];
+            let found = to.map(|to| bounded.seek(to).unwrap());
+            assert_eq!((found, bounded.bytes()), ([7, 9, 6, 2], 10), "limit {limit}");
+            let before = bounded.seek(SeekFrom::Current(-3)).unwrap_err();
+            assert_eq!(before.kind(), io::ErrorKind::InvalidInput);
+        }
+    }
 }

@@ -364,22 +364,4 @@ impl Folder {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_kept_pictures_of_all_windows_count_and_nothing_else() {
-        let directory = tempfile::tempdir().unwrap();
-        let folders = ["window-1-1", "window-2-1"].map(|name| Folder::of(directory.path(), name));
-        assert_eq!(folders.each_ref().map(Folder::bytes_of_all), [0; 2]);
-        let other = directory.path().join("window-1-1.films");
-        fs::create_dir(&other).unwrap();
-        fs::write(other.join("a.exr"), [0_u8; 50]).unwrap();
-        fs::write(directory.path().join("window-1-1.exr"), [0_u8; 90]).unwrap();
-        for (folder, bytes) in folders.iter().zip([300, 7000]) {
-            fs::create_dir(folder.path()).unwrap();
-            fs::write(folder.film("a"), vec![0_u8; bytes]).unwrap();
-        }
-        assert_eq!(folders.each_ref().map(Folder::bytes_of_all), [7300; 2]);
-    }
-}
+mod tests;

@@ -183,6 +183,8 @@ mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::tests::{Drawings, dressed};
+    use crate::film::PixelSum;
+    use crate::stages::Stage;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -216,6 +218,37 @@ mod tests {
         assert_eq!(verdict.words(), Some(Err("nothing has done it; try again")));
         verdict.ask(&context, &kept, &screen.subject(), Default::default());
         assert_eq!(verdict.answers.wait().map(|(number, _)| number), Some(2));
+    }
+
+    /// A film of 80x48 pixels, one sample each: a quarter of white, and by so much less where `is_other`.
+    fn film(is_other: impl Fn(usize, usize) -> bool, by: f64) -> Arc<Film> {
+        let mut film = Film::new(80, 48, 1);
+        for (pixel, sum) in film.halves_mut()[0].iter_mut().enumerate() {
+            let value = if is_other(pixel % 80, pixel / 80) { 0.25 - by } else { 0.25 };
+            *sum = PixelSum([(value * f64::from(1 << 24)) as u64; 3]);
+        }
+        film.record(0..1, 0).unwrap();
+        Arc::new(film)
+    }
+
+    #[test]
+    fn the_verdict_is_told_in_a_few_words() {
+        let is_pixel = |x: usize, y: usize| (x, y) == (30, 20);
+        let is_hole = |x: usize, y: usize| (33..37).contains(&x) && (17..20).contains(&y);
+        for (other, headline, is_equal) in [
+            (film(is_pixel, 0.0), "Identical to the bit", true),
+            (film(is_pixel, 0.02), "Only noise", true),
+            (film(is_pixel, -0.5), "Cannot tell", false),
+            (film(is_hole, 0.25), "More than noise", false),
+        ] {
+            let picture = |name: &str, film: Arc<Film>| {
+                let recipe = Stage::find("metal").unwrap().recipe();
+                Picture { name: name.to_owned(), recipe, film }
+            };
+            let pictures = [picture("slot 1", film(is_pixel, 0.0)), picture("slot 2", other)];
+            let found = found(pictures).unwrap();
+            assert_eq!((found.headline, found.is_equal), (headline, is_equal), "{}", found.text);
+        }
     }
 
     /// The window with what was found.

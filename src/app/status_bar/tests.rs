@@ -209,3 +209,65 @@ fn a_chosen_device_is_next_until_it_traces_again() {
         assert_eq!(next_device(&facts), next);
     }
 }
+
+#[test]
+fn the_bar_tells_what_the_window_knows() {
+    let mut facts = facts_of("--stage metal --size 32x18 --samples 640");
+    facts.status = std::sync::Arc::new(status_of(parts()[..1].to_vec()));
+    (facts.speed, facts.seconds_before) = (None, None);
+    let told = |facts: &Facts, text: &str| {
+        let harness = dressed([2400.0, 200.0], |ui| super::ui(ui, facts));
+        harness.query_by_label(text).is_some()
+    };
+    for text in ["tracing", "100 of 640 spp", "over 2.0 s", "0.5 Mpaths/s", "cpu avx2, 2 threads"] {
+        assert!(told(&facts, text), "{text}");
+    }
+    (facts.speed, facts.seconds_before) = (Some(3e6), Some(90.5));
+    facts.model.is_paused = true;
+    facts.model.document.stop = Stop::default();
+    facts.model.remembered.device = Device::Reference;
+    let next = "cpu avx2, 2 threads; f64 is being prepared";
+    for text in ["paused", "100 spp", "92.5 s", "3.0 Mpaths/s", next] {
+        assert!(told(&facts, text), "{text}");
+    }
+}
+
+#[test]
+fn every_phase_has_its_word_and_a_pause_is_told_where_something_could_go_on() {
+    let done = || Phase::Done(crate::progressive::EndReason::Samples);
+    for (phase, word, paused) in [
+        (Phase::Idle, "preparing", "preparing"),
+        (Phase::Preparing, "preparing", "preparing"),
+        (Phase::Tracing, "tracing", "paused"),
+        (Phase::Paused, "paused", "paused"),
+        (done(), "done", "paused"),
+        (Phase::Failed("no memory".to_owned()), "failed", "failed"),
+    ] {
+        assert_eq!([false, true].map(|is_paused| phase_word(&phase, is_paused)), [word, paused], "{phase:?}");
+    }
+}
+
+#[test]
+fn a_backend_is_told_before_it_has_traced_and_a_gpu_has_no_threads() {
+    let [cpu, gpu, _] = parts();
+    let first = Status { backend: Some(cpu.backend.clone()), ..Status::default() };
+    assert_eq!(who(&first, None), ["cpu avx2"]);
+    assert_eq!(who(&Status::default(), Some(Device::Gpu)), [""; 0], "nothing is known");
+    let alone = "gpu A Graphics Adapter With Quite a Name";
+    assert_eq!(who(&status_of(vec![gpu.clone()]), None), [alone]);
+    let failed = Status { phase: Phase::Failed("no memory".to_owned()), ..status_of(vec![gpu.clone()]) };
+    assert_eq!(who(&failed, Some(Device::Cpu)), [format!("{alone}; CPU is next")]);
+    let three = vec![cpu, gpu, part("reference", "f64", 700)];
+    assert_eq!(who(&status_of(three), None)[1], "cpu 10 % + gpu 20 % + reference 70 %");
+}
+
+#[test]
+fn the_help_of_the_error_tells_its_doubt_and_its_deviation() {
+    let status = status_of(parts()[..1].to_vec());
+    assert!(error_help(&status).contains("the film, random deviation "), "{}", error_help(&status));
+    assert!(error_help(&status).ends_with("no path has found yet."));
+    let doubtful = Status { doubt: Some("few pixels".to_owned()), error: None, ..status };
+    let help = error_help(&doubtful);
+    assert!(help.ends_with("no path has found yet.\nDoubtful: few pixels."), "{help}");
+    assert!(!help.contains("random deviation"), "{help}");
+}

@@ -160,7 +160,10 @@ impl KeptFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::answers::Answers;
+    use eframe::egui::Context;
     use std::collections::BTreeSet;
+    use std::sync::Arc;
     use std::time::SystemTime;
 
     fn stage(id: &str) -> &'static Stage {
@@ -251,5 +254,27 @@ mod tests {
             maker.picture(stage("sky"), Some(&file.join("thumbnails"))).unwrap();
         }
         assert_eq!((maker.rendered, fs::metadata(&file).unwrap().modified().unwrap()), (2, before));
+    }
+
+    #[test]
+    fn pictures_are_given_in_the_order_of_the_request_while_somebody_waits() {
+        let (context, directory) = (Context::default(), tempfile::tempdir().unwrap());
+        let alive = Arc::new(());
+        for (waits, expected) in [(true, vec!["sky", "ppm-tiny"]), (false, Vec::new())] {
+            let made = Answers::default();
+            let answers = ["sky", "ppm-tiny"].map(|id| (stage(id), made.answer(&context))).into();
+            let alive = if waits { Arc::downgrade(&alive) } else { Weak::new() };
+            let directory = Some(directory.path().to_owned());
+            work(Request { answers, scale: 1, directory, alive }).unwrap();
+            let mut ids = Vec::new();
+            while let Some(Thumbnail { stage, scale, size, rgb8 }) = made.take() {
+                let recipe = recipe(stage, 1);
+                assert_eq!((scale, size), (1, [recipe.settings.width, recipe.settings.height]));
+                assert_eq!(rgb8.len() as u32, 3 * size[0] * size[1]);
+                ids.push(stage.id);
+            }
+            assert_eq!(ids, expected);
+        }
+        assert_eq!(names(&directory.path().join("thumbnails")).len(), 2, "they are kept");
     }
 }

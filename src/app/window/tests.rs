@@ -1,7 +1,8 @@
 //! Tests of what a window begins with, and of other pictures in it.
 
 use super::*;
-use crate::app::tests::window;
+use crate::app::tests::{until, window};
+use crate::cli::{Request, parse};
 use crate::progressive::Stop;
 use crate::recipe::file;
 
@@ -102,4 +103,77 @@ fn facts_are_those_of_the_window() {
     let facts = window.facts();
     assert!(facts.has_pixel && facts.has_sight);
     assert_eq!(facts.invalid.as_deref(), Some("why"));
+}
+
+#[test]
+fn another_picture_forgets_paths_and_the_pixel() {
+    let mut window = window("weekender --stage metal --size 16x9 --samples 4 --device cpu");
+    let context = eframe::egui::Context::default();
+    let document = window.document().clone();
+    window.inspector.hover(Some([8, 4]));
+    window.paths.list(&document, [8, 4], &context);
+    until(&mut window, &context, "paths and a pixel", |window| {
+        window.listed_paths() > 0 && window.inspected().is_some()
+    });
+    window.show_origin(Origin::of_stage(Stage::find("glass-schlick").unwrap()));
+    assert_eq!((window.listed_paths(), window.inspected()), (0, None));
+}
+
+#[test]
+fn the_first_picture_of_a_new_user_ends_as_the_flags_say() {
+    for (words, stop) in [("", noise(Stop::NOISE)), ("--samples 7", Stop::at_samples(7))] {
+        let window = window(&format!("weekender {words} --device cpu"));
+        assert_eq!(window.document().stage(), Stage::ALL.last(), "{words}");
+        assert_eq!(window.document().stop, stop, "{words}");
+    }
+}
+
+/// The options of a command line.
+fn options(words: &str) -> WindowOptions {
+    match parse(words.split_whitespace().map(Into::into)).unwrap() {
+        Request::Window(options) => *options,
+        other => panic!("{words}: {other:?}"),
+    }
+}
+
+#[test]
+fn only_the_first_window_without_a_picture_is_new() {
+    let directory = tempfile::tempdir().unwrap();
+    let settings = Some(directory.path().join("settings.json"));
+    let open =
+        |words: &str| Window::new(WindowOptions { settings: settings.clone(), ..options(words) }).unwrap();
+    let asked = open("weekender --stage metal");
+    assert!(!asked.is_new && !asked.model.has_first_steps);
+    let mut first = open("weekender");
+    assert!(first.is_new && first.model.has_first_steps);
+    first.end_in_order();
+    let second = open("weekender");
+    assert!(!second.is_new && second.model.has_first_steps, "not all of them have been tried");
+}
+
+#[test]
+fn a_device_that_is_not_asked_for_is_the_remembered_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let settings = Some(directory.path().join("settings.json"));
+    let open =
+        |words: &str| Window::new(WindowOptions { settings: settings.clone(), ..options(words) }).unwrap();
+    for (words, device) in [
+        ("weekender --stage metal --device reference", Device::Reference),
+        ("weekender --stage metal", Device::Reference),
+        ("weekender --stage metal --device cpu", Device::Cpu),
+        ("weekender --stage metal", Device::Cpu),
+    ] {
+        let mut window = open(words);
+        assert_eq!(window.model.remembered.device, device, "{words}");
+        window.end_in_order();
+    }
+}
+
+#[test]
+fn a_frame_log_that_cannot_be_written_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("none/log.csv");
+    let options = WindowOptions { frame_log: Some(path.clone()), ..options("weekender --stage metal") };
+    let told = Window::new(options).err().unwrap().to_string();
+    assert_eq!(told, format!("cannot write {}", path.display()));
 }

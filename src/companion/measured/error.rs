@@ -188,4 +188,15 @@ mod tests {
         let expected = ["1235", "123", "12.3", "1.23", "0.123", "0.0123", "0.000012", "0.000000", "0.000000"];
         assert_eq!(times.map(three_digits), expected);
     }
+
+    #[test]
+    fn a_chart_is_as_high_as_its_scenes_need() {
+        let drawn = |curves: &[(&str, &str, f64)]| chart(&kept(curves)).unwrap().into_string();
+        let one = drawn(&[("book", "cpu", 0.01), ("book", "c89", 0.5)]);
+        assert!(one.starts_with("<figure class=\"chart\" id=\"chart-error\">"), "{one}");
+        assert!(one.contains("viewBox=\"0 0 640 510\""), "{one}");
+        let two = drawn(&[("book", "cpu", 0.01), ("metals", "c89", 0.5)]);
+        assert!(two.contains("viewBox=\"0 0 640 980\""), "{two}");
+        assert!(two.contains("<code><span class=\"nb\">weekender</span>"), "the command: {two}");
+    }
 }

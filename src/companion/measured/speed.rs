@@ -137,6 +137,7 @@ fn rounded(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::{Value, json};
 
     #[test]
     fn large_numbers_have_two_digits_that_count() {
@@ -180,5 +181,49 @@ mod tests {
         assert_eq!(name("packets", 8, "avx2, 8 lanes, 1 thread"), "8 lanes, avx2");
         assert_eq!(name("baseline", 1, "C89, cc -O2, 1 thread"), "C89");
         assert_eq!(name("gpu", 64, "a GPU, fast"), "a GPU, fast");
+    }
+
+    #[test]
+    fn a_table_has_the_figures_of_each_row() {
+        let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
+        let row = |name: &str, kind: &str, lanes: usize, figures: [Value; 4], skipped: Option<&str>| {
+            let [paths, share, ratio, efficiency] = figures;
+            json!({
+                "name": name, "kind": kind, "lanes": lanes, "threads": 3, "paths_per_second": paths,
+                "lanes_in_use": share, "ratio_to_baseline": ratio, "efficiency": efficiency, "skipped": skipped,
+            })
+        };
+        let null = || Value::Null;
+        let scene = json!({
+            "scene": "book", "width": 200, "height": 113, "max_depth": 50, "spheres": 485,
+            "rows": [
+                row("C89, cc -O2, 1 thread", "baseline", 1, [speeds(5e6), null(), json!(1.0), null()], None),
+                row("avx2, 8 lanes, 3 threads", "threads", 8, [speeds(40e6), json!(0.875), json!(8.0), json!(1234.0)], None),
+                row("a GPU", "gpu", 64, [null(), null(), null(), null()], None),
+                row("other GPU", "gpu", 64, [null(), null(), null(), null()], Some("it has no memory")),
+            ],
+        });
+        let machine = json!({"processor": "A CPU", "cores": 4});
+        let text = json!({"schema": bench::SCHEMA, "machine": machine, "scenes": [scene]}).to_string();
+        let (file, command) = ("speed.json".to_owned(), "weekender bench".to_owned());
+        let (machine, date) = (Some("another machine".to_owned()), Some("1 May".to_owned()));
+        let html = tables(&Kept { file, command, machine, date, text }).unwrap().into_string();
+        let bar = |share: &str, speed: &str, range: &str| {
+            let words = format!("<strong>{speed}</strong> <span class=\"range\">{range}</span>");
+            format!("<td class=\"bar\" style=\"--share:{share}\">{words}</td>")
+        };
+        let [slow, fast] = [bar("0.125", "5.00", "2.50–10.0"), bar("1.000", "40.0", "20.0–80.0")];
+        let rows = [
+            format!("<th scope=\"row\">C89</th><td>3</td>{slow}<td>1.00</td><td></td><td></td>"),
+            format!("<th scope=\"row\">8 lanes, avx2</th><td>3</td>{fast}<td>8.00</td><td>87.5 %</td><td>1,200</td>"),
+            "<th scope=\"row\">a GPU</th><td></td><td class=\"bar\">not measured</td><td></td><td></td><td></td>".to_owned(),
+            "<th scope=\"row\">other GPU</th><td class=\"skipped\" colspan=\"5\">not measured: it has no memory</td>".to_owned(),
+        ];
+        let rows: String = rows.iter().map(|row| format!("<tr>{row}</tr>")).collect();
+        assert!(html.contains(&format!("<tbody>{rows}</tbody>")), "{html}");
+        let caption = "<strong>book</strong>, 200 × 113, at most 50 rays per path, 485 spheres. Median and range of the runs. \
+                       Measured on 1 May, A CPU, 4 cores, by <code><span class=\"nb\">weekender</span> \
+                       <span class=\"nb\">bench</span> </code>.";
+        assert!(html.contains(caption) && html.contains("aria-label=\"Speed of book\""), "{html}");
     }
 }

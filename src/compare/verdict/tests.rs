@@ -164,3 +164,42 @@ fn a_mean_that_rounding_moves_is_equal() {
     let moved = compare(&side(0.0), &side(5.0 * ROUNDING_BIAS), None);
     assert!(moved.reasons.iter().any(|reason| reason.starts_with("the mean is")), "{:?}", moved.reasons);
 }
+
+#[test]
+fn pictures_are_the_same_to_the_bit_only_in_one_format() {
+    let picture = |steps: Option<f64>, limit: f64| {
+        let mut side = side(1, 0.0);
+        (side.film, side.limit) = (None, limit);
+        side.pixels[7] = [f64::NAN; 3];
+        side.steps = steps.map(|step| vec![[step; 3]; 80 * 48]);
+        side
+    };
+    let formats = [(None, f64::INFINITY), (Some(0.002), 0.99), (Some(0.004), 0.99), (Some(0.002), 0.98)];
+    for (first, (steps, limit)) in formats.into_iter().enumerate() {
+        for (second, (other_steps, other_limit)) in formats.into_iter().enumerate() {
+            let found = compare(&picture(steps, limit), &picture(other_steps, other_limit), None);
+            assert_eq!(found.is_same, first == second, "{first} and {second}");
+            let is_noted = found.notes.iter().any(|note| note.contains("from the spread of the differences"));
+            assert_eq!(is_noted, first != second, "{first} and {second}");
+        }
+    }
+}
+
+#[test]
+fn a_difference_is_measured_by_the_steps_of_both_pictures() {
+    let picture = |step: f64, offset: f64| {
+        let mut side = side(1, 0.0);
+        (side.film, side.limit) = (None, 0.99);
+        side.pixels = vec![[0.5 + offset; 3]; 80 * 48];
+        side.steps = (step > 0.0).then(|| vec![[step; 3]; 80 * 48]);
+        side
+    };
+    // Without noise, the deviation is the root of the sum of both squares; these are two deviations apart.
+    for (first, second, deviation) in
+        [(0.003, 0.004, 0.005), (0.003, 0.0, 0.003), (0.0, 0.004, 0.004), (0.004, 0.003, 0.005)]
+    {
+        let found = compare(&picture(first, 0.0), &picture(second, 2.0 * deviation), None);
+        assert!((found.test.largest - 2.0).abs() < 1e-3, "{first} {second}: {}", found.test.largest);
+        assert!((found.bias - 2.0 * deviation).abs() < 1e-12, "{first} {second}: {}", found.bias);
+    }
+}

@@ -204,3 +204,37 @@ pub(super) enum HeadError {
     SampleVersion(i64),
     Damaged(String),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Until version 3, the samples had the version of the layout.
+    #[test]
+    fn the_versions_of_a_head_are_checked_before_its_other_fields() {
+        let told = |text: &str| match Head::read(text) {
+            Ok(_) => "a head".to_owned(),
+            Err(HeadError::Version(version)) => format!("layout {version}"),
+            Err(HeadError::SampleVersion(version)) => format!("samples {version}"),
+            Err(HeadError::Damaged(what)) => what,
+        };
+        for (text, expected) in [
+            ("version = 2", "samples 2"),
+            ("version = 9", "layout 9"),
+            ("version = 2\nsample_version = 3", "layout 2"),
+            ("version = 5\nsample_version = 3", "layout 5"),
+            ("version = 4\nsample_version = 2", "samples 2"),
+            ("version = 4\nsample_version = 4", "samples 4"),
+            ("version = 5\nsample_version = 4\nnew = 1", "samples 4"),
+            ("", "its head has no version"),
+            ("version = \"4\"", "its head has no version"),
+            ("version", "its head cannot be read"),
+        ] {
+            assert_eq!(told(text), expected, "{text}");
+        }
+        for version in ["version = 3", "version = 4\nsample_version = 3"] {
+            let told = told(version);
+            assert!(told.starts_with("its head cannot be read: missing field"), "{told}");
+        }
+    }
+}

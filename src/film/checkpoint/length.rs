@@ -45,3 +45,61 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exr::math::RoundingMode;
+    use exr::meta::attribute::LevelMode;
+    use exr::prelude::{ChannelDescription, LineOrder, SampleType, SmallVec, Text, TileDescription, Vec2};
+
+    /// The header of a picture with one channel of floats.
+    fn header(size: (usize, usize), compression: Compression, blocks: BlockDescription) -> Header {
+        let text = |text: &[u8]| Text::from_slice_unchecked(text);
+        let mut channels: SmallVec<[ChannelDescription; 5]> = SmallVec::new();
+        channels.push(ChannelDescription::new(text(b"Y"), SampleType::F32, false));
+        Header::new(text(b"x"), size, channels).with_encoding(compression, blocks, LineOrder::Increasing)
+    }
+
+    /// 400,000 bytes of pixels and 16 bytes for each chunk, of 1, 16 or 32 rows.
+    #[test]
+    fn a_file_needs_as_many_bytes_as_can_become_its_pixels() {
+        for (compression, least) in [
+            (Compression::Uncompressed, 100 * 16 + 400_000),
+            (Compression::RLE, 100 * 16 + 6250),
+            (Compression::ZIP1, 100 * 16 + 387),
+            (Compression::ZIP16, 7 * 16 + 387),
+            (Compression::PIZ, 4 * 16 + 97),
+        ] {
+            let header = header((1000, 100), compression, BlockDescription::ScanLines);
+            assert_eq!(check_length(&header, least), Ok(()), "{compression:?}");
+            let told =
+                format!("it has {} bytes, but 1000x100 pixels of 4 bytes need at least {least}", least - 1);
+            assert_eq!(check_length(&header, least - 1), Err(told));
+        }
+    }
+
+    #[test]
+    fn a_tile_may_be_larger_than_its_picture_but_not_by_any_amount() {
+        let tile_size = Vec2(8192, 8192);
+        let (level_mode, rounding_mode) = (LevelMode::Singular, RoundingMode::Down);
+        let tiles = BlockDescription::Tiles(TileDescription { tile_size, level_mode, rounding_mode });
+        let header = header((10, 10), Compression::Uncompressed, tiles);
+        let least = (8192 * 8192 * 4) - (16 << 20);
+        assert_eq!(check_length(&header, least), Ok(()));
+        let told = check_length(&header, least - 1).unwrap_err();
+        assert!(told.ends_with("too few for chunks of 8192x8192 pixels"), "{told}");
+    }
+
+    #[test]
+    fn deep_data_and_coarser_channels_are_refused_however_long_the_file_is() {
+        let plain = header((4, 4), Compression::RLE, BlockDescription::ScanLines);
+        assert_eq!(check_length(&plain, 1 << 30), Ok(()));
+        let mut deep = plain.clone();
+        deep.deep = true;
+        assert!(check_length(&deep, 1 << 30).unwrap_err().contains("deep data"));
+        let mut coarse = plain;
+        coarse.channels.list[0].sampling = Vec2(1, 2);
+        assert!(check_length(&coarse, 1 << 30).unwrap_err().contains("fewer samples than pixels"));
+    }
+}

@@ -162,3 +162,33 @@ fn a_png_has_as_many_levels_as_its_bits_and_its_palette_has_256() {
     let scaled = png_of(ColorType::Rgb, BitDepth::Eight, 2, b"\x84\x84\x84\xff\xff\xff", &[5, 5, 5]);
     assert_intervals(&scaled, &[[15.5 / 31.0, 16.5 / 31.0], unknown], 31.0 / 32.0);
 }
+
+#[test]
+fn of_significant_bits_the_fewest_of_the_colours_count_and_those_of_alpha_do_not() {
+    use ::png::{BitDepth, ColorType};
+    let of_256 = [[128.0 / 256.0, 129.0 / 256.0]];
+    let rgba = png_of(ColorType::Rgba, BitDepth::Eight, 1, b"\x80\x80\x80\x10", &[8, 8, 8, 2]);
+    assert_intervals(&rgba, &of_256, 255.0 / 256.0);
+    let grey = png_of(ColorType::GrayscaleAlpha, BitDepth::Eight, 1, b"\x80\x10", &[8, 3]);
+    assert_intervals(&grey, &of_256, 255.0 / 256.0);
+    let of_32 = [[15.5 / 31.0, 16.5 / 31.0], [f64::NAN; 2]];
+    for significant in [[5, 6, 8], [8, 5, 6], [6, 8, 5]] {
+        let row = b"\x84\x84\x84\xff\xff\xff";
+        let scaled = png_of(ColorType::Rgb, BitDepth::Eight, 2, row, &significant);
+        assert_intervals(&scaled, &of_32, 31.0 / 32.0);
+    }
+    let deep = png_of(ColorType::Grayscale, BitDepth::Sixteen, 2, b"\x80\x00\xff\xff", &[]);
+    let of_65536 = [[32_768.0 / 65_536.0, 32_769.0 / 65_536.0], [f64::NAN; 2]];
+    assert_intervals(&deep, &of_65536, 65_535.0 / 65_536.0);
+}
+
+/// A byte of a bitmap has eight pixels, so no PNM is shorter than an eighth of what becomes of it.
+#[test]
+fn a_pnm_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+    let told = |length: u64| {
+        let header = io::Cursor::new(b"P6 160 100 255 ");
+        decode_picture(header, length, Encoding::Srgb).unwrap_err().to_string()
+    };
+    assert_eq!(told(5999), "it has 5999 bytes, but 160x100 pixels need at least 6000");
+    assert!(!told(6000).contains("need at least"), "{}", told(6000));
+}

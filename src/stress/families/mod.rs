@@ -115,4 +115,38 @@ mod tests {
             }
         }
     }
+
+    /// Otherwise their times could not be compared.
+    #[test]
+    fn a_tame_twin_has_as_many_paths_of_the_same_length() {
+        let mut twins: Vec<(&str, &str)> = Vec::new();
+        for case in cases() {
+            let Some(tame) = &case.tame else { continue };
+            assert_eq!(tame.settings, case.recipe.settings, "{}", case.id);
+            assert_eq!(tame.samples_per_pixel, case.recipe.samples_per_pixel, "{}", case.id);
+            assert_ne!((&tame.scene, tame.camera), (&case.recipe.scene, case.recipe.camera), "{}", case.id);
+            let twin = (case.family.id, tame.name.as_str());
+            if twins.last() != Some(&twin) {
+                twins.push(twin);
+            }
+        }
+        assert_eq!(
+            twins,
+            [
+                ("copies", "as many apart"),
+                ("shifts", "one-ball"),
+                ("coats", "a coat of .1"),
+                ("moved", "tame"),
+                ("scaled", "tame"),
+                ("lens", "tame"),
+                ("odd", "field:4000"),
+            ]
+        );
+        // A scene of as many spheres takes as long to prepare.
+        let crowded = cases().iter().filter(|case| ["copies", "odd"].contains(&case.family.id));
+        for (case, tame) in crowded.filter_map(|case| Some((case, case.tame.as_ref()?))) {
+            let [count, of_tame] = [&case.recipe, tame].map(|recipe| recipe.scene.spheres.len());
+            assert!(of_tame <= count && count <= of_tame + 100, "{}: {count} and {of_tame}", case.id);
+        }
+    }
 }

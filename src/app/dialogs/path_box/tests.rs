@@ -4,7 +4,7 @@ use super::*;
 use crate::app::tests::{Drawings, dressed, part};
 use crate::output::OutputFormat;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 fn typed(purpose: Purpose, text: &str) -> Option<PathBuf> {
     PathBox::of(purpose, Path::new(text)).path()
@@ -202,4 +202,50 @@ fn a_name_is_taken_by_enter_and_by_the_button() {
     dialog.get_by_label("Cancel").click();
     dialog.run_steps(3);
     assert!(dialog.state().is_closed);
+}
+
+#[test]
+fn a_box_begins_in_its_folder_and_one_for_opening_has_no_name() {
+    for (purpose, name) in [
+        (Purpose::Open, ""),
+        (Purpose::ReferenceFilm, ""),
+        (Purpose::SaveFlight, "field-1000.toml"),
+        (Purpose::SavePlot, "field-1000.csv"),
+    ] {
+        let text = |directory: Option<&Path>| PathBox::new(purpose, "field:1000", directory).text;
+        assert_eq!(text(None), name);
+        assert_eq!(text(Some(Path::new("out"))), Path::new("out").join(name).display().to_string());
+    }
+}
+
+#[test]
+fn a_new_file_is_told_with_its_folder_unless_that_was_typed() {
+    let directory = tempfile::tempdir().unwrap();
+    let note = |path: &Path| {
+        let path_box = PathBox::of(Purpose::Save(OutputFormat::Png), path);
+        path_box.note(path_box.path().as_deref())
+    };
+    assert_eq!(note(&directory.path().join("a.png")), ("A new file".to_owned(), Tone::Plain));
+    let name = "there is no such picture.png";
+    let here = std::env::current_dir().unwrap().join(name);
+    assert_eq!(note(Path::new(name)), (here.display().to_string(), Tone::Plain));
+    if let Some(home) = home_directory().filter(|home| home.is_dir()) {
+        let told = home.join(name).display().to_string();
+        assert_eq!(note(&Path::new("~").join(name)), (told, Tone::Plain));
+    }
+}
+
+#[test]
+fn the_system_is_asked_for_one_dialog_at_a_time() {
+    let mut dialog = asked(Purpose::Open, Path::new("a.png"));
+    let is_disabled =
+        |dialog: &Harness<'_, Asked>| dialog.get_by_label("Browse…").accesskit_node().is_disabled();
+    assert!(!is_disabled(&dialog));
+    let browsing = Arc::new(());
+    dialog.state_mut().path_box.browsing = Arc::downgrade(&browsing);
+    dialog.run_steps(2);
+    assert!(is_disabled(&dialog), "it is open");
+    drop(browsing);
+    dialog.run_steps(2);
+    assert!(!is_disabled(&dialog), "it was closed");
 }

@@ -240,3 +240,27 @@ fn what_is_gone_can_be_brought_back_as_long_as_there_is_room_for_it() {
     assert!(slots.make_room(SlotNumber::ALL[3], 192, 767).is_ok());
     assert_eq!((slots.bytes(), slots.gone()), (384, None), "a byte too much");
 }
+
+#[test]
+fn the_last_slot_is_meant_after_the_one_that_was() {
+    let three = SlotNumber::ALL[2];
+    let mut slots = with(&[ONE, TWO, three]);
+    slots.choose(TWO);
+    slots.delete(three);
+    assert_eq!(slots.chosen(), Some(TWO), "another one");
+    slots.bring_back();
+    slots.choose(TWO);
+    slots.delete(TWO);
+    assert_eq!(slots.chosen(), Some(three));
+    slots.delete(three);
+    slots.delete(ONE);
+    assert_eq!((slots.chosen(), slots.is_used()), (None, false));
+}
+
+#[test]
+fn a_slot_in_use_can_be_named() {
+    let mut slots = with(&[TWO]);
+    assert!(slots.name_mut(ONE).is_none());
+    "mine".clone_into(slots.name_mut(TWO).unwrap());
+    assert_eq!([ONE, TWO].map(|number| slots.title(number)), ["slot 1: empty", "slot 2: mine"]);
+}

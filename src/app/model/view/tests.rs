@@ -1,6 +1,7 @@
 //! Tests of what the viewport shows.
 
 use super::*;
+use crate::app::model::origin::Source;
 use crate::app::model::slots::Slot;
 use crate::film::Film;
 use crate::stress::shown_cases;
@@ -225,4 +226,43 @@ fn looking_again_at_what_is_shown_keeps_the_comparison() {
         (Some(Mode::Wipe), Some(ONE), Some(TWO))
     );
     assert_eq!((view.divider, view.is_divider_unplaced), (0.25, false));
+}
+
+#[test]
+fn a_stage_is_compared_with_its_pair_or_with_its_neighbour() {
+    let others = |is_with_next| {
+        let view = ViewState { is_with_next, ..ViewState::default() };
+        let other = |id| view.other_of(Stage::find(id).unwrap()).map_or("", |stage| stage.id);
+        ["ppm-tiny", "gamut", "metal-fuzzy", "glass-schlick", "book"].map(other)
+    };
+    assert_eq!(others(false), ["ppm-gradient", "metal", "metal", "glass-refract", "defocus"]);
+    assert_eq!(others(true), ["ppm-gradient", "metal", "glass-refract", "hollow-glass", "defocus"]);
+}
+
+/// Where it is another one, it is traced anew.
+#[test]
+fn the_other_picture_is_another_one_if_it_has_other_spheres_or_comes_from_elsewhere() {
+    let mine = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    let scene = CheckedScene::new(Arc::clone(mine.checked.scene()), *mine.rules());
+    let edited = Document { checked: Arc::new(scene), ..mine.clone() };
+    let origin = Arc::new(mine.origin.with_recipe(mine.origin.recipe.clone()));
+    let elsewhere = Document { origin, ..mine.clone() };
+    let stage = |id| Other::Stage(Stage::find(id).unwrap());
+    let (view, _) = with_slots();
+    let kept = |number| Other::Kept(Arc::clone(&view.slots.get(number).unwrap().kept));
+    let all = || {
+        let [mine, edited, elsewhere] = [&mine, &edited, &elsewhere].map(by_the_book);
+        [mine, edited, elsewhere, stage("metal"), stage("book"), kept(ONE), kept(TWO)]
+    };
+    for (row, a) in all().iter().enumerate() {
+        for (column, b) in all().iter().enumerate() {
+            assert_eq!(a == b, row == column, "{row} and {column}");
+        }
+    }
+    // Each is traced, or was, as its origin says.
+    assert_eq!(stage("book").origin().source, Source::Stage(Stage::find("book").unwrap()));
+    assert_eq!(by_the_book(&mine).origin().source, Source::ByTheBook);
+    assert!(Arc::ptr_eq(by_the_book(&edited).origin().scene.scene(), edited.checked.scene()));
+    let document = &view.slots.get(TWO).unwrap().kept.document;
+    assert!(Arc::ptr_eq(&kept(TWO).origin(), &document.origin));
 }

@@ -2,10 +2,13 @@
 
 use super::*;
 use crate::backends::BackendChoice;
+use crate::render::RenderJob;
 use crate::render_cpu::CpuOptions;
 use crate::scene::{Material, Sky};
 use crate::stress::families::build::{glass, one_ball, sized, tame};
+use crate::stress::painted::{fill, grey, painted};
 use crate::stress::suite::by_the_book;
+use std::sync::atomic::AtomicU64;
 
 fn checker() -> Checker {
     let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
@@ -170,4 +173,99 @@ fn the_sky_is_the_most_that_a_pixel_may_have() {
     assert!(reason.starts_with("pixel 1 is 0.50000") && reason.ends_with("at most 0.5"), "{reason}");
     let reason = of(0, [0.0, 0.0, 1.0 + 1.1e-5]).unwrap();
     assert!(reason.starts_with("pixel 0 is 1.00001") && reason.ends_with("at most 1"), "{reason}");
+}
+
+/// Why a check of a painted scene with one ball fails.
+fn failure(check: Check, cpu: Backend, reference: Backend) -> Option<String> {
+    let recipe = sized(one_ball(), [2, 2], 4);
+    Checker::new(vec![cpu], reference).fails(check, &recipe, &AtomicBool::new(false))
+}
+
+#[test]
+fn a_check_compares_a_backend_with_the_reference_or_with_itself() {
+    let off = "cpu: off by -2.5e-1; at most 1.0e-5 is allowed";
+    let exact = || grey("f64", |_| 0.5);
+    assert_eq!(failure(Check::Rounding, grey("cpu", |_| 0.5), exact()), None);
+    assert_eq!(failure(Check::Rounding, grey("cpu", |_| 0.75), exact()).as_deref(), Some(off));
+    // What the reference makes of a scene only counts beside the other precision.
+    for check in [Check::Hierarchy, Check::Scaling, Check::Translation, Check::Energy] {
+        assert_eq!(failure(check, grey("cpu", |_| 0.75), exact()), None, "{check:?}");
+    }
+    let is_near = |job: &RenderJob| job.camera().look_from.length() < 4.0;
+    type IsOne = fn(&RenderJob) -> bool;
+    let cases: [(Check, IsOne); 3] = [
+        (Check::Hierarchy, |job| job.scene().spheres.len() == 1),
+        (Check::Scaling, |job| job.scene().spheres[0].radius == 1.0),
+        (Check::Translation, is_near),
+    ];
+    for (check, is_one) in cases {
+        let cpu = grey("cpu", move |job| if is_one(job) { 0.75 } else { 0.5 });
+        assert_eq!(failure(check, cpu, exact()).as_deref(), Some(off), "{check:?}");
+    }
+}
+
+#[test]
+fn what_a_backend_warns_about_is_no_failure() {
+    // Warns of the first picture, of the other one, or of none.
+    let cpu = |of_one: bool, of_other: bool| {
+        painted("cpu", move |job, samples, film| {
+            let is_one = job.scene().spheres[0].radius == 1.0;
+            fill(film, samples, if is_one { 0.75 } else { 0.5 })?;
+            let is_warned = if is_one { of_one } else { of_other };
+            Ok(if is_warned { vec!["too thin".to_owned()] } else { Vec::new() })
+        })
+    };
+    for (of_one, of_other) in [(false, false), (true, false), (false, true)] {
+        let found = failure(Check::Scaling, cpu(of_one, of_other), grey("f64", |_| 0.5));
+        assert_eq!(found.is_none(), of_one || of_other, "{of_one} {of_other}: {found:?}");
+    }
+    assert_eq!(failure(Check::Rounding, cpu(true, false), grey("f64", |_| 0.5)), None);
+    // A warning of the reference is no excuse.
+    let warning = painted("f64", |_, samples, film| {
+        fill(film, samples, 0.5)?;
+        Ok(vec!["too thin".to_owned()])
+    });
+    assert!(failure(Check::Rounding, cpu(false, false), warning).is_some());
+}
+
+#[test]
+fn a_difference_is_looked_at_again_with_more_samples_unless_it_is_light_from_nowhere() {
+    let pictures = Arc::new(AtomicU64::new(0));
+    // Pictures have the wrong light up to the look with this number, counted from 0.
+    let cpu = |right_from_look: u64, wrong: f64| {
+        let pictures = Arc::clone(&pictures);
+        pictures.store(0, Ordering::Relaxed);
+        painted("cpu", move |_, samples, film| {
+            let looks = pictures.fetch_add(1, Ordering::Relaxed);
+            fill(film, samples, if looks < right_from_look { wrong } else { 0.5 })?;
+            Ok(Vec::new())
+        })
+    };
+    let found = |check, right_from_look, wrong| {
+        let reason = failure(check, cpu(right_from_look, wrong), grey("f64", |_| 0.5));
+        (reason.is_some(), pictures.load(Ordering::Relaxed))
+    };
+    assert_eq!(
+        [0, 1, 2, 3].map(|look| found(Check::Rounding, look, 0.25)),
+        [(false, 1), (false, 2), (false, 3), (true, 3)]
+    );
+    assert_eq!([0, 1, 2].map(|look| found(Check::Energy, look, 1.5)), [(false, 1), (true, 1), (true, 1)]);
+}
+
+#[test]
+fn the_first_check_that_fails_is_named_and_rejected_samples_are_counted() {
+    let recipe = sized(one_ball(), [2, 2], 4);
+    let mut checker = Checker::new(vec![grey("cpu", |_| 1.5)], grey("f64", |_| 1.5));
+    let found = checker.first_failure(&recipe, &AtomicBool::new(false));
+    assert_eq!(found, Some((Check::Energy, "cpu: pixel 0 is 1.5; the sky is at most 1".to_owned())));
+    let rejecting = |name, count: u64| {
+        painted(name, move |_, samples, film| {
+            film.record(samples, count)?;
+            Ok(Vec::new())
+        })
+    };
+    assert_eq!(
+        failure(Check::Rounding, rejecting("cpu", 3), rejecting("f64", 4)).as_deref(),
+        Some("cpu: rejected samples (NaN, infinite or negative): 7")
+    );
 }

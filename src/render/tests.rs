@@ -1,0 +1,97 @@
+//! Limits of jobs, what they need and share, and their statistics.
+
+use super::*;
+use crate::scene::Material;
+use crate::stages::Diffuse;
+use glam::DVec3;
+
+/// A job without spheres.
+fn job(width: u32, height: u32, max_depth: u32) -> Result<RenderJob, JobError> {
+    let settings = RenderSettings { width, height, max_depth, ..RenderSettings::default() };
+    RenderJob::new(Scene::default(), Camera::BOOK, settings, Rules::FINISHED)
+}
+
+#[test]
+fn a_picture_may_be_as_large_and_as_deep_as_the_limits() {
+    for (width, height, depth) in [(1, 1, 1), (SIZE_LIMIT, 1, 1), (1, SIZE_LIMIT, DEPTH_LIMIT)] {
+        assert!(job(width, height, depth).is_ok(), "{width}x{height}, {depth}");
+    }
+    for (width, height, what, pixels) in [
+        (0, 1, "width", 0),
+        (1, 0, "height", 0),
+        (SIZE_LIMIT + 1, 2, "width", SIZE_LIMIT + 1),
+        (2, SIZE_LIMIT + 1, "height", SIZE_LIMIT + 1),
+    ] {
+        assert_eq!(job(width, height, 1), Err(JobError::Size { what, pixels }));
+    }
+    for depth in [0, DEPTH_LIMIT + 1] {
+        assert_eq!(job(2, 1, depth), Err(JobError::Depth { depth }));
+    }
+    let good = job(2, 1, 1).unwrap();
+    let blind = Camera { vfov_degrees: 0.0, ..Camera::BOOK };
+    assert!(matches!(good.seen_by(blind, *good.settings()), Err(JobError::Scene(_))));
+}
+
+#[test]
+fn another_view_shares_the_scene_and_an_equal_copy_does_not() {
+    let job = job(4, 3, 2).unwrap();
+    let camera = Camera { vfov_degrees: 30.0, ..Camera::BOOK };
+    let seen = job.seen_by(camera, *job.settings()).unwrap();
+    assert!(seen.shares_scene_with(&job) && seen != job);
+    assert_eq!((seen.camera(), seen.settings(), seen.rules()), (&camera, job.settings(), job.rules()));
+    let of = |scene: Arc<Scene>, rules| RenderJob::new(scene, Camera::BOOK, *job.settings(), rules).unwrap();
+    let copy = of(Arc::new(job.scene().clone()), Rules::FINISHED);
+    assert!(copy == job && !copy.shares_scene_with(&job));
+    let rules = Rules { diffuse: Diffuse::Hemisphere, ..Rules::FINISHED };
+    assert!(!of(Arc::clone(&job.scene), rules).shares_scene_with(&job), "other rules");
+}
+
+#[test]
+fn a_film_of_the_same_size_and_halves_fits() {
+    let job = job(4, 3, 1).unwrap();
+    assert!(job.fits(&job.new_film()) && job.fits(&Film::new(4, 3, 2)));
+    for (width, height, halves) in [(3, 4, 2), (5, 3, 2), (4, 2, 2), (4, 3, 1)] {
+        assert!(!job.fits(&Film::new(width, height, halves)), "{width}x{height}, {halves} halves");
+    }
+}
+
+#[test]
+fn films_the_file_and_the_spheres_need_memory() {
+    if memory::free_bytes().is_none() {
+        return;
+    }
+    // More than there ever is, in 24 bytes for each pixel of a half.
+    const FILMS: u64 = 1 << 20;
+    let (width, height) = (SIZE_LIMIT, SIZE_LIMIT - 1);
+    let pixels = u64::from(width) * u64::from(height);
+    let mut scene = Scene::default();
+    let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+    for x in [-3.0, 0.0, 3.0] {
+        scene.add_sphere(DVec3::new(x, 0.0, -5.0), 1.0, glass);
+    }
+    for (estimate_error, halves) in [(true, 2), (false, 1)] {
+        let settings = RenderSettings { width, height, estimate_error, ..RenderSettings::default() };
+        let job = RenderJob::new(scene.clone(), Camera::BOOK, settings, Rules::FINISHED).unwrap();
+        let error = job.check_memory(FILMS).unwrap_err();
+        assert_eq!(error.needed_bytes, pixels * (24 * halves * FILMS + 4) + 3 * 400 + (64 << 20));
+        assert_eq!(error.what, "a picture of 16384x16383 of 3 spheres");
+        assert_eq!(error.remedy.contains("--estimate-error off"), estimate_error, "{}", error.remedy);
+    }
+}
+
+#[test]
+fn a_panic_is_told_with_its_message() {
+    assert_eq!([panic_text(&"why"), panic_text(&String::from("how"))], ["why", "how"]);
+    let told = RenderError::of_panic("gpu", &7).to_string();
+    assert_eq!(told, "gpu failed: it panicked: for no stated reason");
+}
+
+#[test]
+fn statistics_add_up() {
+    let trace = Duration::from_secs(7);
+    let stats = Stats { paths: 1, rays: 2, rejected: 3, busy_lanes: 4, offered_lanes: 5, trace };
+    let mut sum = stats;
+    sum.add(&stats);
+    let trace = 2 * trace;
+    assert_eq!(sum, Stats { paths: 2, rays: 4, rejected: 6, busy_lanes: 8, offered_lanes: 10, trace });
+}
