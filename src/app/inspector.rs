@@ -215,6 +215,7 @@ fn pixel_ui(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::{Origin, Source};
     use crate::app::tests::{Drawings, part};
     use crate::recipe::Recipe;
@@ -256,6 +257,22 @@ mod tests {
                 texts.iter().any(|text| text.starts_with(&expected)),
                 "{at:?}: no {expected} in {texts:?}"
             );
+        }
+    }
+
+    #[test]
+    fn among_very_many_spheres_none_is_searched_for() {
+        for (count, is_named) in [(PICK_LIMIT, true), (PICK_LIMIT + 1, false)] {
+            let recipe = Recipe::builtin("three-spheres").unwrap();
+            let mut document = Document::new(Origin::new(recipe, Source::Builtin));
+            let mut scene = document.scene().clone();
+            let behind = document.camera.look_from + 99.0 * document.camera.basis().w;
+            (scene.spheres.len()..count).for_each(|_| scene.add_sphere(behind, 0.5, 0));
+            document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+            let at = document.size().map(|length| length / 2);
+            let pixel = Pixel { at, mean: [0.0; 3], error: None, bytes: [0; 3], samples: 1 };
+            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, None, ui));
+            assert_eq!(harness.query_by_label_contains("at distance").is_some(), is_named, "{count}");
         }
     }
 

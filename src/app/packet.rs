@@ -290,6 +290,24 @@ mod tests {
     }
 
     #[test]
+    fn timelines_that_were_asked_for_earlier_are_not_shown() {
+        let (mut packet, context) = (Packet::default(), egui::Context::default());
+        let document = document("red-sphere");
+        let [earlier, newest] = [2, 4].map(|lanes| {
+            packet.follow(&context, &document, Some(lanes), false);
+            packet.answers.wait().unwrap()
+        });
+        packet.answers.answer(&context).give(earlier);
+        packet.follow(&context, &document, Some(4), false);
+        assert_eq!(packet.steps(), None);
+        let timelines = newest.timelines.as_ref().unwrap();
+        assert_eq!(timelines.each_ref().map(|timeline| timeline.lanes.len()), [4, 4]);
+        packet.answers.answer(&context).give(newest);
+        packet.follow(&context, &document, Some(4), false);
+        assert!(packet.steps().is_some());
+    }
+
+    #[test]
     fn lanes_trace_a_block_of_pixels_in_the_middle() {
         let at = |lane, lanes| pixel_of(lane, lanes, [100, 60]);
         assert_eq!([0, 1, 2, 3].map(|lane| at(lane, 4)), [[50, 30], [51, 30], [50, 31], [51, 31]]);

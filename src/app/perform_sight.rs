@@ -59,3 +59,48 @@ fn words(stage: &Stage, other: Option<&Stage>) -> String {
         (Means::Wipe(_), None) => format!("A wipe{enlarged}"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::presentation::Presentation;
+    use crate::app::tests::window;
+    use crate::stages::Sight;
+
+    #[test]
+    fn it_is_told_what_a_sight_shows() {
+        let [stage, other] = ["metal", "metal-fuzzy"].map(|id| Stage::find(id).unwrap());
+        let told = |means: Means, is_part: bool, other: Option<&Stage>| {
+            let part = is_part.then_some([0.0, 0.0, 0.5, 0.5]);
+            words(&Stage { sight: Sight { means, part, ..stage.sight }, ..*stage }, other)
+        };
+        for (means, name) in [
+            (Means::Albedo, "The albedo"),
+            (Means::RaysPerPath, "Rays per path"),
+            (Means::StandardError, "The standard error"),
+            (Means::Luminance([-1.0, 1.0]), "Luminance in false colours"),
+        ] {
+            assert_eq!(told(means, false, Some(other)), name);
+            assert_eq!(told(means, true, None), format!("{name}, enlarged"));
+        }
+        assert_eq!(told(Means::Picture, true, Some(other)), "A part of the picture, enlarged");
+        let wipe = Means::Wipe(0.5);
+        assert_eq!(told(wipe, false, Some(other)), "A wipe against 10.6 Brushed metal");
+        assert_eq!(told(wipe, true, Some(other)), "A wipe against 10.6 Brushed metal, enlarged");
+        assert_eq!(told(wipe, false, None), "A wipe");
+    }
+
+    #[test]
+    fn in_a_presentation_only_the_caption_tells_of_a_sight() {
+        let presentation = Presentation { was_full_screen: false, has_captions: true, is_blank: false };
+        for (presentation, count) in [(None, 1), (Some(presentation), 0)] {
+            let mut window = window("weekender --stage metal --size 16x9 --device cpu");
+            window.model.presentation = presentation;
+            window.toggle_sight();
+            assert!(window.sight.is_some());
+            assert_eq!(window.messages().len(), count, "{:?}", window.messages());
+            window.toggle_sight();
+            assert!(window.sight.is_none());
+        }
+    }
+}

@@ -106,8 +106,12 @@ mod tests {
     use super::*;
     use crate::app::Window;
     use crate::app::kept::KeptThread;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
     use crate::app::model::view::ViewState;
     use crate::app::tests::{Drawings, until, window};
+    use crate::stages::Stage;
     use egui::pos2;
 
     #[test]
@@ -143,6 +147,30 @@ mod tests {
         });
         drawings.add("pixels without room", &small);
         drawings.keep("pixel_values");
+    }
+
+    #[test]
+    fn numbers_are_asked_for_again_when_others_are_seen() {
+        let context = egui::Context::default();
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.set_size([4, 2]);
+        let screens = [16.0, 4.0].map(|sum| OnScreen::of(document.clone(), small_film(8, sum)));
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 200.0));
+        let mut values = PixelValues::default();
+        // What is answered, if the film is asked: the first pixel, and the last channel of the last one.
+        let mut ask = |screen: &OnScreen, area: Rect| {
+            screen.before_answers(|subject| {
+                values.follow(subject, rect, Some(area), &context);
+                values.follow(subject, rect, Some(area), &context);
+            });
+            let answers = [values.answers.take(), values.answers.take()];
+            answers.map(|part| part.map(|part| (part.first, part.means.last().unwrap()[2])))
+        };
+        let (whole, right) = (rect, Rect { min: pos2(250.0, 0.0), ..rect });
+        assert_eq!(ask(&screens[0], whole), [Some(([0, 0], 2.0)), None]);
+        assert_eq!(ask(&screens[0], whole), [None, None], "they are known");
+        assert_eq!(ask(&screens[0], right), [Some(([2, 0], 2.0)), None], "other pixels");
+        assert_eq!(ask(&screens[1], right), [Some(([2, 0], 0.5)), None], "another film");
     }
 
     #[test]

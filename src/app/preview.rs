@@ -208,6 +208,9 @@ mod tests {
         assert_eq!(previews.first_look(&between), None);
         previews.render_speed = Some(1e9);
         assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
+        // The picture itself would be shown as soon.
+        (previews.render_speed, previews.speed) = (Some(1e3), Some(1e9));
+        assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
     }
 
     #[test]
@@ -230,6 +233,18 @@ mod tests {
         assert_eq!(previews.speed, Some(1e8), "no time is shorter than a millisecond");
         previews.end_move();
         assert!(!previews.is_moving());
+    }
+
+    #[test]
+    fn a_late_preview_is_followed_by_one_as_coarse_as_the_time_wants() {
+        // Twice as coarse takes a quarter of the time; 50 ms are the aim, and up to 70 ms nothing changes.
+        for (seconds, divisor) in [(0.05, 2), (0.069, 2), (0.071, 3), (0.11, 3), (0.12, 4), (0.21, 5)] {
+            let (mut previews, document) = (at_speed(8e6), document("book", [1000, 400]));
+            assert_eq!(previews.follow_move(&document), Preview { divisor: 2, samples: 4 });
+            previews.pictured(&document, 2, 4e5, seconds);
+            let expected = Preview { divisor, samples: 4 };
+            assert_eq!(previews.follow_move(&document), expected, "{seconds} s");
+        }
     }
 
     #[test]

@@ -108,6 +108,37 @@ mod tests {
         stage(found.id)
     }
 
+    /// A picture that was kept.
+    fn kept(document: &Document) -> Kept {
+        let mut film = Film::new(4, 2, 1);
+        film.record(0..1, 0).unwrap();
+        Kept::new(document.clone(), film, Arc::default(), None)
+    }
+
+    #[test]
+    fn a_sight_of_a_slot_is_that_of_the_live_picture() {
+        let (stage, mut document) = stage("metal");
+        let (mut view, mut placement) = (ViewState::default(), Placement::default());
+        let kept = Arc::new(kept(&document));
+        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
+        view.look(Some(SlotNumber::ALL[0]));
+        let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
+        assert!(view.slots.looked().is_none() && sight.lasts(&document, &view));
+    }
+
+    #[test]
+    fn a_sight_of_another_picture_leaves_its_camera() {
+        let (stage, mut document) = stage("metal");
+        let (mut view, mut placement) = (ViewState::default(), Placement::default());
+        document.camera.vfov_degrees = 33.0;
+        let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
+        assert!(sight.has_moved_camera());
+        let mut other = Document::new(Origin::of_stage(stage));
+        let home = other.camera;
+        sight.end(&mut other, &mut view, &mut placement);
+        assert_eq!(other.camera, home);
+    }
+
     #[test]
     fn a_sight_shows_its_means_from_the_stages_own_camera_and_returns() {
         let cases: [fn(&Means) -> bool; 3] = [
@@ -175,6 +206,13 @@ mod tests {
         let mut other = view.clone();
         other.toggle(Mode::Difference, With::Slot(SlotNumber::ALL[0]));
         assert!(!sight.lasts(&document, &other));
+        let mut other = view.clone();
+        let kept = Arc::new(kept(&document));
+        other.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
+        other.look(None);
+        assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
+        other.look(Some(SlotNumber::ALL[0]));
+        assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));
     }
@@ -187,9 +225,7 @@ mod tests {
         for is_there in [true, false] {
             let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
             if is_there {
-                let mut film = Film::new(4, 2, 1);
-                film.record(0..1, 0).unwrap();
-                let kept = Arc::new(Kept::new(document.clone(), film, Arc::default(), None));
+                let kept = Arc::new(kept(&document));
                 view.slots.put(one, Slot { name: String::new(), kept });
                 let means = vec![[0.0; 3]];
                 view.reference =

@@ -239,21 +239,24 @@ mod tests {
         assert_eq!(next.map(|next| next.words()), Some("the CPU's scalar code"));
     }
 
-    #[test]
-    fn one_listed_backend_is_the_automatic_one() {
-        assert_eq!(list().iter().filter(|line| line.is_auto).count(), 1);
-        let adapter = |is_software, lacks: Option<&str>| AdapterInfo {
+    fn adapter(is_software: bool, lacks: Option<&str>) -> AdapterInfo {
+        AdapterInfo {
             name: "an adapter".to_owned(),
             kind: "other",
             backend: "Vulkan".to_owned(),
-            driver: String::new(),
+            driver: "driver 1".to_owned(),
             is_software,
             storage_binding_limit: 1 << 27,
             buffer_limit: 1 << 28,
             has_timestamps: false,
             subgroup_size: 32,
             lacks: lacks.map(str::to_owned),
-        };
+        }
+    }
+
+    #[test]
+    fn one_listed_backend_is_the_automatic_one() {
+        assert_eq!(list().iter().filter(|line| line.is_auto).count(), 1);
         let unfit = [adapter(true, None), adapter(false, Some("no compute shaders"))];
         let chosen = |adapters: &[AdapterInfo]| {
             let list = listing(vec![Isa::Portable, Isa::Sse42], adapters);
@@ -263,5 +266,84 @@ mod tests {
         let [software, _] = unfit;
         let fit = [software, adapter(false, None), adapter(false, None)];
         assert_eq!(chosen(&fit), [false, false, false, true, false, false]);
+    }
+
+    #[test]
+    fn the_list_says_what_levels_and_adapters_offer() {
+        let adapters = [adapter(false, Some("no compute shaders")), adapter(true, None)];
+        let list = listing(vec![Isa::Portable, Isa::Avx2], &adapters);
+        let lines: Vec<_> = list.iter().map(|line| (line.device, line.about.as_str())).collect();
+        let limits = "buffers of up to 256 MiB, bindings of up to 128 MiB";
+        let unusable =
+            format!("an adapter (other, Vulkan, driver 1): {limits}; not usable: no compute shaders");
+        let software =
+            format!("an adapter (software, Vulkan, driver 1): {limits}; used only if named with --adapter");
+        let expected = [
+            ("cpu", "--isa portable: --simd 1; default 1"),
+            ("cpu", "--isa avx2: --simd 1, 4, 8, 16; default 8"),
+            ("gpu", unusable.as_str()),
+            ("gpu", software.as_str()),
+            ("reference", "f64, one lane: slow, the reference for rounding errors"),
+        ];
+        assert_eq!(lines, expected);
+    }
+
+    #[test]
+    fn the_automatic_backend_is_the_listed_one_unless_an_option_of_the_cpu_is_set() {
+        let auto = |cpu| BackendChoice::auto(cpu, GpuOptions::of_adapter(Some("x")));
+        let listed = list().into_iter().find(|line| line.is_auto).map(|line| line.device);
+        assert_eq!(Some(auto(CpuOptions::default()).name()), listed);
+        for cpu in [
+            CpuOptions { threads: Some(3), ..CpuOptions::default() },
+            CpuOptions { lanes: Some(1), ..CpuOptions::default() },
+        ] {
+            assert_eq!(auto(cpu), BackendChoice::Cpu(cpu));
+        }
+        let fit = adapters().iter().any(AdapterInfo::is_fit);
+        assert_eq!(BackendChoice::gpu_if_present(None).is_some(), fit);
+        let named = BackendChoice::Gpu(GpuOptions::of_adapter(Some("x")));
+        assert_eq!(BackendChoice::gpu_if_present(Some("x")), Some(named.clone()));
+        assert_eq!(BackendChoice::named("gpu", Some("x")), Some(named));
+    }
+
+    #[test]
+    fn a_fallback_keeps_threads_and_priority() {
+        let given = CpuOptions {
+            isa: Some(Isa::Portable),
+            lanes: Some(1),
+            threads: Some(3),
+            low_priority: true,
+            ..CpuOptions::default()
+        };
+        let mut failed = vec![BackendChoice::Cpu(given)];
+        while let Some(next) = BackendChoice::fallback(&failed) {
+            failed.push(next);
+        }
+        // The plainest code is what has failed.
+        let best = CpuOptions { isa: None, lanes: None, ..given };
+        assert_eq!(failed[1..], [BackendChoice::Cpu(best), BackendChoice::Reference { threads: Some(3) }]);
+        // Of several, the latest options count; those of other backends have none.
+        let failed = [BackendChoice::Cpu(best), BackendChoice::Gpu(GpuOptions::default())];
+        assert_eq!(BackendChoice::fallback(&failed), Some(BackendChoice::Cpu(given)));
+        let gpu = [BackendChoice::Gpu(GpuOptions::default())];
+        assert_eq!(BackendChoice::fallback(&gpu), Some(BackendChoice::Cpu(CpuOptions::default())));
+    }
+
+    /// Takes a moment to close, and tells when it has.
+    struct Closing(mpsc::Sender<()>);
+
+    impl Drop for Closing {
+        fn drop(&mut self) {
+            std::thread::sleep(Duration::from_millis(20));
+            // The test may have ended.
+            let _ = self.0.send(());
+        }
+    }
+
+    #[test]
+    fn a_backend_that_closes_is_waited_for() {
+        let (closed, is_closed) = mpsc::channel();
+        close(Closing(closed));
+        assert_eq!(is_closed.try_recv(), Ok(()));
     }
 }

@@ -1,7 +1,7 @@
 //! Several renderers at work on one film. Each takes more samples when it has finished, so faster ones take more.
 
 use super::close;
-use crate::film::Film;
+use crate::film::{Film, FilmError};
 use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::threads::shared;
 use std::any::Any;
@@ -186,9 +186,13 @@ impl Renderer for Together {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         let begin = Instant::now();
+        if let Some(range) = film.samples().overlap(&range) {
+            return Err(FilmError::Overlap { range }.into());
+        }
         let grain = film.halves().len() as u64;
         let wanted = range.end.saturating_sub(range.start);
-        let pieces = Mutex::new(Pieces { left: vec![range], grain });
+        let left = std::iter::once(range).filter(|range| !range.is_empty()).collect();
+        let pieces = Mutex::new(Pieces { left, grain });
         let mut stats = Stats::default();
         // Each member has its own film, which holds only whole pieces. They are added to the caller's film at the
         // end, so an error leaves that film unchanged.
@@ -282,8 +286,13 @@ fn work_off(
         outcome.film = Some(job.new_film());
     }
     let Some(film) = &outcome.film else { return outcome };
-    // Samples that a failing member has not added to its film are left to the others.
-    let lost = taken.into_iter().filter(|piece| film.samples().overlap(piece).is_none());
+    // Samples that a member has not added to its film are left to the others.
+    let is_lost = |piece: &Range<u64>| !piece.is_empty() && film.samples().overlap(piece).is_none();
+    let lost: Vec<Range<u64>> = taken.into_iter().filter(is_lost).collect();
+    if outcome.error.is_none() && !lost.is_empty() {
+        let reason = "it did not add the samples that it was to trace".to_owned();
+        outcome.error = Some(RenderError::Backend { backend: name, reason });
+    }
     pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);
     let added = film.sample_count();
     member.added += added;
@@ -329,5 +338,28 @@ mod tests {
             pieces.left = std::iter::once(0..2).collect();
             assert_eq!(pieces.take(pace), Some(0..2));
         }
+    }
+
+    #[test]
+    fn a_piece_is_the_share_of_all_that_is_left_from_the_last_range() {
+        // Half of what is left, times the share of the total speed: 3 in 4 and 1 in 4.
+        let speeds = [Some(30.0), Some(10.0), None];
+        let [fast, slow, new] = [0, 1, 2].map(|index| Pace::of(index, &speeds));
+        let take = |left: Vec<Range<u64>>, pace| {
+            let mut pieces = Pieces { left, grain: 2 };
+            (pieces.take(pace), pieces.left)
+        };
+        let one = |range: Range<u64>| -> Vec<Range<u64>> { std::iter::once(range).collect() };
+        assert_eq!(take(one(100..164), fast), (Some(100..124), one(124..164)));
+        assert_eq!(take(one(100..164), slow), (Some(100..108), one(108..164)));
+        assert_eq!(take(one(100..164), new), (Some(100..102), one(102..164)), "the smallest piece");
+        // 3 / 8 of 64, but no more than the last range has.
+        assert_eq!(take(vec![0..56, 90..98], fast), (Some(90..98), one(0..56)));
+        // The fast member would trace six samples while the slow one traces a grain of two.
+        assert_eq!(take(one(0..5), slow).0, None);
+        assert_eq!(take(one(0..6), slow).0, Some(0..2));
+        // An odd sample at the end is a piece of its own.
+        assert_eq!(take(one(8..9), fast), (Some(8..9), vec![]));
+        assert_eq!(take(vec![], fast), (None, vec![]));
     }
 }

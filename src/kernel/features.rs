@@ -381,4 +381,13 @@ mod tests {
             assert_eq!(left_out.len() as u32 + combination.count_ones(), parts::ALL.count_ones());
         }
     }
+
+    #[test]
+    fn a_general_kernel_keeps_what_affects_the_samples() {
+        let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
+        let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
+        assert_eq!(special.generalised(), own);
+        let hemisphere = Features { hemisphere: true, hierarchy: true, cwbvh: true, lens: false, ..own };
+        assert_eq!(hemisphere.generalised(), Features { cwbvh: false, lens: true, ..hemisphere });
+    }
 }

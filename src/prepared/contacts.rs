@@ -100,4 +100,23 @@ mod tests {
         assert_eq!(told(GLASS, DVec3::Y * 2.1, 0.0), None, "from outside, paths pass the contact once");
         assert_eq!(told(Material::Lambertian { albedo: DVec3::ONE }, eye, 0.0), None, "an opaque ball");
     }
+
+    #[test]
+    fn an_eye_is_in_line_up_to_a_hundredth_of_a_radian() {
+        // The eye is .5 from the centre of the ball, below it and aside at an angle with this sine.
+        let told = |sine: f64| {
+            let below = f64::sqrt(1.0 - sine * sine);
+            told(GLASS, DVec3::Y + 0.5 * DVec3::new(sine, -below, 0.0), 0.0).is_some()
+        };
+        assert_eq!(
+            [0.0, 0.0099, -0.0099, 0.0101, -0.0101, 0.5].map(told),
+            [true, true, true, false, false, false]
+        );
+        // Above the centre it is in line, too: light comes to the contact through the centre.
+        assert!(told_of(DVec3::Y * 1.5) && !told_of(DVec3::new(0.5, 1.0, 0.0)));
+    }
+
+    fn told_of(eye: DVec3) -> bool {
+        told(GLASS, eye, 0.0).is_some()
+    }
 }

@@ -165,4 +165,41 @@ mod tests {
         assert_eq!(in_time(15), None, "there is time for one sample");
         assert_eq!(in_time(25), Some(0..2));
     }
+
+    #[test]
+    fn a_pass_that_alignment_shortened_does_not_shorten_the_next() {
+        let (mut sizer, none) = (PassSizer::new(1).begin_with(64), SampleRanges::default());
+        assert_eq!(sizer.next(&none, 4..1000, None), Some(4..8));
+        sizer.measured(4, FAST, TARGET);
+        assert_eq!(sizer.next(&none, 64..1000, None), Some(64..128));
+        // A pass that took too long does.
+        sizer.measured(64, 8 * TARGET, TARGET);
+        assert_eq!(sizer.next(&none, 64..1000, None), Some(64..72));
+    }
+
+    #[test]
+    fn passes_have_at_most_65536_samples_however_fast_they_are() {
+        let begun = PassSizer::new(2).begin_with(1 << 20);
+        let length = |sizer: &PassSizer| {
+            let pass = sizer.next(&SampleRanges::default(), 0..1 << 30, None).unwrap();
+            pass.end - pass.start
+        };
+        assert_eq!(length(&begun), 1 << 16);
+        for took in [Duration::ZERO, Duration::from_nanos(1)] {
+            let mut sizer = begun.clone();
+            sizer.measured(1 << 16, took, TARGET);
+            assert_eq!(length(&sizer), 1 << 16, "{took:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_known_of_the_next_backends_speed() {
+        let (mut sizer, none) = (PassSizer::new(2), SampleRanges::default());
+        let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
+        sizer.measured(2, 10 * TARGET, TARGET);
+        assert_eq!(in_a_second(&sizer), None);
+        sizer.restart();
+        assert_eq!(in_a_second(&sizer), Some(0..2));
+        assert_eq!(sizer.next(&none, 0..100, Some(Duration::ZERO)), None, "no time is left");
+    }
 }

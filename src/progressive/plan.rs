@@ -111,3 +111,29 @@ impl EndReason {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_limit_is_a_duration_whatever_its_seconds() {
+        let limit = |seconds: f64| Stop { seconds: Some(seconds), ..Stop::default() }.time_limit();
+        for (seconds, expected) in [
+            (1.5, Duration::from_millis(1500)),
+            (0.0, Duration::ZERO),
+            (-3.0, Duration::ZERO),
+            (1e300, Duration::MAX),
+            (f64::INFINITY, Duration::MAX),
+        ] {
+            assert_eq!(limit(seconds), Some(expected), "{seconds} s");
+        }
+        assert_eq!(Stop::at_samples(8).time_limit(), None);
+    }
+
+    #[test]
+    fn a_plan_without_samples_goes_on_to_the_last_that_a_film_can_hold() {
+        assert_eq!(Plan { first_sample: 5, ..Plan::endless() }.range(), 5..SAMPLE_LIMIT);
+        assert_eq!(Plan { first_sample: 5, ..Plan::samples(20) }.range(), 5..20);
+    }
+}

@@ -241,4 +241,44 @@ mod tests {
             assert!(renderer.rebuild.building.is_none());
         }
     }
+
+    #[test]
+    fn a_better_hierarchy_is_begun_once_the_threads_have_traced_80_times_as_long() {
+        let job = field(60);
+        let prepared = PreparedScene::<f32>::new(&job);
+        let second = Duration::from_secs(1);
+        let wanted = || Rebuild { first: second, is_settled: false, ..Rebuild::new() };
+        let mut rebuild = wanted();
+        rebuild.note_pass(1000 * second, 1, &prepared, &job, false);
+        assert!(rebuild.building.is_none(), "a single thread is left alone");
+        // Two threads: 39 seconds, then one more.
+        let mut rebuild = wanted();
+        rebuild.note_pass(39 * second, 2, &prepared, &job, false);
+        assert!(rebuild.building.is_none(), "too early");
+        rebuild.note_pass(second, 2, &prepared, &job, false);
+        assert!(rebuild.building.is_some());
+        wait(&rebuild);
+        assert!(rebuild.take_built(&job).is_some() && rebuild.is_settled);
+        assert!(rebuild.take_built(&job).is_none(), "once");
+        rebuild.note_pass(1000 * second, 2, &prepared, &job, false);
+        assert!(rebuild.building.is_none(), "nothing is better than the best");
+    }
+
+    #[test]
+    fn the_time_of_another_scene_does_not_count() {
+        let mut large = PreparedScene::<f32>::new(&field(21_000));
+        let mut rebuild = Rebuild::new();
+        rebuild.traced = Duration::from_secs(9);
+        rebuild.note_prepared(&large);
+        assert_eq!((rebuild.first, rebuild.traced), (large.hierarchy_time, Duration::ZERO));
+        assert!(!rebuild.is_settled);
+        // A hierarchy that was kept goes on being what it is.
+        rebuild.traced = Duration::from_secs(9);
+        large.hierarchy_time = Duration::ZERO;
+        rebuild.note_prepared(&large);
+        assert_eq!(rebuild.traced, Duration::from_secs(9));
+        assert!(!rebuild.is_settled && !rebuild.first.is_zero());
+        rebuild.note_prepared(&PreparedScene::new(&field(60)));
+        assert!(rebuild.is_settled, "a small scene needs no better one");
+    }
 }

@@ -167,20 +167,23 @@ pub fn adapters() -> Vec<AdapterInfo> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_fastest_adapter_comes_first() {
-        let adapter = |kind, backend: &str, is_software, lacks: Option<&str>| AdapterInfo {
+    fn adapter(kind: &'static str, backend: &str, is_software: bool, lacks: Option<&str>) -> AdapterInfo {
+        AdapterInfo {
             name: "an adapter".to_owned(),
             kind,
             backend: backend.to_owned(),
-            driver: String::new(),
+            driver: "driver 1".to_owned(),
             is_software,
             storage_binding_limit: 1 << 27,
             buffer_limit: 1 << 28,
             has_timestamps: false,
             subgroup_size: 32,
             lacks: lacks.map(str::to_owned),
-        };
+        }
+    }
+
+    #[test]
+    fn the_fastest_adapter_comes_first() {
         let ordered = [
             adapter("discrete GPU", "Vulkan", false, None),
             adapter("discrete GPU", "GL", false, None),
@@ -203,5 +206,37 @@ mod tests {
             assert!(names_software(name), "{name}");
         }
         assert!(!names_software("NVIDIA H100 PCIe/PCIe/SSE2"));
+    }
+
+    #[test]
+    fn only_software_counts_the_turns_of_all_threads_in_step() {
+        // Registers of the processor hold at least 8 threads, and no more than 64 are known.
+        for (subgroup_size, expected) in [(0, 8), (4, 8), (8, 8), (16, 16), (64, 64), (128, 64)] {
+            let software = AdapterInfo { subgroup_size, ..adapter("software", "Vulkan", true, None) };
+            assert_eq!((software.threads_in_step(), software.busy_threads()), (expected, 4096));
+            let gpu = AdapterInfo { subgroup_size, ..adapter("discrete GPU", "Vulkan", false, None) };
+            assert_eq!((gpu.threads_in_step(), gpu.busy_threads()), (1, u64::MAX));
+        }
+    }
+
+    #[test]
+    fn an_adapter_is_fit_if_it_is_a_gpu_that_lacks_nothing() {
+        let lacks = Some("no compute shaders");
+        for (is_software, lacks, is_fit) in
+            [(false, None, true), (true, None, false), (false, lacks, false), (true, lacks, false)]
+        {
+            assert_eq!(
+                adapter("other", "GL", is_software, lacks).is_fit(),
+                is_fit,
+                "{is_software} {lacks:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn software_is_called_so_even_if_its_driver_says_otherwise() {
+        let told = |is_software| adapter("other", "GL", is_software, None).to_string();
+        assert_eq!(told(true), "an adapter (software, GL, driver 1)");
+        assert_eq!(told(false), "an adapter (other, GL, driver 1)");
     }
 }

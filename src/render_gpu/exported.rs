@@ -49,6 +49,7 @@ impl Exported {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recipe::Recipe;
     use crate::render::RenderSettings;
     use crate::scene::{Camera, Material, Scene};
     use crate::stages::Rules;
@@ -74,5 +75,18 @@ mod tests {
                 assert_eq!(center, job.scene().spheres[*index as usize].center);
             }
         }
+    }
+
+    #[test]
+    fn a_host_is_told_what_its_kernel_needs() {
+        let job = Recipe::find("field:60").unwrap().job().unwrap();
+        let prepared = PreparedScene::<f32>::new(&job);
+        let exported = Exported::new(&job).unwrap();
+        assert!(exported.features.hierarchy && exported.features.cwbvh, "{:?}", exported.features);
+        assert_eq!(exported.turns_over_lists, prepared.anchored.len() as u64);
+        assert_eq!(exported.block_limit, prepared.block_limit);
+        let mut indices = exported.scene_index;
+        indices.sort_unstable();
+        assert!(indices.into_iter().eq(0..job.scene().spheres.len() as u32));
     }
 }

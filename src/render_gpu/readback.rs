@@ -181,3 +181,16 @@ impl Clock {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finished_samples_are_counted_in_two_words() {
+        for (low, high, expected) in [(7, 0, 7), (7, 1, (1 << 32) + 7), (u32::MAX, 2, (3 << 32) - 1)] {
+            let counters = GpuDispatchCounters { finished: low, finished_high: high, ..Default::default() };
+            assert_eq!(DispatchResult { took: None, counters }.finished(), expected);
+        }
+    }
+}

@@ -97,4 +97,39 @@ mod tests {
             path.rays.iter().map(|ray| ray.hit.map(|hit| (hit.sphere, hit.distance, hit.position))).collect();
         assert_eq!(hits, [Some((40, 1.0, Some(origins[1]))), Some((30, 2.0, Some(origins[2]))), None]);
     }
+
+    /// Stores a record from the word `first` on.
+    fn put<T: Pod>(words: &mut [u32], first: usize, record: T) {
+        words[first..first + word_count::<T>()].copy_from_slice(bytemuck::cast_slice(&[record]));
+    }
+
+    #[test]
+    fn a_path_that_is_put_aside_is_continued_while_it_advances() {
+        let mut words = words_for([7, 5], 4);
+        assert_eq!((read::<GpuRecordHead>(&words, 0).column, read::<GpuRecordHead>(&words, 0).row), (7, 5));
+        let mut rays = 0;
+        assert_eq!((is_aside(&words, 4, &mut rays), rays), (Some(false), 0));
+        put(&mut words, first_aside(4), GpuAside { state: 1 << 16, ..GpuAside::default() });
+        for ray_count in [2, 3] {
+            put(&mut words, 0, GpuRecordHead { ray_count, ..GpuRecordHead::default() });
+            assert_eq!((is_aside(&words, 4, &mut rays), rays), (Some(true), ray_count));
+        }
+        assert_eq!(is_aside(&words, 4, &mut rays), None, "it stands still");
+        // It has ended, with as many rays as before.
+        put(&mut words, first_aside(4), GpuAside::default());
+        assert_eq!(is_aside(&words, 4, &mut rays), Some(false));
+    }
+
+    #[test]
+    fn a_record_has_no_more_rays_than_a_path_and_names_no_sphere_that_is_unknown() {
+        let mut words = words_for([0, 0], 2);
+        put(&mut words, 0, GpuRecordHead { ray_count: 9, ..GpuRecordHead::default() });
+        for number in 0..2 {
+            let ray = GpuRecordedRay { sphere: number as u32, distance: 1.0, ..GpuRecordedRay::default() };
+            put(&mut words, first_of_ray(number), ray);
+        }
+        let path = from_words(&words, 2, &[30], DVec3::ZERO);
+        let spheres: Vec<_> = path.rays.iter().map(|ray| ray.hit.map(|hit| hit.sphere)).collect();
+        assert_eq!(spheres, [Some(30), Some(usize::MAX)]);
+    }
 }

@@ -116,4 +116,55 @@ mod tests {
         };
         assert_eq!(by_index(&wide), by_index(&narrow));
     }
+
+    #[test]
+    fn each_sphere_has_its_record_and_its_rank() {
+        let job = Recipe::find("field:500").unwrap().job().unwrap();
+        let prepared = PreparedScene::<f32>::new(&job);
+        let ranks_in_the_scene = |kind, rows_of_a_node: usize| {
+            let data = SceneData::new(&job, &prepared, kind).unwrap();
+            for (sphere, record) in data.spheres.iter().zip(&data.records) {
+                assert_eq!(sphere[..3], record[..3], "the centre");
+            }
+            let count = data.node_count as usize;
+            let ranks: Vec<u32> = data.nodes[rows_of_a_node * count..].concat();
+            // They fill whole rows of four.
+            assert_eq!(ranks.len(), data.spheres.len().next_multiple_of(4));
+            let mut ranks: Vec<(u32, u32)> = data.scene_index.iter().copied().zip(ranks).collect();
+            ranks.truncate(data.spheres.len());
+            ranks.sort_unstable();
+            ranks
+        };
+        let narrow = ranks_in_the_scene(HierarchyKind::Bvh2, 2);
+        assert_eq!(ranks_in_the_scene(HierarchyKind::Cwbvh, 5), narrow);
+        let mut order: Vec<u32> = narrow.iter().map(|(_, rank)| *rank).collect();
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..narrow.len() as u32), "each rank once");
+    }
+
+    #[test]
+    fn buffers_are_in_the_order_of_their_bindings() {
+        for name in ["three-spheres", "field:500"] {
+            let job = Recipe::find(name).unwrap().job().unwrap();
+            let prepared = PreparedScene::<f32>::new(&job);
+            let data = SceneData::new(&job, &prepared, HierarchyKind::Cwbvh).unwrap();
+            let buffers = data.buffers(&prepared);
+            let bytes = buffers.each_ref().map(|(label, bytes)| (*label, bytes.len()));
+            let spheres = prepared.opaque.len() + prepared.two_root.len();
+            assert_eq!(
+                bytes,
+                [
+                    ("job", size_of::<GpuJob>()),
+                    ("spheres", 16 * spheres),
+                    // At least one, because the shader's type requires it.
+                    ("anchored spheres", size_of::<AnchoredSphere<f32>>() * prepared.anchored.len().max(1)),
+                    ("records", 4 * RECORD_COLUMNS * prepared.records.len()),
+                    ("nodes", 16 * data.nodes.len()),
+                ],
+                "{name}"
+            );
+            let has_nodes = prepared.hierarchy.is_some();
+            assert_eq!((data.node_count > 0, data.nodes.len() > 1), (has_nodes, has_nodes), "{name}");
+        }
+    }
 }

@@ -281,4 +281,29 @@ mod tests {
         let refused = message(Camera { look_at: DVec3::new(1e-200, 0.0, 0.0), ..Camera::BOOK });
         assert!(refused.contains("focus_distance"), "{refused}");
     }
+
+    #[test]
+    fn focus_distances_at_their_limits_are_allowed() {
+        let with = |distance| Camera { focus_distance: Some(distance), ..Camera::BOOK }.validate();
+        for distance in [1e-18, 1e19] {
+            with(distance).expect("at the limit");
+        }
+        for distance in [0.9e-18, 1.1e19] {
+            assert!(with(distance).is_err(), "{distance}");
+        }
+        Camera { defocus_angle_degrees: 0.0, ..Camera::BOOK }.validate().expect("a pinhole");
+    }
+
+    #[test]
+    fn a_lens_has_the_radius_of_its_cone_at_the_plane_in_focus() {
+        // Half of 90 degrees has the tangent 1, and half of 120 that of 60 degrees.
+        for (angle, distance, radius) in
+            [(90.0, 3.0, 3.0), (120.0, 2.0, 2.0 * 3.0_f64.sqrt()), (0.0, 5.0, 0.0)]
+        {
+            let camera =
+                Camera { defocus_angle_degrees: angle, focus_distance: Some(distance), ..Camera::BOOK };
+            assert!((camera.lens_radius() - radius).abs() < 1e-12, "{angle}: {}", camera.lens_radius());
+            assert!((camera.defocus_tangent() * distance - radius).abs() < 1e-12, "{angle}");
+        }
+    }
 }

@@ -207,4 +207,18 @@ mod tests {
             assert!(refused.starts_with("materials.m.refraction_index is"), "{refused}");
         }
     }
+
+    #[test]
+    fn limits_of_materials_are_allowed() {
+        for refraction_index in [1e-9, 1e9] {
+            Material::Dielectric { refraction_index }.validate("m").expect("at the limit");
+        }
+        for refraction_index in [0.9e-9, 1.1e9] {
+            assert!(refusal(Material::Dielectric { refraction_index }).contains("within 1e-9 and 1e9"));
+        }
+        for albedo in [DVec3::ZERO, DVec3::ONE] {
+            Material::Metal { albedo, fuzz: 0.0 }.validate("m").expect("at the limit");
+        }
+        assert!(refusal(Material::Metal { albedo: DVec3::splat(1.01), fuzz: 0.0 }).contains("albedo"));
+    }
 }

@@ -222,6 +222,29 @@ impl<F: FnMut(&Range<u64>, u32) + Send> Renderer for Holding<F> {
     }
 }
 
+/// Adds nothing to the film, and does not say so.
+pub struct Forgetful;
+
+impl Renderer for Forgetful {
+    fn info(&self) -> BackendInfo {
+        BackendInfo { name: "cpu", device: "fake".into(), lanes: 1, threads: 1 }
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        _: &RenderJob,
+        _: Range<u64>,
+        _: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        Ok(Stats::default())
+    }
+}
+
 /// In these tests, the reference fails after sample 16, and every CPU backend works.
 pub fn factory() -> Factory {
     Box::new(|choice| {

@@ -1,15 +1,13 @@
 //! Failures and panics of backends.
 
-use super::common::{CPU, FAILING, Fake, expected, job, other_cpu, started, wait_for};
-use std::ops::Range;
+use super::common::{CPU, FAILING, Fake, Forgetful, expected, job, other_cpu, started, wait_for};
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use weekender::backends::{BackendChoice, Together};
-use weekender::film::Film;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
 use weekender::recipe::Recipe;
-use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
+use weekender::render::{BackendInfo, RenderError, RenderSettings, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 
 #[test]
@@ -84,29 +82,6 @@ fn a_panic_while_preparing_or_looking_ends_nothing() {
     let said = status.messages.join("; ");
     assert!(said.contains("no such backend") && said.contains("a slip of the onlooker"), "{said}");
     assert_eq!(progressive.finish(), Some(expected(2000)));
-}
-
-/// A renderer that records samples without adding them.
-struct Forgetful;
-
-impl Renderer for Forgetful {
-    fn info(&self) -> BackendInfo {
-        BackendInfo { name: "cpu", device: "fake".into(), lanes: 1, threads: 1 }
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        _: &RenderJob,
-        _: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        Ok(Stats::default())
-    }
 }
 
 #[test]

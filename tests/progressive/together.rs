@@ -1,6 +1,6 @@
 //! Several renderers at work on one film, of which some fail.
 
-use super::common::{Fake, Spoiling, Waiting, expected, job};
+use super::common::{Fake, Forgetful, Spoiling, Waiting, expected, job};
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::channel;
 use weekender::backends::Together;
@@ -40,4 +40,36 @@ fn when_every_member_has_failed_none_is_left() {
     assert!(film == job(2).new_film());
     let nobody = BackendInfo { name: "none", device: String::new(), lanes: 0, threads: 0 };
     assert_eq!(together.info(), nobody);
+}
+
+#[test]
+fn a_member_that_adds_nothing_is_left_out() {
+    let mut together = Together::new(vec![Box::new(Forgetful), Box::new(Fake::new("gpu"))]);
+    let mut film = job(2).new_film();
+    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
+    assert!(film == expected(64));
+    let lost = "cpu failed: it did not add the samples that it was to trace";
+    assert_eq!(together.take_messages(), [format!("{lost}; gpu continues the same picture")]);
+    assert_eq!(together.info().name, "gpu");
+
+    let mut together = Together::new(vec![Box::new(Forgetful)]);
+    let outcome = together.accumulate(&job(2), 0..64, &mut job(2).new_film(), &AtomicBool::new(false));
+    assert_eq!(outcome.unwrap_err().to_string(), lost);
+}
+
+#[test]
+fn members_add_up_what_they_have_traced() {
+    let mut together = Together::new(vec![Box::new(Fake::new("cpu")), Box::new(Fake::new("gpu"))]);
+    let mut film = job(2).new_film();
+    for range in [0..30, 30..30, 30..64] {
+        let samples = range.end - range.start;
+        let stats = together.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+        // Four paths and eight rays for each sample, whoever traced it.
+        assert_eq!((stats.paths, stats.rays), (4 * samples, 8 * samples));
+        assert_eq!(together.credits(0).iter().map(|(_, added)| added).sum::<u64>(), samples);
+    }
+    assert!(film == expected(64));
+    let again = together.accumulate(&job(2), 60..66, &mut film, &AtomicBool::new(false));
+    assert!(matches!(again, Err(RenderError::Film(_))), "{again:?}");
+    assert!(film == expected(64));
 }

@@ -48,6 +48,8 @@ fn a_coarse_layer_is_the_picture_made_smaller() {
             let pixel = [x * divisor, y * divisor];
             assert_eq!(layers.value_at(pixel), Some((Layer::Normals, expected)), "{pixel:?}");
         }
+        let beyond = [[size[0] * divisor, 0], [0, size[1] * divisor]];
+        assert_eq!(beyond.map(|pixel| layers.value_at(pixel)), [None; 2], "below and beside it is nothing");
         assert_eq!(layers.samples(Layer::Normals), u64::from(divisor == 1));
     }
 }

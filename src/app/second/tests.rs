@@ -9,6 +9,7 @@ use crate::app::window::Window;
 use crate::backends::BackendChoice;
 use crate::film::{Film, PixelSum};
 use crate::progressive::{Phase, Stop, View};
+use crate::render::RenderSettings;
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
 use crate::stress::shown_cases;
@@ -181,4 +182,53 @@ fn a_kept_picture_is_complete_and_goes_with_its_comparison() {
     view.end_comparison();
     assert!(!second.follow(&context, &view, &wish(&document, &backend)));
     assert!(!second.is_over() && second.shown().is_none() && !second.has_picture(&document, &view));
+}
+
+#[test]
+fn each_setting_of_the_camera_is_the_others_only_if_the_stages_differ_in_it() {
+    let base = Camera { focus_distance: Some(1.0), ..Camera::BOOK };
+    let [mine, theirs] = [1.0, 2.0].map(|by| Camera {
+        look_from: base.look_from + glam::DVec3::splat(by),
+        look_at: base.look_at - glam::DVec3::splat(by),
+        vup: base.vup + glam::DVec3::X * by,
+        vfov_degrees: base.vfov_degrees + by,
+        defocus_angle_degrees: base.defocus_angle_degrees + by,
+        focus_distance: base.focus_distance.map(|distance| distance + by),
+    });
+    // Gives `to` one setting of `from`.
+    let changes: [fn(&mut Camera, &Camera); 6] = [
+        |to, from| to.look_from = from.look_from,
+        |to, from| to.look_at = from.look_at,
+        |to, from| to.vup = from.vup,
+        |to, from| to.vfov_degrees = from.vfov_degrees,
+        |to, from| to.defocus_angle_degrees = from.defocus_angle_degrees,
+        |to, from| to.focus_distance = from.focus_distance,
+    ];
+    for (index, change) in changes.into_iter().enumerate() {
+        let (mut other, mut expected) = (base, mine);
+        change(&mut other, &theirs);
+        change(&mut expected, &theirs);
+        assert_eq!(camera_of(&mine, &base, &other), expected, "setting {index}");
+    }
+}
+
+#[test]
+fn the_other_stage_has_my_settings_and_my_end_unless_that_is_the_difference() {
+    let mut second = Second::default();
+    let own = Stop::at_samples(33);
+    // Of the pairs, one differs in the depth, and one in the samples that a picture without noise needs.
+    for (mine, other, max_depth, stop) in [
+        ("metal", "metal-fuzzy", 7, own),
+        ("diffuse", "diffuse-limited", 5, own),
+        ("aliased", "antialiased", 7, Stop::at_samples(64)),
+    ] {
+        let [mine, other] = [mine, other].map(|id| Stage::find(id).unwrap());
+        let mut document = Document::new(Origin::of_stage(mine));
+        document.give_size([16, 9]);
+        (document.settings.seed, document.settings.max_depth, document.stop) = (5, 7, own);
+        let theirs = second.document_of(Other::Stage(other), &document);
+        assert_eq!(theirs.stage(), Some(other));
+        let settings = RenderSettings { max_depth, ..document.settings };
+        assert_eq!((theirs.settings, theirs.stop), (settings, stop), "{}", mine.id);
+    }
 }

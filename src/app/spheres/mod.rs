@@ -205,6 +205,7 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::app::tests::{until, window};
     use crate::app::window::Window;
+    use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     const FIELD: &str = "weekender --scene field:60000 --size 16x9 --samples 1 --device cpu";
 
@@ -228,6 +229,82 @@ mod tests {
         model.document = Document::new(Origin::usual());
         spheres.follow(&Context::default(), model).unwrap();
         assert!(spheres.queue.is_empty() && !spheres.is_working);
+    }
+
+    #[test]
+    fn the_selected_sphere_is_shown_with_the_edits_that_wait() {
+        let mut window = window(FIELD);
+        let model = &mut window.model;
+        let edit = |sphere, radius| with_radius(&model.document, sphere, radius);
+        let edits = [edit(1, 0.125), edit(2, 0.5), edit(1, 0.0625), edit(2, 0.25)];
+        let mut spheres = Spheres::default();
+        for edit in edits {
+            spheres.edit(model, edit).unwrap();
+        }
+        let scene = Arc::clone(model.document.checked.scene());
+        for (sphere, radius) in [(1, 0.0625), (2, 0.25), (3, scene.spheres[3].radius)] {
+            model.selected = Some(sphere);
+            let selected = spheres.selected(model).unwrap();
+            assert_eq!((selected.sphere, selected.body.radius), (sphere, radius));
+            assert_eq!(selected.body.center, scene.spheres[sphere].center);
+            assert_eq!(selected.material, scene.materials[scene.spheres[sphere].material].name);
+            assert_eq!(selected.count, scene.spheres.len());
+        }
+        model.selected = None;
+        assert!(spheres.selected(model).is_none());
+    }
+
+    #[test]
+    fn a_thread_makes_one_edit_at_a_time_and_none_while_a_button_is_held() {
+        let mut window = window(FIELD);
+        let model = &mut window.model;
+        let (mut spheres, context) = (Spheres::default(), Context::default());
+        let [first, second, third] = [0.125, 0.25, 0.5].map(|radius| with_radius(&model.document, 1, radius));
+        let follow = |spheres: &mut Spheres, model: &mut Model, pressed: bool| {
+            let (pos, button, modifiers) = (Pos2::ZERO, PointerButton::Primary, Modifiers::NONE);
+            let events = vec![Event::PointerButton { pos, button, pressed, modifiers }];
+            let input = RawInput { events, ..RawInput::default() };
+            let _ = context.run_ui(input, |ui| spheres.follow(ui.ctx(), model).unwrap());
+        };
+        let make = |spheres: &mut Spheres| {
+            let made = spheres.made.wait().unwrap();
+            spheres.made.answer(&context).give(made);
+        };
+        spheres.edit(model, first).unwrap();
+        follow(&mut spheres, model, true);
+        assert!(!spheres.is_working, "the sphere is still dragged");
+        follow(&mut spheres, model, false);
+        assert!(spheres.is_working);
+        // The thread works on the first one, so it stays.
+        spheres.edit(model, second).unwrap();
+        spheres.edit(model, third).unwrap();
+        assert_eq!(spheres.queue, [first, third]);
+        make(&mut spheres);
+        follow(&mut spheres, model, false);
+        assert_eq!((model.document.scene().spheres[1].radius, model.selected), (0.125, Some(1)));
+        assert!(spheres.is_working && spheres.queue == [third]);
+        // Another picture is opened meanwhile.
+        make(&mut spheres);
+        model.document = Document::new(Origin::usual());
+        follow(&mut spheres, model, false);
+        assert!(!spheres.is_working && spheres.queue.is_empty() && !model.document.has_changed_scene());
+    }
+
+    #[test]
+    fn a_small_scene_changes_at_once_and_back_to_that_of_its_stage() {
+        let mut window = window("weekender --stage metal --size 16x9 --device cpu");
+        let (model, mut spheres) = (&mut window.model, Spheres::default());
+        let usual = Body::of(model.document.scene(), 1).unwrap();
+        for (radius, is_changed) in [(0.25, true), (usual.radius, false)] {
+            model.selected = None;
+            spheres.edit(model, Edit::Change(1, Body { radius, ..usual })).unwrap();
+            assert_eq!((model.document.scene().spheres[1].radius, model.selected), (radius, Some(1)));
+            assert_eq!(model.document.has_changed_scene(), is_changed, "{radius}");
+        }
+        let refused = spheres.edit(model, Edit::Change(2, Body { radius: 0.0, ..usual }));
+        assert!(refused.is_err_and(|reason| reason.contains("radius is 0")));
+        assert!(!model.document.has_changed_scene() && model.selected == Some(1));
+        assert!(spheres.queue.is_empty());
     }
 
     #[test]

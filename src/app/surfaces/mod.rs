@@ -135,7 +135,8 @@ mod tests {
     use crate::app::model::origin::{Origin, Source};
     use crate::app::navigation;
     use crate::recipe::Recipe;
-    use crate::scene::Sphere;
+    use crate::scene::{Material, Sphere};
+    use crate::stages::Stage;
     use std::time::{Duration, Instant};
 
     fn opened(name: &str) -> (Document, Surfaces) {
@@ -239,6 +240,46 @@ mod tests {
         surfaces.follow(&document, true, &context);
         let words = surfaces.inside(&document).unwrap();
         assert!(words.starts_with(&format!("the camera is inside sphere {index} (")), "{words}");
+    }
+
+    /// Puts a sphere around the camera.
+    fn enclose(document: &mut Document) {
+        let mut scene = document.scene().clone();
+        let clear = scene.add_material("clear", Material::Dielectric { refraction_index: 1.5 });
+        scene.add_sphere(document.camera.look_from, 0.25, clear);
+        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+    }
+
+    #[test]
+    fn a_sphere_that_comes_to_be_around_the_camera_is_named_where_there_are_rays() {
+        for (stage, has_rays) in [("metal", true), ("ppm-gradient", false)] {
+            let mut document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+            let (mut surfaces, context) = (Surfaces::default(), Context::default());
+            surfaces.follow(&document, true, &context);
+            enclose(&mut document);
+            assert_eq!(surfaces.inside(&document), None, "the changed scene has not been looked at");
+            surfaces.follow(&document, true, &context);
+            let sphere = document.scene().spheres.len() - 1;
+            let words = format!("the camera is inside sphere {sphere} (clear)");
+            assert_eq!(surfaces.inside(&document), has_rays.then_some(words), "{stage}");
+        }
+    }
+
+    #[test]
+    fn a_hierarchy_is_asked_for_after_the_picture_and_is_that_of_the_scene() {
+        let (mut document, mut surfaces) = opened("field:10000");
+        let context = Context::default();
+        let (old, tree) = (Arc::clone(&document.checked), surfaces.tree.take());
+        assert!(tree.is_some());
+        enclose(&mut document);
+        surfaces.answers.answer(&context).give((old, tree));
+        surfaces.follow(&document, false, &context);
+        assert!(surfaces.tree.is_none(), "it is that of another scene");
+        assert!(!surfaces.is_asked, "there is no picture yet");
+        surfaces.follow(&document, true, &context);
+        assert!(surfaces.is_asked);
+        let (scene, tree) = surfaces.answers.wait().unwrap();
+        assert!(Arc::ptr_eq(&scene, &document.checked) && tree.is_some());
     }
 
     #[test]

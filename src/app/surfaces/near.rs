@@ -172,6 +172,32 @@ mod tests {
     }
 
     #[test]
+    fn a_move_ends_before_a_sphere_that_only_its_gap_reaches() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::new(0.0, 0.0, -5.0), 1.0, grey);
+        let near = Near { scene: &scene, tree: None };
+        // The move would end 5 thousandths before the surface.
+        let stopped = near.slide(DVec3::ZERO, DVec3::new(0.0, 0.0, -3.995), 0.01, None);
+        assert!((stopped.z + 3.99).abs() < 1e-12, "{stopped}");
+    }
+
+    #[test]
+    fn a_point_of_a_surface_is_not_inside_in_spite_of_rounding() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        let center = DVec3::new(123.4, -1000.0, 56.7);
+        scene.add_sphere(center, 1000.0, grey);
+        let near = Near { scene: &scene, tree: None };
+        for step in 0..100 {
+            let (sine, cosine) = (0.1 * f64::from(step)).sin_cos();
+            let outwards = DVec3::new(0.6 * cosine, 0.8, 0.6 * sine);
+            let at = |radius: f64| near.innermost(center + radius * outwards);
+            assert_eq!([at(1000.0), at(1000.0 - 1e-9)], [None, Some(0)], "{outwards}");
+        }
+    }
+
+    #[test]
     fn the_share_of_a_move_up_to_a_sphere() {
         let share = |from: [f64; 3], by: [f64; 3]| share_to(DVec3::from(from), 2.0, DVec3::from(by));
         assert_eq!(share([5.0, 0.0, 0.0], [-6.0, 0.0, 0.0]), Some(0.5));

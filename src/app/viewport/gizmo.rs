@@ -290,6 +290,29 @@ mod tests {
     }
 
     #[test]
+    fn a_drag_of_a_view_from_the_top_turns_about_what_is_up_in_the_scene() {
+        let top =
+            Camera { look_from: glam::DVec3::new(0.0, 3.0, -1.0), vup: glam::DVec3::NEG_Z, ..Camera::BOOK };
+        let mut harness = axes(top, ROOM);
+        let modifiers = Modifiers::NONE;
+        harness.event(Event::PointerMoved(MIDDLE));
+        harness.event(Event::PointerButton {
+            pos: MIDDLE,
+            button: PointerButton::Primary,
+            pressed: true,
+            modifiers,
+        });
+        harness.event(Event::PointerMoved(MIDDLE + vec2(20.0, -5.0)));
+        harness.run_steps(1);
+        let [right, down] = angles(vec2(20.0, -5.0));
+        let upright = navigation::upright(&top, top.look_at, glam::DVec3::Y);
+        let expected = navigation::orbit(&upright, top.look_at, right, down);
+        let found = harness.state().document.camera;
+        assert!(found.look_from.distance(expected.look_from) < 1e-9, "{found:?}");
+        assert_eq!(found.vup, glam::DVec3::Y);
+    }
+
+    #[test]
     fn the_axes_can_be_used_without_a_pointer() {
         let harness = axes(ABOVE, ROOM);
         let found = |name: &str| !harness.get_by_label(name).accesskit_node().is_disabled();

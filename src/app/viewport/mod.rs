@@ -35,11 +35,11 @@ use crate::scene::Camera;
 use crop::Cropping;
 use dropped::paint_drop;
 use eframe::egui::{
-    self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
+    self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, vec2,
 };
 use mark::Mark;
 use moving::{Moving, Target};
-use paint::paint;
+use paint::{own_side, paint};
 use point::place_at;
 use selection::Selection;
 use std::time::Instant;
@@ -145,11 +145,8 @@ impl Viewport {
         };
         let notices = pictures.notices.len();
         let taken = paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
-        let clip = if is_wipe {
-            Rect { max: pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.max.y), ..rect }
-        } else {
-            rect
-        };
+        let is_left = facts.model.view.is_other_earlier(&document);
+        let clip = if is_wipe { own_side(rect, *divider, is_left) } else { rect };
         let rows = if notices > 0 { notices + usize::from(is_wipe) } else { 0 };
         self.selection.paint(ui, (rect, clip.intersect(room)), selected, (rows, &taken));
         if let Some(crop) = crop {
@@ -355,3 +352,6 @@ fn is_release(ui: &Ui, is_held: impl Fn(&egui::Modifiers) -> bool) -> bool {
     let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if is_held(modifiers));
     ui.input(|input| input.events.iter().any(is_it))
 }
+
+#[cfg(test)]
+mod tests;

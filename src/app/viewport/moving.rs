@@ -319,4 +319,53 @@ mod tests {
         let place = place_at(rect, SKY);
         assert!((place[0] - 0.5).abs() < 0.01 && (place[1] - 10.0 / 180.0).abs() < 0.01, "{rect} {place:?}");
     }
+
+    #[test]
+    fn beside_the_picture_the_camera_turns_about_and_goes_to_what_it_looks_at() {
+        // Lower than the picture's left edge, where the ground would be seen.
+        let beside = pos2(30.0, 170.0);
+        let small = || {
+            let mut harness = picture();
+            harness.state_mut().placement.zoom_by(0.5);
+            harness.run_steps(1);
+            assert!(!harness.state().placement.rect().contains(beside));
+            harness
+        };
+        let mut harness = small();
+        let before = camera(&harness);
+        drag(&mut harness, beside, vec2(40.0, -15.0), PointerButton::Primary, Modifiers::NONE);
+        let expected = navigation::orbit(&before, before.look_at, 0.24, -0.09);
+        assert!(same(&camera(&harness), &expected), "{:?}", camera(&harness));
+        let mut harness = small();
+        harness.event(Event::PointerMoved(beside));
+        harness.run_steps(1);
+        let (unit, phase, source) = (MouseWheelUnit::Point, TouchPhase::Move, MouseWheelSource::Wheel);
+        let (delta, modifiers) = (vec2(0.0, 5.0), Modifiers::NONE);
+        harness.event(Event::MouseWheel { unit, delta, phase, source, modifiers });
+        harness.run_steps(2);
+        let expected = navigation::dolly(&before, before.look_at, f64::exp(-0.01));
+        assert!(same(&camera(&harness), &expected), "{:?}", camera(&harness));
+        assert_eq!(harness.state().touch.pivot, Some(before.look_at));
+    }
+
+    #[test]
+    fn a_view_from_the_top_is_turned_about_what_is_up_in_the_scene() {
+        let top = Camera { look_from: DVec3::new(0.0, 3.0, -1.0), vup: DVec3::NEG_Z, ..Camera::BOOK };
+        let by = vec2(40.0, -15.0);
+        let [right, down] = angles(by);
+        // The ball in the middle is under the pointer.
+        let pivot = DVec3::new(0.0, f64::sqrt(0.21), -1.0);
+        let upright = |pivot: DVec3| navigation::upright(&top, pivot, DVec3::Y);
+        for (button, expected) in [
+            (PointerButton::Primary, navigation::orbit(&upright(pivot), pivot, right, down)),
+            (PointerButton::Secondary, navigation::look(&upright(top.look_from), right, -down)),
+        ] {
+            let mut harness = picture();
+            harness.state_mut().document.camera = top;
+            harness.run_steps(1);
+            drag(&mut harness, BALL, by, button, Modifiers::NONE);
+            assert_eq!(expected.vup, DVec3::Y);
+            assert!(same(&camera(&harness), &expected), "{button:?}: {:?}", camera(&harness));
+        }
+    }
 }

@@ -149,6 +149,16 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
+/// The side of a wipe at `rect` with the first picture. `is_left` says that the second one is left of the divider.
+pub(super) fn own_side(rect: Rect, share: f32, is_left: bool) -> Rect {
+    let x = rect.left() + rect.width() * share;
+    if is_left {
+        Rect { min: pos2(x, rect.top()), ..rect }
+    } else {
+        Rect { max: pos2(x, rect.bottom()), ..rect }
+    }
+}
+
 /// Draws the second picture to the left or right of the divider, and labels both sides. Returns the places of the labels.
 fn paint_wipe(
     ui: &Ui,

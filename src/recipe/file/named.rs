@@ -77,4 +77,35 @@ mod tests {
         assert!(changed(|s| s.materials[3].material = Material::Dielectric { refraction_index: 1.5 }));
         assert!(changed(|s| s.spheres.truncate(50)));
     }
+
+    #[test]
+    fn a_mark_is_of_the_sky_the_spheres_and_all_numbers_of_the_materials() {
+        let scene = |change: fn(&mut Scene)| {
+            let mut scene = Scene::default();
+            let albedo = DVec3::new(0.1, 0.2, 0.3);
+            scene.add_material("a", Material::Lambertian { albedo });
+            scene.add_material("b", Material::Metal { albedo, fuzz: 0.5 });
+            scene.add_material("c", Material::Dielectric { refraction_index: 1.5 });
+            for x in [0.0, 4.0] {
+                scene.add_sphere(DVec3::X * x, 1.0, 0);
+            }
+            change(&mut scene);
+            mark(&scene)
+        };
+        let changes: [fn(&mut Scene); 9] = [
+            |_| {},
+            |s| s.sky.bottom.z = 0.5,
+            |s| s.spheres[1].radius = 2.0,
+            |s| s.spheres[0].center.y = -0.0,
+            |s| s.spheres.swap(0, 1),
+            |s| s.materials[0].material = Material::Lambertian { albedo: DVec3::new(0.1, 0.2, 0.4) },
+            |s| s.materials[0].material = Material::Metal { albedo: DVec3::new(0.1, 0.2, 0.3), fuzz: 0.0 },
+            |s| s.materials[1].material = Material::Metal { albedo: DVec3::new(0.1, 0.2, 0.3), fuzz: 0.25 },
+            |s| s.materials[2].material = Material::Dielectric { refraction_index: 1.25 },
+        ];
+        let mut marks: Vec<String> = changes.into_iter().map(scene).collect();
+        marks.sort_unstable();
+        marks.dedup();
+        assert_eq!(marks.len(), changes.len(), "each change gives another mark");
+    }
 }

@@ -244,3 +244,63 @@ fn the_outline_is_made_anew_for_what_changes_it() {
         assert!(drawn(&harness) == Some(outline.points), "{name}");
     }
 }
+
+#[test]
+fn a_drag_ends_when_another_sphere_is_selected() {
+    let mut harness = picture("metal", 1);
+    button(&mut harness, RECT.center(), true, Modifiers::NONE);
+    at(&mut harness, RECT.center() + vec2(16.0, 0.0));
+    assert!(harness.state().is_held);
+    let state = harness.state_mut();
+    state.selected = Some(selected(&state.document, 2));
+    state.edits.clear();
+    at(&mut harness, RECT.center() + vec2(20.0, 0.0));
+    let Picture { is_held, edits, selection, .. } = harness.state();
+    assert!(!is_held && edits.is_empty() && selection.held.is_none(), "{edits:?}");
+}
+
+#[test]
+fn a_drag_that_changes_nothing_is_no_edit() {
+    let mut harness = picture("metal", 1);
+    let middle = RECT.center();
+    button(&mut harness, middle, true, Modifiers::NONE);
+    at(&mut harness, middle + vec2(16.0, 0.0));
+    assert!(harness.state().is_held && harness.state().edits.len() == 1);
+    // Where it began.
+    at(&mut harness, middle);
+    assert!(harness.state().is_held && harness.state().edits.len() == 1, "{:?}", harness.state().edits);
+}
+
+#[test]
+fn the_name_is_above_the_sphere_and_below_the_notices() {
+    let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    let selected = selected(&document, 1);
+    // Where the name is with so many rows of notices, as seen by a camera that looks so far up.
+    let top = |rows: usize, up: f64| {
+        let mut document = document.clone();
+        document.camera.look_at.y = up;
+        let selected = selected.clone();
+        let draw = move |ui: &mut Ui, selection: &mut Selection| {
+            selection.draw(&selected, &document);
+            selection.paint(ui, (RECT, RECT), Some(&selected), (rows, &[]));
+        };
+        let harness = dressed([360.0, 200.0]).build_ui_state(draw, Selection::default());
+        let mut shapes = harness.output().shapes.iter();
+        let name = shapes.find_map(|clipped| match &clipped.shape {
+            Shape::Text(text) if text.galley.text().starts_with("sphere 1, ") => {
+                Some(text.visual_bounding_rect())
+            }
+            _ => None,
+        });
+        name.unwrap()
+    };
+    // The ball's upper edge is at about half of the way from the middle of the picture to its top.
+    let usual = top(0, 0.0);
+    assert!(usual.bottom() < RECT.center().y - 41.0 && usual.top() > RECT.top() + 10.0, "{usual}");
+    // Looking down, the camera has the ball at the top of the picture.
+    let [none, one, two] = [0, 1, 2].map(|rows| top(rows, -0.6));
+    assert!(none.top() > RECT.top() && none.top() < RECT.top() + 34.0, "{none}");
+    for (name, rows) in [(one, 1.0), (two, 2.0)] {
+        assert!((name.top() - none.top() - rows * ROW).abs() < 0.01, "{none} {name}");
+    }
+}
