@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// By this element of its head, a page is known as the program's own. It must be among the first [`HEAD`] bytes.
+/// By this element of its head, a page is known as the program's own. It must be among the first 4096 bytes.
 pub const GENERATOR: &str = "<meta name=\"generator\" content=\"Weekender\">";
 
 /// How much of a page is looked through, bytes.
