@@ -226,17 +226,10 @@ mod tests {
     use crate::render::{BackendInfo, Stats};
     use serde_json::json;
 
-    #[test]
-    fn the_summary_tells_what_the_status_holds() {
-        let part = |name, samples_per_pixel| Contribution {
-            backend: BackendInfo { name, device: "x".to_owned(), lanes: 8, threads: 1 },
-            samples_per_pixel,
-        };
-        let status = Status {
-            phase: Phase::Done(EndReason::NoiseTarget),
-            backend: Some(part("cpu", 0).backend),
+    /// The status of a render that has ended.
+    fn ended() -> Status {
+        Status {
             samples_per_pixel: 10,
-            rejected_samples: 1,
             stats: Stats {
                 paths: 6_000_000,
                 rays: 15_000_000,
@@ -251,8 +244,22 @@ mod tests {
             kernel: "glass".to_owned(),
             left_out: vec!["lens"],
             error: Some(ErrorEstimate { rmse: 0.02, rmse_deviation: 0.001, rel_mse: 0.3 }),
-            contributions: vec![part("cpu", 5), part("gpu", 3)],
             ..Status::default()
+        }
+    }
+
+    #[test]
+    fn the_summary_tells_what_the_status_holds() {
+        let part = |name, samples_per_pixel| Contribution {
+            backend: BackendInfo { name, device: "x".to_owned(), lanes: 8, threads: 1 },
+            samples_per_pixel,
+        };
+        let status = Status {
+            phase: Phase::Done(EndReason::NoiseTarget),
+            backend: Some(part("cpu", 0).backend),
+            rejected_samples: 1,
+            contributions: vec![part("cpu", 5), part("gpu", 3)],
+            ..ended()
         };
         let files = vec![PathBuf::from("a.png")];
         let summary =
@@ -293,25 +300,10 @@ mod tests {
         let status = Status {
             phase: Phase::Failed("it broke".to_owned()),
             backend: Some(backend.clone()),
-            samples_per_pixel: 10,
             rejected_samples: 9,
-            stats: Stats {
-                paths: 6_000_000,
-                rays: 15_000_000,
-                busy_lanes: 3,
-                offered_lanes: 4,
-                ..Stats::default()
-            },
-            prepare: Duration::from_secs(3),
-            hierarchy: Duration::from_secs(1),
-            trace: Duration::from_secs(2),
-            elapsed: Duration::from_secs(6),
-            kernel: "glass".to_owned(),
-            left_out: vec!["lens"],
-            error: Some(ErrorEstimate { rmse: 0.02, rmse_deviation: 0.001, rel_mse: 0.3 }),
             contributions: vec![Contribution { backend, samples_per_pixel: 7 }],
             messages: vec!["warned".to_owned()],
-            ..Status::default()
+            ..ended()
         };
         let options = options(&["--depth", "24", "--seed", "5", "--stage", "metal"]);
         let mut film = options.job.new_film();

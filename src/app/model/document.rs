@@ -43,6 +43,11 @@ impl PartialEq for Document {
     }
 }
 
+/// The name of a changed scene, whose scene file may be named so already.
+fn changed(name: &str) -> String {
+    if name.ends_with(CHANGED) { name.to_owned() } else { format!("{name}{CHANGED}") }
+}
+
 impl Document {
     /// An unchanged document of `origin`.
     pub fn new(origin: Origin) -> Self {
@@ -127,15 +132,14 @@ impl Document {
     /// The name for files: a changed scene has its own, so that it does not replace the file that it came from.
     pub fn name(&self) -> String {
         let name = &self.origin.recipe.name;
-        let is_new = self.has_changed_scene() && !name.ends_with(CHANGED);
-        if is_new { format!("{name}{CHANGED}") } else { name.clone() }
+        if self.has_changed_scene() { changed(name) } else { name.clone() }
     }
 
     /// The name for its scene file, which is not that of a file that holds something else by now.
     pub fn scene_name(&self) -> String {
         let is_from_file = matches!(self.origin.source, Source::File(_)) && !self.has_changed_scene();
         let name = self.name();
-        if is_from_file && !self.origin.is_in_file() { format!("{name}{CHANGED}") } else { name }
+        if is_from_file && !self.origin.is_in_file() { changed(&name) } else { name }
     }
 
     /// Width divided by height.

@@ -52,10 +52,11 @@ impl Origin {
 
     /// The largest size of the scene's aspect ratio in a room of `room` pixels. `None` if there is no room.
     pub fn size_in(&self, room: [u32; 2]) -> Option<[u32; 2]> {
+        let room = room.map(|side| side.min(SIZE_LIMIT));
         let ([wide, high], [width, height]) = (self.size().map(u64::from), room.map(u64::from));
-        let width = width.min(height * wide / high).min(u64::from(SIZE_LIMIT));
+        let width = width.min(height * wide / high);
         let size = scaled(self.size(), u32::try_from(width).unwrap_or(SIZE_LIMIT));
-        (width > 0).then_some([size[0], size[1].min(room[1]).min(SIZE_LIMIT)])
+        (width > 0).then_some([size[0], size[1].min(room[1])])
     }
 }
 
@@ -227,6 +228,9 @@ mod tests {
             ([1000, 10], [20, 20], Some([20, 1])),
             ([10, 1000], [20, 300], Some([3, 300])),
             ([10, 1000], [20, 99], None),
+            // No picture is larger than the limit, and its sides keep their ratio.
+            ([100, 200], [40_000, 60_000], Some([SIZE_LIMIT / 2, SIZE_LIMIT])),
+            ([200, 100], [40_000, 60_000], Some([SIZE_LIMIT, SIZE_LIMIT / 2])),
         ] {
             assert_eq!(size_in(size, room), expected, "{size:?} in {room:?}");
         }
