@@ -38,7 +38,8 @@ impl Identity {
         if self.compared.as_ref().is_some_and(is_known) {
             return;
         }
-        (self.compared, self.is_same) = (Some((Arc::clone(other), id, samples)), false);
+        // An answer about the film of before is lost with its slot.
+        *self = Identity { compared: Some((Arc::clone(other), id, samples)), ..Identity::default() };
         let answer = self.answers.answer(context);
         subject.inspect(move |film| answer.give(identity.is_of(film)));
     }
@@ -92,6 +93,14 @@ mod tests {
             }
         });
         assert_eq!([identity.answers.take(), identity.answers.take()], [Some(true), None], "once");
+        let unlike = other(7, 13.0);
+        screen.before_answers(|subject| {
+            for other in [&unlike, &same, &unlike] {
+                identity.follow(Some(other), subject, &context);
+            }
+        });
+        let late = "nothing is told of films that are no longer compared";
+        assert_eq!([identity.answers.take(), identity.answers.take()], [Some(false), None], "{late}");
     }
 
     #[test]

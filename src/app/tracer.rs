@@ -76,6 +76,8 @@ pub struct Shown {
     pub divisor: u32,
     /// The document that it shows.
     pub document: Document,
+    /// The run of the render that it belongs to, as [`Status::run`].
+    pub run: u64,
 }
 
 /// Whether a smooth preview looks better than this picture, whose render began so long ago.
@@ -226,6 +228,7 @@ impl Tracer {
                 samples: picture.samples_per_pixel,
                 divisor: started.preview.divisor,
                 document: started.document.clone(),
+                run: started.run,
             });
             if !started.is_pictured && (self.previews.is_moving() || started.is_look) {
                 let samples = picture.samples_per_pixel as f64;

@@ -40,6 +40,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("index.html");
         check_page(&path).unwrap();
+        let nowhere = check_page(&directory.path().join("missing/index.html"));
+        assert!(nowhere.unwrap_err().to_string().contains("missing"), "there is no such folder");
         let at_the_end = "x".repeat(HEAD as usize - GENERATOR.len());
         for (page, is_own) in [
             (String::new(), true),

@@ -310,4 +310,17 @@ mod tests {
             assert!(!one.share_hierarchy(&groups(other, Roots::Nearer)), "{other:?}");
         }
     }
+
+    #[test]
+    fn an_eye_within_rounding_of_a_surface_is_on_it() {
+        for far in [1e8, -1e8] {
+            let position = DVec3::splat(far);
+            let eye = Eye { position, lens_radius: 0.0 };
+            let ball = |radius: f64| Sphere { center: position - 0.1 * DVec3::X, radius, material: 0 };
+            let distance = position.distance(ball(0.1).center);
+            assert!(distance != 0.1, "rounding moves the centre");
+            assert_eq!(eye.height(&ball(0.1)), 0.0, "{far}");
+            assert_eq!(eye.height(&ball(0.1 - 1e-6)), distance - (0.1 - 1e-6), "{far}");
+        }
+    }
 }

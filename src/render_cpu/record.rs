@@ -105,9 +105,8 @@ pub(super) fn record<L: Lanes>(
             ray.hit = Some(RecordedHit { sphere, distance, position });
         }
         rays.push(ray);
+        // The last step of an absorbed path would add nothing.
         if !goes_on {
-            // The last step of an absorbed path adds nothing.
-            path.finish(l, broadcast, &mut work);
             break;
         }
     }

@@ -1,7 +1,7 @@
 //! Cards: those in a corner of the picture, and those of the slots.
 
-use crate::common::{has_samples, open, open_sized, send, until};
-use eframe::egui::{Rect, Role, Shape};
+use crate::common::{drag_from, has_samples, open, open_sized, send, until};
+use eframe::egui::{Rect, Role, Shape, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, SlotCommand, SlotNumber, Window};
@@ -26,12 +26,17 @@ fn heading(harness: &Harness<'_, Window>) -> Rect {
 #[test]
 fn the_first_steps_cover_no_title_of_a_wipe() {
     let mut harness = open_sized("", [1280.0, 800.0]);
-    harness.state_mut().document_mut().give_size([640, 360]);
+    harness.state_mut().document_mut().give_size([64, 36]);
     harness.run_steps(3);
     until(&mut harness, "a picture", has_samples(1));
     let before = heading(&harness);
     send(&mut harness, Command::Wipe);
     until(&mut harness, "two pictures", Window::has_other_picture);
+    // The noise decides where it is placed, and when.
+    until(&mut harness, "the divider in its place", |window| window.divider() != 0.5);
+    let rect = harness.state().picture_rect();
+    let [from, to] = [harness.state().divider(), 0.5].map(|share| rect.lerp_inside(vec2(share, 0.9)));
+    drag_from(&mut harness, from, to - from);
     harness.run_steps(3);
     let title = harness.state().document().title();
     let [bottom, right] = corner_of(&harness, &title);

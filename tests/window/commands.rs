@@ -7,20 +7,27 @@ use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Device, SlotCommand, Window};
 use weekender::stages::Stage;
 
+/// Gives a command. Returns whether it was enabled or says why not.
+fn is_done_or_refused(harness: &mut Harness<'_, Window>, command: Command) -> bool {
+    let before = harness.state().disabled_reason(command);
+    harness.state_mut().send(command);
+    harness.step();
+    assert_eq!(harness.state().performed(), Some(command));
+    let (told, after) = (harness.state().messages(), harness.state().disabled_reason(command));
+    before
+        .filter(|_| after.is_some())
+        .is_none_or(|reason| told.iter().any(|text| text.ends_with(&reason[1..])))
+}
+
 #[test]
 fn every_command_is_carried_out_or_says_why_not() {
     let mut harness = open(SMALL);
     for command in Command::all() {
-        let disabled_reason = harness.state().disabled_reason(command);
-        send(&mut harness, command);
-        assert_eq!(harness.state().performed(), Some(command));
-        let told = harness.state().messages();
-        // A picture that an earlier command has asked for may have come meanwhile.
-        let disabled_reason = disabled_reason.filter(|_| harness.state().disabled_reason(command).is_some());
-        if let Some(reason) = disabled_reason {
-            let end = &reason[1..];
-            assert!(told.iter().any(|text| text.ends_with(end)), "{command:?}: {reason}; {told:?}");
-        }
+        // A picture that an earlier command has asked for may come in that very frame, and be used up by the command.
+        let is_told = (0..3).any(|_| is_done_or_refused(&mut harness, command));
+        let (reason, told) = (harness.state().disabled_reason(command), harness.state().messages());
+        assert!(is_told, "{command:?}: {reason:?}; {told:?}");
+        harness.step();
         harness.key_press(Key::Escape);
         harness.run_steps(2);
         assert!(!harness.state().has_dialog(), "{command:?}");
@@ -158,7 +165,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
 fn every_command_does_what_it_says() {
     for command in Command::all() {
         // A render that has ended cannot be paused.
-        let endless = format!("{SMALL} --samples 1000000");
+        let endless = format!("{SMALL} --samples 4000000000");
         let mut harness = open(if command == Command::Pause { &endless } else { SMALL });
         until(&mut harness, "a picture", has_samples(1));
         // Something to undo and something to redo.

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use weekender::app::{Command, Sizing, Window};
 use weekender::cli::{self, Request};
 
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Longer than a slow machine takes that has other work.
+const PATIENCE: Duration = Duration::from_secs(180);
 
 /// The usual small picture.
 pub const SMALL: &str = "--stage glass-schlick --size 32x18";
@@ -83,9 +84,18 @@ pub fn painted(harness: &Harness<'_, Window>, text: &str) -> bool {
 
 /// Draws frames until this text is drawn over the picture.
 pub fn until_painted(harness: &mut Harness<'_, Window>, text: &str) {
+    until_drawn(harness, text, |harness| painted(harness, text));
+}
+
+/// Draws frames until the condition holds for what is drawn.
+pub fn until_drawn<'h>(
+    harness: &mut Harness<'h, Window>,
+    what: &str,
+    is_so: impl Fn(&Harness<'h, Window>) -> bool,
+) {
     let begin = Instant::now();
-    while !painted(harness, text) {
-        assert!(begin.elapsed() < PATIENCE, "never drawn: {text}");
+    while !is_so(harness) {
+        assert!(begin.elapsed() < PATIENCE, "never drawn: {what}");
         std::thread::sleep(Duration::from_millis(2));
         harness.step();
     }
@@ -118,7 +128,8 @@ pub fn copied_command(harness: &mut Harness<'_, Window>) -> String {
     copied.unwrap()
 }
 
-/// Whether the screen shows the document's picture at full size with at least this many samples per pixel.
+/// Whether the screen shows the document's picture at full size with at least this many samples per pixel. After a change
+/// that was undone this is still the picture of before, which says nothing about the new render.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     move |window| {
         let is_enough = |(samples, divisor)| samples >= at_least && divisor == 1;

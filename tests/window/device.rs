@@ -49,7 +49,8 @@ fn a_pause_outlasts_a_move_of_the_camera() {
     let run = harness.state().status().run;
     drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
     until(&mut harness, "the moved picture", |window| {
-        window.status().run > run && window.shown() == Some((8, 1)) && window.status().phase.is_over()
+        let is_shown = window.is_up_to_date() && window.shown() == Some((8, 1));
+        window.status().run > run && is_shown && window.status().phase.is_over()
     });
     std::thread::sleep(Duration::from_millis(60));
     harness.run_steps(5);
@@ -70,7 +71,9 @@ fn a_new_start_ends_a_pause() {
     let run = harness.state().status().run;
     send(&mut harness, Command::Restart);
     assert!(!harness.state().is_paused());
-    until(&mut harness, "a new film", |window| window.status().run > run && has_samples(8)(window));
+    until(&mut harness, "a new film", |window| {
+        window.status().run > run && window.status().samples_per_pixel > 8
+    });
 }
 
 #[test]

@@ -1,9 +1,12 @@
 //! What the window draws in each of its states, beside the kept texts in `tests/golden/drawn`.
 
-use crate::common::{SMALL, drag_from, has_samples, hold, middle, open_sized, send, until};
+use crate::common::{
+    SMALL, drag_from, has_samples, hold, middle, open_sized, send, until, until_drawn, until_seen,
+};
+use crate::drawings_views::know;
 use crate::drawn::{change, drawn};
 use crate::golden::{check, digest_of};
-use eframe::egui::{self, Key, Modifiers, Rect, Role, vec2};
+use eframe::egui::{self, Key, Modifiers, Rect, Role, Shape, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Theme, Window};
@@ -47,6 +50,38 @@ pub fn usual() -> (Harness<'static, Window>, Vec<String>) {
 pub fn keep(name: &str, before: &[String], harness: &mut Harness<'_, Window>) {
     harness.run_steps(60);
     check(&format!("drawn/{name}"), &change(before, &drawn(harness)));
+}
+
+/// The same for a state in which so many messages are shown. They stay for four seconds: a machine that stalls draws all
+/// of it again.
+pub fn keep_told(name: &str, count: usize, make: impl Fn() -> (Harness<'static, Window>, Vec<String>)) {
+    let text = (1..=5).find_map(|attempt| {
+        let (mut harness, before) = make();
+        harness.run_steps(60);
+        let is_told = harness.state().messages().len() >= count;
+        (is_told || attempt == 5).then(|| change(&before, &drawn(&harness)))
+    });
+    check(&format!("drawn/{name}"), &text.unwrap());
+}
+
+/// A window with a picture whose pixels are so large that their numbers are in them.
+pub fn with_numbers() -> Harness<'static, Window> {
+    let mut harness = finished("--stage glass-schlick --size 8x5", SIZE);
+    until_numbers(&mut harness, 8 * 5);
+    harness
+}
+
+/// Waits for the numbers of so many pixels, and of no others.
+pub fn until_numbers(harness: &mut Harness<'_, Window>, pixels: usize) {
+    let is_number = |shape: &Shape, room: Rect| match shape {
+        Shape::Text(text) => room.contains(text.pos) && text.galley.text().parse::<f64>().is_ok(),
+        _ => false,
+    };
+    until_drawn(harness, &format!("the numbers of {pixels} pixels"), |harness| {
+        let room = harness.get_by_label("Picture").rect();
+        let shapes = harness.output().shapes.iter();
+        shapes.filter(|clipped| is_number(&clipped.shape, room)).count() == 3 * pixels
+    });
 }
 
 /// Moves the pointer away.
@@ -94,13 +129,17 @@ fn dialogs() {
             ("first_steps", Command::FirstSteps),
             ("stages", Command::Stages),
             ("code", Command::Code),
-            ("show_me", Command::ShowMe),
         ] {
             let (mut harness, before) = usual();
             send(&mut harness, command);
-            until(&mut harness, name, |window| command != Command::ShowMe || window.has_other_picture());
             keep(name, &before, &mut harness);
         }
+        keep_told("show_me", 1, || {
+            let (mut harness, before) = usual();
+            send(&mut harness, Command::ShowMe);
+            until(&mut harness, "both pictures", |window| window.has_other_picture());
+            (harness, before)
+        });
     });
 }
 
@@ -124,7 +163,8 @@ fn views() {
             ("luminance", Show::Luminance),
         ] {
             send(&mut harness, Command::Show(show));
-            until(&mut harness, name, |window| window.is_up_to_date());
+            let is_layer = matches!(show, Show::Normals | Show::Bounces);
+            until(&mut harness, name, |window| !is_layer || window.layer_samples() == 16);
             keep(name, &before, &mut harness);
         }
     });
@@ -144,7 +184,7 @@ fn a_darker_picture() {
 #[test]
 fn values_of_pixels() {
     alone("values_of_pixels", || {
-        let mut harness = finished("--stage glass-schlick --size 8x5", SIZE);
+        let mut harness = with_numbers();
         let before = drawn(&harness);
         let at = middle(&harness);
         harness.hover_at(at);
@@ -162,6 +202,7 @@ fn paths_of_a_pixel() {
         harness.run_steps(2);
         send(&mut harness, Command::ListPaths);
         until(&mut harness, "four paths", |window| window.listed_paths() == 4);
+        until(&mut harness, "the pixel's value", |window| window.inspected().is_some());
         leave(&mut harness);
         keep("paths", &before, &mut harness);
         send(&mut harness, Command::NextRay);
@@ -181,9 +222,13 @@ fn two_stages_and_a_divider() {
         let rect = harness.state().picture_rect();
         let [from, to] = [harness.state().divider(), 0.5].map(|share| rect.lerp_inside(vec2(share, 0.5)));
         drag_from(&mut harness, from, to - from);
+        until(&mut harness, "the pixel's value", |window| {
+            window.inspected().is_some_and(|(at, _)| at == [16, 9])
+        });
         leave(&mut harness);
         keep("wipe", &before, &mut harness);
         send(&mut harness, Command::WipeDifference);
+        until_seen(&mut harness, "A − B");
         keep("difference", &before, &mut harness);
     });
 }
@@ -191,19 +236,32 @@ fn two_stages_and_a_divider() {
 #[test]
 fn kept_pictures() {
     alone("kept_pictures", || {
-        let (mut harness, before) = usual();
-        for number in [SlotNumber::ALL[0], SlotNumber::ALL[1]] {
-            send(&mut harness, Command::Slot(SlotCommand::Keep));
-            until(&mut harness, "a kept picture", |window| window.slot(number).is_some());
-        }
-        send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[1])));
-        keep("slots", &before, &mut harness);
-        send(&mut harness, Command::Slot(SlotCommand::LookLive));
-        send(&mut harness, Command::Slot(SlotCommand::Wipe));
-        keep("slot_wipe", &before, &mut harness);
-        send(&mut harness, Command::Slot(SlotCommand::OnlyNoise));
-        until(&mut harness, "a verdict", |window| window.only_noise().is_some());
-        keep("verdict", &before, &mut harness);
+        let shown = || {
+            let (mut harness, before) = usual();
+            for number in [SlotNumber::ALL[0], SlotNumber::ALL[1]] {
+                send(&mut harness, Command::Slot(SlotCommand::Keep));
+                until(&mut harness, "a kept picture", |window| window.slot(number).is_some());
+            }
+            send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[1])));
+            until(&mut harness, "its picture", |window| window.shown_pixel([0, 0]).is_some());
+            (harness, before)
+        };
+        let compared = || {
+            let (mut harness, before) = shown();
+            send(&mut harness, Command::Slot(SlotCommand::LookLive));
+            send(&mut harness, Command::Slot(SlotCommand::Wipe));
+            until(&mut harness, "both pictures", |window| window.has_other_picture());
+            (harness, before)
+        };
+        let judged = || {
+            let (mut harness, before) = compared();
+            send(&mut harness, Command::Slot(SlotCommand::OnlyNoise));
+            until(&mut harness, "a verdict", |window| window.only_noise().is_some());
+            (harness, before)
+        };
+        keep_told("slots", 2, shown);
+        keep_told("slot_wipe", 2, compared);
+        keep_told("verdict", 2, judged);
     });
 }
 
@@ -227,6 +285,7 @@ fn a_marked_part() {
         send(&mut harness, Command::Crop);
         let from = harness.state().picture_rect().lerp_inside(vec2(0.2, 0.3));
         drag_from(&mut harness, from, vec2(200.0, 100.0));
+        know(&mut harness, from + vec2(200.0, 100.0));
         leave(&mut harness);
         keep("crop", &before, &mut harness);
     });
@@ -235,11 +294,13 @@ fn a_marked_part() {
 #[test]
 fn bookmarks_and_the_pictures_size() {
     alone("bookmarks_and_the_pictures_size", || {
-        let (mut harness, before) = usual();
-        send(&mut harness, Command::AddBookmark);
-        send(&mut harness, Command::AddBookmark);
-        send(&mut harness, Command::ActualSize);
-        keep("bookmarks", &before, &mut harness);
+        keep_told("bookmarks", 1, || {
+            let (mut harness, before) = usual();
+            send(&mut harness, Command::AddBookmark);
+            send(&mut harness, Command::AddBookmark);
+            send(&mut harness, Command::ActualSize);
+            (harness, before)
+        });
     });
 }
 
@@ -254,6 +315,7 @@ fn a_menu_of_the_picture() {
             harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
             harness.step();
         }
+        until(&mut harness, "the pixel's value", |window| window.inspected().is_some());
         keep("picture_menu", &before, &mut harness);
     });
 }
@@ -308,6 +370,7 @@ fn steps_of_a_packet() {
     alone("steps_of_a_packet", || {
         let (mut harness, before) = usual();
         send(&mut harness, Command::Packet);
+        until(&mut harness, "its steps", |window| window.packet_steps().is_some());
         harness.run_steps(60);
         let change = change(&before, &drawn(&harness));
         let text = format!("{} shapes, digest {}\n", change.lines().count(), digest_of(change.as_bytes()));

@@ -1,6 +1,9 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{SMALL, copied_command, has_samples, name_file, open, painted, save, send, until};
+use crate::common::{
+    SMALL, copied_command, has_samples, name_file, open, painted, save, send, until, until_painted,
+    until_seen,
+};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -180,14 +183,11 @@ fn an_identical_film_is_said_to_be_identical() {
     save(&mut harness, Command::Save(OutputFormat::Exr), &path);
     name_file(&mut harness, Command::LoadReference, &path);
     until(&mut harness, "the difference", |window| window.show() == weekender::app::Show::Difference);
-    for _ in 0..200 {
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    assert!(painted(&harness, "identical to the bit") && painted(&harness, "|difference|"));
+    until_painted(&mut harness, "identical to the bit");
+    assert!(painted(&harness, "|difference|"));
     harness.event(egui::Event::PointerMoved(harness.get_by_label("Picture").rect().center()));
     for text in ["A, this", "B, other", "A − B"] {
-        crate::common::until_seen(&mut harness, text);
+        until_seen(&mut harness, text);
     }
     // Another seed is another film.
     harness.state_mut().document_mut().settings.seed = 5;

@@ -1,6 +1,6 @@
 //! Bookmarks, and flights to and along them.
 
-use crate::common::{control, has_samples, hold, middle, open, save, send, until};
+use crate::common::{control, has_samples, hold, middle, name_file, open, send, until};
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -150,9 +150,12 @@ fn bookmarks_are_flown_in_order_as_frames_render_them() {
     let start = camera(&harness);
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("path.toml");
-    save(&mut harness, Command::SaveFlight, &path);
-    let told = harness.state().messages();
-    assert!(told.iter().any(|text| text.contains("--frames 0..121")), "{told:?}");
+    name_file(&mut harness, Command::SaveFlight, &path);
+    until(&mut harness, "how to render it", |window| {
+        window.messages().iter().any(|text| text.contains("--frames 0..121"))
+    });
+    let saved = format!("Saved {}", path.display());
+    until(&mut harness, &saved, |window| window.messages().contains(&saved));
     let line = format!("weekender --batch --scene {} --frames 0..121 --out f", path.display());
     let Request::Frames(options) = cli::parse(line.split_whitespace().map(Into::into)).unwrap() else {
         panic!("{line}");

@@ -270,14 +270,21 @@ fn a_stage_without_rays_refuses_to_move_its_camera_and_has_no_paths() {
         }),
     ];
     for (index, (begin, act)) in acts.into_iter().enumerate() {
-        let mut harness = open("--stage ppm-gradient --size 64x36");
-        until(&mut harness, "a picture", has_samples(1));
-        let (before, at) = (camera(&harness), middle(&harness));
-        harness.event(egui::Event::PointerMoved(at));
-        harness.run_steps(2);
-        assert!(harness.state().messages().is_empty());
-        act(&mut harness, at);
-        harness.run_steps(3);
+        let acted = || {
+            let mut harness = open("--stage ppm-gradient --size 64x36");
+            until(&mut harness, "a picture", has_samples(1));
+            let (before, at) = (camera(&harness), middle(&harness));
+            harness.event(egui::Event::PointerMoved(at));
+            harness.run_steps(2);
+            assert!(harness.state().messages().is_empty());
+            act(&mut harness, at);
+            harness.run_steps(3);
+            (harness, before)
+        };
+        // A machine that stalls may miss a message, which stays for four seconds.
+        let mut again = (0..5).map(|_| acted());
+        let is_told = |(harness, _): &(Harness<'_, Window>, Camera)| !harness.state().messages().is_empty();
+        let (mut harness, before) = again.find(is_told).unwrap_or_else(|| panic!("{index}: nothing is told"));
         let reason =
             format!("{begin} stage traces no rays: its picture depends only on the position of each pixel");
         assert_eq!(harness.state().messages(), [reason], "{index}");
@@ -307,4 +314,21 @@ fn the_axes_hide_the_picture_from_the_mouse() {
     assert_eq!(harness.state().selected(), None);
     let role = control(&harness, "View from the top (+y)").accesskit_node().role();
     assert_eq!(role, egui::Role::Button);
+}
+
+/// A new picture with as many samples as the one before is no less new.
+#[test]
+fn a_resting_pointer_reads_each_new_picture() {
+    let mut harness = open("--stage normals --size 32x18 --samples 1");
+    until(&mut harness, "a picture", has_samples(1));
+    let at = middle(&harness);
+    harness.event(egui::Event::PointerMoved(at));
+    until(&mut harness, "the pixel", |window| window.inspected().is_some());
+    for step in 1..=3 {
+        let (pixel, before) = harness.state().inspected().unwrap();
+        harness.state_mut().document_mut().camera.look_from.x += 0.2 * f64::from(step);
+        let is_another =
+            |window: &Window| window.inspected().is_some_and(|(at, mean)| at == pixel && mean != before);
+        until(&mut harness, "the value in the new picture", is_another);
+    }
 }

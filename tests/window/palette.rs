@@ -1,6 +1,6 @@
 //! The palette: what it finds first, and what it says about switches.
 
-use crate::common::{SMALL, has_samples, hold, open, send, until};
+use crate::common::{SMALL, has_samples, hold, open, open_sized, send, until};
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::{Event, Key, Modifiers, Rect, Role};
 use egui_kittest::Harness;
@@ -230,4 +230,15 @@ fn a_row_under_the_pointer_is_explained_and_clicked() {
     harness.run_steps(2);
     assert_eq!(harness.state().performed(), Some(Command::ZoomOut));
     assert!(!harness.state().has_dialog());
+}
+
+#[test]
+fn the_palette_fits_into_a_low_window() {
+    let mut harness = open_sized(SMALL, [1280.0, 300.0]);
+    harness.run_steps(2);
+    type_into_palette(&mut harness, "light");
+    let help = Command::Theme(Theme::Light).help();
+    let bottoms = harness.get_all_by_label(help).map(|node| node.rect().bottom());
+    let lowest = bottoms.fold(0.0, f32::max);
+    assert!((200.0..300.0).contains(&lowest), "{lowest}");
 }

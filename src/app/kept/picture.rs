@@ -80,7 +80,8 @@ impl KeptPicture {
         let place = self.held.iter().position(|held| held.number == kept.number());
         let earlier = place.map(|place| self.held.remove(place).shown.texture);
         let texture = Texture::new(kept.size(), rgb8, earlier);
-        let shown = Shown { texture, samples: kept.samples(), divisor: 1, document: kept.document.clone() };
+        let (document, run) = (kept.document.clone(), kept.status.run);
+        let shown = Shown { texture, samples: kept.samples(), divisor: 1, document, run };
         self.held.insert(0, Held { number: kept.number(), view, shown });
         self.held.truncate(HELD);
     }

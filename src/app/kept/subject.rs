@@ -75,9 +75,10 @@ impl<'a> Subject<'a> {
         self.kept.map_or(self.main.status().samples_per_pixel, |kept| kept.samples())
     }
 
-    /// Samples per pixel of the newest picture.
+    /// Samples per pixel of the film's newest picture; 0 as long as only that of an earlier film is there.
     pub fn shown_samples(&self) -> u64 {
-        let of_live = || self.main.shown().map_or(0, |shown| shown.samples);
+        let run = self.main.status().run;
+        let of_live = || self.main.shown().filter(|shown| shown.run == run).map_or(0, |shown| shown.samples);
         self.kept.map_or_else(of_live, |kept| kept.samples())
     }
 

@@ -144,7 +144,7 @@ fn a_large_picture_is_looked_at_first_on_a_cpu_unless_it_is_there_at_another_siz
     moved.camera.vfov_degrees += 1.0;
     for (document, expected) in [(resized, false), (moved, true)] {
         let texture = Texture::new([1, 1], &[0; 3], None);
-        tracer.shown = Some(Shown { texture, samples: 1, divisor: 1, document });
+        tracer.shown = Some(Shown { texture, samples: 1, divisor: 1, document, run: 0 });
         assert_eq!(has_look(&tracer, &cpu()), expected);
     }
 }

@@ -64,12 +64,4 @@ impl<L: Lanes> SinglePath<L> {
         shade::<L, { parts::ALL }>(l, broadcast, std::slice::from_mut(&mut self.packet), work, &mut stats);
         (sphere.0[0], distance.0[0].to_f64())
     }
-
-    /// Ends an absorbed path.
-    #[inline(always)]
-    pub fn finish(&mut self, l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) {
-        if self.is_alive() {
-            self.advance(l, broadcast, work);
-        }
-    }
 }
