@@ -263,6 +263,44 @@ fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
     (*path).key = sampler_key(job.seed, block.half, (*path).pixel);
 }
 
+// Where a ray meets what it has hit.
+struct Arrival {
+    position: vec3f,
+    // Unit normal on the side that the ray came from.
+    normal: vec3f,
+    // Cosine between the ray's direction and the outward normal.
+    outward_cosine: f32,
+    // Whether the ray came from outside.
+    front: bool,
+}
+
+// Finds where and from which side a ray meets what it has hit.
+fn arrive(ray: Ray, hit: u32, record: ShadingRecord, point: SurfacePoint) -> Arrival {
+    let outward_cosine = dot3(ray.direction, point.outward);
+    var front = outward_cosine < 0.0;
+    if SURFACE == SURFACE_EXACT {
+        front = front && ray.inside != hit;
+    }
+    if CAVITY {
+        front = front && record.anchoring < 2.0;
+    }
+    return Arrival(point.position, select(-point.outward, point.outward, front), outward_cosine, front);
+}
+
+// The reflectance of what was hit.
+fn albedo_of(record: ShadingRecord, pixel: u32) -> vec3f {
+    if REFLECTANCE_STRIPS {
+        return vec3f(strip_reflectance(pixel));
+    }
+    return record.albedo;
+}
+
+// The reflectance of the picture strip that contains a pixel: 10, 30, 50, 70 or 90 %.
+fn strip_reflectance(pixel: u32) -> f32 {
+    let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
+    return fma(round(max(0.0, strip)), 0.2, 0.1);
+}
+
 // The numbers for a path's next ray.
 struct Drawn {
     // For a direction, or for a point on the lens.
@@ -323,19 +361,13 @@ fn scatter_path(
     point: SurfacePoint,
 ) -> Ray {
     let direction = (*path).ray.direction;
-    let outward_cosine = dot3(direction, point.outward);
-    var front = outward_cosine < 0.0;
-    if SURFACE == SURFACE_EXACT {
-        front = front && (*path).ray.inside != hit;
-    }
-    if CAVITY {
-        front = front && record.anchoring < 2.0;
-    }
-    let normal = select(-point.outward, point.outward, front);
+    let arrival = arrive((*path).ray, hit, record, point);
+    let front = arrival.front;
+    let normal = arrival.normal;
     let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
     let across = (rho + rho) * drawn.sine_cosine.yx;
     let unit = vec3f(across.x, 1.0 - (drawn.pair.x + drawn.pair.x), across.y);
-    let incidence = incidence_of(outward_cosine);
+    let incidence = incidence_of(arrival.outward_cosine);
     let surface = surface_of(record);
     let coin = drawn.pair.x;
     var bounced: Scatter;
@@ -348,18 +380,14 @@ fn scatter_path(
     if HEMISPHERE && surface.weight > 0.0 {
         sent = hemisphere(normal, unit);
     }
-    var albedo = record.albedo;
-    if REFLECTANCE_STRIPS {
-        albedo = vec3f(strip_reflectance((*path).pixel));
-    }
     if dot3(sent, sent) < NEAR_ZERO {
         sent = normal;
     }
     // Metal absorbs a fuzzy reflection that points into the surface.
     (*path).absorbed = METAL && bounced.is_metal && !(dot3(sent, normal) > 0.0);
-    (*path).throughput *= albedo;
+    (*path).throughput *= albedo_of(record, (*path).pixel);
     let inward = front == bounced.refracts;
-    return Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
+    return Ray(arrival.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
 }
 
 // Scatters where the rounded cosine does not give the angle of incidence precisely enough. A ray inside glass arrives
@@ -385,10 +413,4 @@ fn scatter_steeply(
         (*path).sine2 *= bounced.ratio * bounced.ratio;
     }
     return bounced;
-}
-
-// The reflectance of the picture strip that contains a pixel: 10, 30, 50, 70 or 90 %.
-fn strip_reflectance(pixel: u32) -> f32 {
-    let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
-    return fma(round(max(0.0, strip)), 0.2, 0.1);
 }

@@ -57,13 +57,13 @@ impl Body for Intersect {
             let mut nearest = Nearest::nothing(l);
             for (index, (sphere, ground)) in self.spheres.iter().zip(&self.grounds).enumerate() {
                 let (sphere, number) = (Spheres::load(l, sphere), l.splat_u(index as u32));
-                let key = match self.root {
+                let candidate = match self.root {
                     Root::Near => near_root(l, &rays, &sphere),
                     Root::Nearest => nearest_root(l, &rays, &sphere),
                     Root::Book => book_root(l, &rays, &sphere, l.constant(0.001)),
                     Root::Anchored => anchored_root(l, &rays, ground, number),
                 };
-                nearest.take(key, number);
+                nearest.take(l, candidate, number);
             }
             found = found ^ nearest.sphere;
         }

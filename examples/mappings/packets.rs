@@ -311,17 +311,17 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         let point = surface_point(l, &rays, nearest.distance(), reference, curvature, record.radius());
         let outward_cosine = rays.direction.dot(point.outward);
         let front = outward_cosine.lt(zero) & !rays.inside.eq(hit);
-        let normal = point.outward.scale(front.select(one, l.constant(-1.0)));
+        let normal = point.outward.negate_where(l, !front);
         let incidence = incidence_of(l, outward_cosine);
         let surface = surface_of(&record);
         let laws = DielectricLaws::Schlick;
         let bounced =
             scatter::<L, true>(l, &surface, laws, rays.direction, normal, &incidence, front, unit, u0);
-        let inward = (front & bounced.refracts) | !(front | bounced.refracts);
+        let inward = !(front ^ bounced.refracts);
         let camera = pinhole_ray(l, &scene.camera, corner, [u0, u1]);
         let direction = new.select(camera.direction, bounced.direction);
-        let direction = direction.scale(one / direction.dot(direction).sqrt());
         let absorbed = bounced.is_metal & !zero.lt(direction.dot(normal)) & !new;
+        let direction = direction.scale(one / direction.dot(direction).sqrt());
         rays = Rays {
             origin: new.select(camera.origin, point.position),
             direction,
@@ -334,11 +334,11 @@ fn trace<L: Lanes<Real = f32>>(l: L, refill: bool, scene: &BroadcastScene<f32>, 
         nearest = Nearest::nothing(l);
         for sphere in &scene.opaque {
             let sphere = Spheres::load(l, sphere);
-            nearest.take(near_root(l, &rays, &sphere), sphere.number);
+            nearest.take(l, near_root(l, &rays, &sphere), sphere.number);
         }
         for sphere in &scene.two_root {
             let sphere = Spheres::load(l, sphere);
-            nearest.take(nearest_root(l, &rays, &sphere), sphere.number);
+            nearest.take(l, nearest_root(l, &rays, &sphere), sphere.number);
         }
         counts.busy += u64::from(busy.count_ones());
         counts.offered += L::WIDTH as u64;

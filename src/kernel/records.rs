@@ -17,10 +17,10 @@ record! {
         pub curvature: R,
         /// Reflectance, linear RGB.
         pub albedo: [R; 3],
-        /// Length of the unit vector's part in the scattered direction; a negative sign (also on 0) marks a reflection.
-        pub weight: R,
         /// Radius of the sphere.
         pub radius: R,
+        /// Length of the unit vector's part in the scattered direction; a negative sign (also on 0) marks a reflection.
+        pub weight: R,
         /// Refraction index; 0 if not glass.
         pub refraction_index: R,
         /// 1 / refraction index; 0 if not glass.

@@ -19,6 +19,10 @@ use std::time::Duration;
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
+/// The bits of [`Node::count`] from here on are twice the axis along which a node's children lie apart, plus 1 if the
+/// second child comes before the first.
+pub const ORDER_SHIFT: u32 = 29;
+
 /// Most spheres in a leaf.
 const LEAF_SPHERES: u32 = 12;
 
@@ -235,7 +239,7 @@ fn parting_axis(nodes: &[obvhs::bvh2::node::Bvh2Node], first: usize) -> u32 {
     let apart = nodes[first + 1].aabb().center() - nodes[first].aabb().center();
     let size = apart.abs();
     let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
-    (axis as u32) << 30 | u32::from(apart[axis] < 0.0) << 29
+    (2 * axis as u32 + u32::from(apart[axis] < 0.0)) << ORDER_SHIFT
 }
 
 #[cfg(test)]

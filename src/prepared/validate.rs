@@ -318,9 +318,9 @@ mod tests {
                 ("in a list and anchored", |prepared| prepared.records[0].0[15] = 1.0),
                 ("one root and a refraction", |prepared| prepared.records[0].0[9..11].fill(1.5)),
                 ("is glass and is not", |prepared| prepared.records[0].0[10] = 1.5),
-                ("has no radius", |prepared| prepared.records[0].0[8] = 0.0),
-                ("unit vector's part", |prepared| prepared.records[0].0[7] = 1.5),
-                ("unit vector's part", |prepared| prepared.records[0].0[7] = -1.5),
+                ("has no radius", |prepared| prepared.records[0].0[7] = 0.0),
+                ("unit vector's part", |prepared| prepared.records[0].0[8] = 1.5),
+                ("unit vector's part", |prepared| prepared.records[0].0[8] = -1.5),
                 ("shading record of sphere", |prepared| prepared.records[0].0[4] = f32::NAN),
             ],
         );

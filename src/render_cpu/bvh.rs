@@ -5,7 +5,7 @@
 use super::lanes::{Float, Lanes, Mask, V3, splat3};
 use super::sphere::{Nearest, Rays, signed_root};
 use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, STACK_SIZE};
-use crate::prepared::hierarchy::Hierarchy;
+use crate::prepared::hierarchy::{Hierarchy, ORDER_SHIFT};
 
 /// Nodes still to be visited, at most one per level. The stack outlives each traversal, because clearing it every time
 /// would show in the run time.
@@ -58,6 +58,18 @@ pub fn misses_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit:
     (leave * l.constant(BOX_WIDENING)).lt(enter)
 }
 
+/// The child that is nearer for most of the `active` rays, 0 or 1: one bit for each order of children that a node can
+/// have, [`Node::count`]. Kept in a register, since the next node's address depends on it.
+#[inline(always)]
+fn near_children<L: Lanes>(l: L, rays: &Rays<L>, active: L::M) -> u32 {
+    let d = rays.direction;
+    let half = active.bits().count_ones();
+    [d.x, d.y, d.z].into_iter().enumerate().fold(0, |bits, (axis, d)| {
+        let is_forward = 2 * (l.constant(0.0).lt(d) & active).bits().count_ones() >= half;
+        bits | if is_forward { 2 } else { 1 } << (2 * axis)
+    })
+}
+
 /// Updates `nearest` with the nearest hits among the spheres of a hierarchy. Results matter only for `active` lanes.
 #[inline(always)]
 pub fn traverse<L: Lanes>(
@@ -70,8 +82,7 @@ pub fn traverse<L: Lanes>(
     nearest: &mut Nearest<L>,
 ) {
     let slabs = slabs_of(l, rays, hierarchy.extent);
-    let forward = [rays.direction.x, rays.direction.y, rays.direction.z]
-        .map(|d| 2 * (l.constant(0.0).lt(d) & active).bits().count_ones() >= active.bits().count_ones());
+    let near_children = near_children(l, rays, active);
     let active_bits = active.bits();
     // The distance of a hit limits the search one box later than it could, so that the next box need not wait for the
     // square roots before it.
@@ -84,8 +95,7 @@ pub fn traverse<L: Lanes>(
         if missed.bits() & active_bits != active_bits {
             let count = node.count & COUNT_MASK;
             if count == 0 {
-                let ascending = node.count & (1 << 29) == 0;
-                let nearer = u32::from(forward[(node.count >> 30) as usize] != ascending);
+                let nearer = near_children >> (node.count >> ORDER_SHIFT) & 1;
                 stack[depth] = node.first + 1 - nearer;
                 index = node.first + nearer;
                 depth += 1;
@@ -94,8 +104,8 @@ pub fn traverse<L: Lanes>(
             let first = node.first as usize;
             for (offset, sphere) in spheres[first..first + count as usize].iter().enumerate() {
                 let number = (first + offset) as u32;
-                let key = signed_root(l, rays, sphere, l.splat_u(number));
-                nearest.take_in_any_order(l, key, number, &hierarchy.ranks, active);
+                let candidate = signed_root(l, rays, sphere, l.splat_u(number));
+                nearest.take_in_any_order(l, candidate, number, &hierarchy.ranks, active);
             }
             next_limit = nearest.distance();
         }

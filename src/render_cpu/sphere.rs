@@ -68,6 +68,23 @@ impl<R: Copy> BroadcastSphere<R> {
     }
 }
 
+/// The distance to a sphere, which is no hit for some of the lanes.
+#[derive(Clone, Copy)]
+pub struct Candidate<L: Lanes> {
+    /// Distance, encoded as [`Lanes::key`].
+    key: L::Key,
+    /// Lanes whose ray leaves the sphere and cannot meet it again.
+    excluded: L::M,
+}
+
+impl<L: Lanes> Candidate<L> {
+    /// The distance, encoded as [`Lanes::key`], or 0, which is no hit, where the ray leaves the sphere.
+    #[inline(always)]
+    pub fn key(self, l: L) -> L::Key {
+        l.exclude(self.excluded, self.key)
+    }
+}
+
 /// The nearest hits found so far.
 #[derive(Clone, Copy)]
 pub struct Nearest<L: Lanes> {
@@ -84,19 +101,34 @@ impl<L: Lanes> Nearest<L> {
         Nearest { key: L::key(l.constant(f64::NEG_INFINITY)), sphere: l.splat_u(NONE) }
     }
 
-    /// Takes `key` where it is nearer. Of two spheres at the same distance, the one taken first stays.
+    /// Takes `candidate` where it is nearer. Of two spheres at the same distance, the one taken first stays.
     #[inline(always)]
-    pub fn take(&mut self, key: L::Key, sphere: L::U) {
-        self.sphere = key.lt(self.key).select(sphere, self.sphere);
-        self.key = self.key.min(key);
+    pub fn take(&mut self, l: L, candidate: Candidate<L>, sphere: L::U) {
+        if L::MASKED {
+            let allowed = !candidate.excluded;
+            let is_nearer = candidate.key.lt(self.key) & allowed;
+            self.sphere = is_nearer.select(sphere, self.sphere);
+            self.key = allowed.select(candidate.key.min(self.key), self.key);
+        } else {
+            let key = candidate.key(l);
+            self.sphere = key.lt(self.key).select(sphere, self.sphere);
+            self.key = self.key.min(key);
+        }
     }
 
-    /// Takes `key` where it is nearer, for searches in any order: of two spheres at the same distance, the one of lower
-    /// rank stays. `ranks` holds the ranks of the spheres from number 0 on. Results matter only for `active` lanes.
+    /// Takes `candidate` where it is nearer, for searches in any order: of two spheres at the same distance, the one of
+    /// lower rank stays. `ranks` holds the ranks of the spheres from number 0 on. Results matter only for `active` lanes.
     #[inline(always)]
-    pub fn take_in_any_order(&mut self, l: L, key: L::Key, sphere: u32, ranks: &[u32], active: L::M) {
-        let tied = (key.eq(self.key) & active).bits();
-        self.take(key, l.splat_u(sphere));
+    pub fn take_in_any_order(
+        &mut self,
+        l: L,
+        candidate: Candidate<L>,
+        sphere: u32,
+        ranks: &[u32],
+        active: L::M,
+    ) {
+        let tied = (candidate.key.eq(self.key) & active & !candidate.excluded).bits();
+        self.take(l, candidate, l.splat_u(sphere));
         if tied != 0 {
             self.settle(l, tied, sphere, ranks);
         }
@@ -145,46 +177,44 @@ fn chord<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
 
 /// Distance to a sphere that no ray is inside of.
 #[inline(always)]
-pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    near_end(l, rays, sphere.number, chord(l, rays, sphere))
+pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> Candidate<L> {
+    near_end(rays, sphere.number, chord(l, rays, sphere))
 }
 
 /// Distance to a sphere from inside or outside.
 #[inline(always)]
-pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    nearest_end(l, rays, sphere.number, chord(l, rays, sphere))
+pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> Candidate<L> {
+    nearest_end(rays, sphere.number, chord(l, rays, sphere))
 }
 
 /// Distance to a sphere of a hierarchy, given as centre and squared radius, which is negative if only the nearer root
 /// counts. Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
 #[inline(always)]
-pub fn signed_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> L::Key {
+pub fn signed_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> Candidate<L> {
     let signed = Spheres::splat(l, *sphere, number);
     // What both kinds share comes before the jump, so that the broadcasts are memory operands.
     let chord = chord(l, rays, &Spheres { radius2: signed.radius2.abs(), ..signed });
     if sphere[3] < L::Real::default() {
-        near_end(l, rays, number, chord)
+        near_end(rays, number, chord)
     } else {
-        nearest_end(l, rays, number, chord)
+        nearest_end(rays, number, chord)
     }
 }
 
 /// Distance to the nearer end of a [`chord`].
 #[inline(always)]
-fn near_end<L: Lanes>(l: L, rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> L::Key {
-    l.key_unless(rays.left.eq(number), h + s)
+fn near_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Candidate<L> {
+    Candidate { key: L::key(h + s), excluded: rays.left.eq(number) }
 }
 
 /// Distance to the nearest end of a [`chord`] in front of the ray.
 #[inline(always)]
-fn nearest_end<L: Lanes>(l: L, rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> L::Key {
-    let leaves = rays.left.eq(number);
-    let enters = rays.inside.eq(number);
-    let near = l.key_unless(enters, h + s);
-    // A ray that enters the sphere from its surface travels the chord 2h. The negation comes last, so that a chord of
-    // length 0 is a hit at -0.
-    let far = L::key(-(enters.select(h.abs(), s) - h));
-    l.exclude(leaves, near.min(far))
+fn nearest_end<L: Lanes>(rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> Candidate<L> {
+    // A ray that enters the sphere from its surface travels the chord 2h. For it, h + s is not negative and hence no hit.
+    let s = rays.inside.eq(number).select(h.abs(), s);
+    // The negation comes last, so that a chord of length 0 is a hit at -0.
+    let (near, far) = (L::key(h + s), L::key(-(s - h)));
+    Candidate { key: near.min(far), excluded: rays.left.eq(number) }
 }
 
 /// Distance to an anchored sphere. Everything is measured from the anchor, so no number is as large as the radius. As
@@ -195,7 +225,7 @@ pub fn anchored_root<L: Lanes>(
     rays: &Rays<L>,
     sphere: &AnchoredSphere<L::Real>,
     number: L::U,
-) -> L::Key {
+) -> Candidate<L> {
     let d = rays.direction;
     let m = splat3(l, sphere.inward);
     let k = l.splat(sphere.curvature);
@@ -218,18 +248,18 @@ pub fn anchored_root<L: Lanes>(
     match sphere.roots() {
         Roots::Nearer => {
             let q = b + discriminant.sqrt().copysign(b);
-            l.exclude(leaves, L::key(-(c.max(zero) / q)))
+            Candidate { key: L::key(-(c.max(zero) / q)), excluded: leaves }
         }
         Roots::Both => {
             let q = b + discriminant.sqrt().copysign(b);
             let first = l.exclude(enters, L::key(-(c / q)));
             let second = L::key(-enters.select(own_chord, q / k));
-            l.exclude(leaves, first.min(second))
+            Candidate { key: first.min(second), excluded: leaves }
         }
         Roots::Farther => {
             let q = b + discriminant.max(zero).sqrt().copysign(b);
             let farther = (c / q).max(q / k).max(zero);
-            L::key(-enters.select(own_chord, farther))
+            Candidate { key: L::key(-enters.select(own_chord, farther)), excluded: l.mask(0) }
         }
     }
 }
@@ -237,14 +267,14 @@ pub fn anchored_root<L: Lanes>(
 /// The book's own quadratic, which does not track the surface that a ray leaves: the nearer root beyond `t_min`.
 /// (Sections 5.1, 6.2 and 9.3.)
 #[inline(always)]
-pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::F) -> L::Key {
+pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::F) -> Candidate<L> {
     let f = sphere.center - rays.origin;
     let a = rays.direction.dot(rays.direction);
     let h = rays.direction.dot(f);
     let c = f.dot(f) - sphere.radius2;
     let s = (h * h - a * c).sqrt();
     let beyond = |t: L::F| L::key(-t_min.lt(t).select(t, l.constant(-1.0)));
-    beyond((h - s) / a).min(beyond((h + s) / a))
+    Candidate { key: beyond((h - s) / a).min(beyond((h + s) / a)), excluded: l.mask(0) }
 }
 
 /// A point on a surface.

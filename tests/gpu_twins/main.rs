@@ -178,14 +178,34 @@ fn intersections() {
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
         let rays = rays(&input);
         let sphere: [f32; 4] = [8, 9, 10, 11].map(|i| float(&input, i));
-        compare_keys(&mut ulps, output[0], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
-        compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
-        compare_keys(&mut ulps, output[3], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
-        compare_keys(&mut ulps, output[4], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(
+            &mut ulps,
+            output[0],
+            near_root(L, &rays, &Spheres::splat(L, sphere, one)).key(L),
+            &input,
+        );
+        compare_keys(
+            &mut ulps,
+            output[1],
+            nearest_root(L, &rays, &Spheres::splat(L, sphere, one)).key(L),
+            &input,
+        );
+        compare_keys(
+            &mut ulps,
+            output[3],
+            nearest_root(L, &rays, &Spheres::splat(L, sphere, one)).key(L),
+            &input,
+        );
+        compare_keys(
+            &mut ulps,
+            output[4],
+            near_root(L, &rays, &Spheres::splat(L, sphere, one)).key(L),
+            &input,
+        );
         compare_keys(
             &mut ulps,
             output[2],
-            book_root(L, &rays, &Spheres::splat(L, sphere, one), Single(BOOK_T_MIN)),
+            book_root(L, &rays, &Spheres::splat(L, sphere, one), Single(BOOK_T_MIN)).key(L),
             &input,
         );
     }
@@ -247,7 +267,7 @@ fn anchored_spheres() {
             flags: input[3] % 3,
         };
         let rays = rays(&input);
-        compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Word(1)), &input);
+        compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Word(1)).key(L), &input);
         let (anchor, inward) = (vector(&input, 8), vector(&input, 12));
         let point =
             anchored_surface_point(L, &rays, number(&input, 15), anchor, inward, Single(sphere.curvature));

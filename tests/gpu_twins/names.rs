@@ -16,17 +16,15 @@ struct Pair {
 const PAIRS: &[Pair] = &[
     Pair {
         shader: "path.wgsl",
-        twins: &["path/mod.rs", "path/collect.rs", "path/draw.rs", "path/send.rs"],
+        twins: &["path/mod.rs", "path/collect.rs", "path/arrive.rs", "path/draw.rs", "path/send.rs"],
         shader_alone: &[("turns_over_lists", "no loop of the CPU is cut off")],
         twin_alone: &[
             ("idle", "a packet before its first work; the shader's path is made in `trace`"),
             ("shade", "packets take turns, a thread has one path"),
             ("next_stream", "a lane counts its stream up, a thread has its bounce"),
             ("last_stream", "a lane counts its stream up, a thread has its bounce"),
-            (
-                "normalised_or",
-                "`normalized` of lanes.wgsl; a thread tests for short directions in `scatter_path`",
-            ),
+            ("with_length2_or", "a thread tests for short directions in `scatter_path`"),
+            ("nothing", "the state before `collect`; a thread keeps none"),
             ("nowhere", "one lane leaves out the bounce of an ended path, as a thread does"),
         ],
     },
@@ -40,6 +38,7 @@ const PAIRS: &[Pair] = &[
             ("splat", "a sphere for all lanes"),
             ("load", "a sphere for all lanes"),
             ("new", "a sphere for all lanes"),
+            ("key", "of a candidate; a thread excludes by a negative distance"),
             ("near_end", "a packet jumps to one of two ends, a thread computes both in `signed_root`"),
             ("nearest_end", "a packet jumps to one of two ends, a thread computes both in `signed_root`"),
             ("settle", "a tie of some lanes, in `take_in_any_order`"),
@@ -50,7 +49,10 @@ const PAIRS: &[Pair] = &[
         shader: "bvh.wgsl",
         twins: &["bvh.rs"],
         shader_alone: &[("box_key", "`misses_box` with the distance, by which a thread orders the children")],
-        twin_alone: &[("misses_box", "`box_key` without the distance: a packet has an order of its own")],
+        twin_alone: &[
+            ("misses_box", "`box_key` without the distance: a packet has an order of its own"),
+            ("near_children", "the order of a packet; a thread orders children by `box_key`"),
+        ],
     },
     Pair {
         shader: "rng.wgsl",

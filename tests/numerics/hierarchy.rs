@@ -117,12 +117,12 @@ fn nearest_in_list<L: Lanes>(l: L, rays: &Rays<L>, rows: &[[L::Real; 4]], number
     let mut nearest = Nearest::nothing(l);
     for index in numbers {
         let ([x, y, z, radius2], number) = (rows[*index as usize], l.splat_u(*index));
-        let key = if radius2 < L::Real::default() {
+        let candidate = if radius2 < L::Real::default() {
             near_root(l, rays, &Spheres::splat(l, [x, y, z, radius2.negated()], number))
         } else {
             nearest_root(l, rays, &Spheres::splat(l, [x, y, z, radius2], number))
         };
-        nearest.take(key, number);
+        nearest.take(l, candidate, number);
     }
     nearest
 }

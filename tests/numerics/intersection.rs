@@ -48,10 +48,12 @@ fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) 
         let radius = f64::from(radius as f32);
         let across = perpendicular(center, &mut random) * (reach * radius * random.unit().sqrt());
         let rays = ray(l, DVec3::ZERO, center + across);
-        let found =
-            distance::<L>(near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)));
-        let both =
-            distance::<L>(nearest_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)));
+        let found = distance::<L>(
+            near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)).key(l),
+        );
+        let both = distance::<L>(
+            nearest_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)).key(l),
+        );
         assert_eq!(found, both, "one root or two");
         let exact = exact_roots(DVec3::ZERO, vector::<L>(rays.direction), center, radius);
         match (found, exact) {
@@ -154,7 +156,7 @@ fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
         let rays = ray(l, origin, DVec3::new(level * turn.cos(), down, level * turn.sin()));
         let (o, d) = (vector::<L>(rays.origin), vector::<L>(rays.direction));
         let exact = exact_ground_root(o, d, radius).unwrap();
-        let t = distance::<L>(anchored_root(l, &rays, sphere, l.splat_u(NUMBER))).unwrap();
+        let t = distance::<L>(anchored_root(l, &rays, sphere, l.splat_u(NUMBER)).key(l)).unwrap();
         largest[0] = largest[0].max((t - exact).abs());
         let point = anchored_surface_point(
             l,
@@ -217,7 +219,8 @@ fn case_07_direction_of_any_length() {
                     packed::<Scalar<false>>(center, 0.5),
                     Lanes::splat_u(UNFUSED, NUMBER),
                 ),
-            );
+            )
+            .key(UNFUSED);
             distance::<Scalar<false>>(key)
         };
         let [short, one, long] = [1e-3, 1.0, 1e6].map(|length| hit(length).expect("the same hit"));
@@ -234,7 +237,7 @@ fn arrival<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> O
     let origin = center + random.direction() * radius * random.log_within(1.5, 1e3);
     let across = perpendicular(center - origin, random) * (0.95 * radius * random.unit().sqrt());
     let rays = ray(l, origin, center + across - origin);
-    let key = near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), l.splat_u(NUMBER)));
+    let key = near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), l.splat_u(NUMBER))).key(l);
     distance::<L>(key).map(|t| surface_at(l, &rays, t, center, radius))
 }
 
@@ -254,9 +257,12 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let mut rays = ray(l, DVec3::ZERO, direction);
         (rays.origin, rays.left) = (point.position, number);
         let sphere = packed::<Scalar<false>>(center, radius);
-        assert_eq!(distance::<Scalar<false>>(near_root(l, &rays, &Spheres::splat(l, sphere, number))), None);
         assert_eq!(
-            distance::<Scalar<false>>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number))),
+            distance::<Scalar<false>>(near_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l)),
+            None
+        );
+        assert_eq!(
+            distance::<Scalar<false>>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l)),
             None
         );
         left += 1;
@@ -267,7 +273,10 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let origin = DVec3::new(random.within(-3.0, 3.0), 0.0, random.within(-3.0, 3.0));
         let mut rays = ray(l, origin, random.direction() + DVec3::Y);
         rays.left = number;
-        assert_eq!(distance::<Scalar<false>>(anchored_root(l, &rays, &prepared.anchored[0], number)), None);
+        assert_eq!(
+            distance::<Scalar<false>>(anchored_root(l, &rays, &prepared.anchored[0], number).key(l)),
+            None
+        );
     }
 }
 
@@ -295,7 +304,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let origin = center + random.direction() * 3.0;
     let across = perpendicular(center - origin, random) * (0.98 * radius * random.unit().sqrt());
     let rays = ray(l, origin, center + across - origin);
-    let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)))?;
+    let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l))?;
     let point = surface_at(l, &rays, t, center, radius);
     let cosine = -rays.direction.dot(point.outward);
     let surface = Surface::<L> {
@@ -323,7 +332,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         left: l.splat_u(NONE),
         inside: number,
     };
-    let chord = distance::<L>(nearest_root(l, &inner, &Spheres::splat(l, sphere, number))).unwrap();
+    let chord = distance::<L>(nearest_root(l, &inner, &Spheres::splat(l, sphere, number)).key(l)).unwrap();
     let [center, radius] = [center.as_vec3().as_dvec3(), DVec3::splat(f64::from(radius as f32))];
     let exact = exact_roots(vector::<L>(inner.origin), vector::<L>(inner.direction), center, radius.x);
     let [_, far] = exact.unwrap();

@@ -32,7 +32,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     let rounded_center = vector::<L>(v3(l, center));
     let mut largest = [0.0_f64; 2];
     for _ in 0..1000 {
-        let t = distance::<L>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number))).unwrap();
+        let t = distance::<L>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l)).unwrap();
         let point = surface_at(l, &rays, t, center, radius);
         let away = vector::<L>(point.position) - rounded_center;
         largest[0] = largest[0].max((away.length() / radius - 1.0).abs());

@@ -14,6 +14,8 @@ pub trait Instructions: Simd {
     const ROWS_8: usize = 0;
     /// Rows that [`Instructions::permute_16`] can choose among.
     const ROWS_16: usize = 0;
+    /// Whether an instruction can act on the lanes of a mask alone.
+    const MASKED: bool = false;
 
     /// The element of `column` that each lane's index selects.
     #[inline(always)]

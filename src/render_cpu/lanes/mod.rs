@@ -29,7 +29,9 @@ pub trait Select<M>: Copy {
 }
 
 /// One truth value per lane.
-pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> + Not<Output = Self>
+{
     /// The mask as bits, lane 0 in the lowest.
     fn bits(self) -> u32;
     /// `a` where the mask is true, else `b`.
@@ -100,7 +102,7 @@ pub trait Unsigned:
 }
 
 /// A row of negated distances, ordered by their bits as signed integers: see [`Lanes`].
-pub trait Key: Copy {
+pub trait Key: Copy + Select<Self::Mask> {
     /// The result of a comparison.
     type Mask: Mask;
 
@@ -137,6 +139,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     type Key: Key<Mask = Self::M>;
     /// Numbers per row.
     const WIDTH: usize;
+    /// Whether an instruction can act on the lanes of a mask alone, at no cost.
+    const MASKED: bool = false;
 
     /// The same number in every lane.
     fn splat(self, x: Self::Real) -> Self::F;
@@ -171,15 +175,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         m.select(self.splat_u(u32::MAX), a)
     }
 
+    /// `-f` where `m` is true, else `f`.
+    fn negate_where(self, m: Self::M, f: Self::F) -> Self::F;
+
     /// The ordering key of a negated distance.
     fn key(negated: Self::F) -> Self::Key;
     /// The negated distance of a key.
     fn from_key(k: Self::Key) -> Self::F;
-    /// The key of a negated distance, or 0 where `m` is true.
-    #[inline(always)]
-    fn key_unless(self, m: Self::M, negated: Self::F) -> Self::Key {
-        Self::key(m.select(self.constant(0.0), negated))
-    }
     /// 0 where `m` is true, else `k`. Keys of hits are negative, so 0 loses every comparison with them.
     fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
 

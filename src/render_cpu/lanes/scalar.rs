@@ -218,6 +218,10 @@ macro_rules! scalar_lanes {
             to.0[0] = f.0;
         }
         #[inline(always)]
+        fn negate_where(self, m: bool, f: Self::F) -> Self::F {
+            if m { -f } else { f }
+        }
+        #[inline(always)]
         fn key(negated: Self::F) -> $signed {
             negated.0.to_bits() as $signed
         }
@@ -246,6 +250,13 @@ macro_rules! scalar_lanes {
 
 macro_rules! scalar_key {
     ($signed:ident) => {
+        impl Select<bool> for $signed {
+            #[inline(always)]
+            fn select(m: bool, a: Self, b: Self) -> Self {
+                if m { a } else { b }
+            }
+        }
+
         impl Key for $signed {
             type Mask = bool;
 

@@ -20,6 +20,7 @@ macro_rules! simd_lanes {
 
         impl<S: Instructions> Lanes for $name<S> {
             const PERMUTED_ROWS: usize = S::$records;
+            const MASKED: bool = S::MASKED;
 
             type Real = f32;
             type F = $f<S>;
@@ -69,6 +70,11 @@ macro_rules! simd_lanes {
                 self.0.$ones(m) | a
             }
             #[inline(always)]
+            fn negate_where(self, m: $m<S>, f: $f<S>) -> $f<S> {
+                let bits: $u<S> = f.bitcast();
+                (bits ^ self.keep(m, self.splat_u(1 << 31))).bitcast()
+            }
+            #[inline(always)]
             fn key(negated: $f<S>) -> $i<S> {
                 negated.bitcast()
             }
@@ -112,6 +118,13 @@ macro_rules! simd_lanes {
         }
 
         impl<S: Instructions> Select<$m<S>> for $f<S> {
+            #[inline(always)]
+            fn select(m: $m<S>, a: Self, b: Self) -> Self {
+                fearless_simd::Select::select(m, a, b)
+            }
+        }
+
+        impl<S: Instructions> Select<$m<S>> for $i<S> {
             #[inline(always)]
             fn select(m: $m<S>, a: Self, b: Self) -> Self {
                 fearless_simd::Select::select(m, a, b)

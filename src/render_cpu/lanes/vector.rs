@@ -51,6 +51,12 @@ impl<F: Float> V3<F> {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
     }
 
+    /// The opposite vector where `m` is true, else this one.
+    #[inline(always)]
+    pub fn negate_where<L: Lanes<F = F>>(self, l: L, m: L::M) -> Self {
+        V3 { x: l.negate_where(m, self.x), y: l.negate_where(m, self.y), z: l.negate_where(m, self.z) }
+    }
+
     /// `self s + b`.
     #[inline(always)]
     pub fn mul_add(self, s: F, b: Self) -> Self {

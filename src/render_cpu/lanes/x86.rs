@@ -88,6 +88,7 @@ impl Instructions for Avx2 {
 
 impl Instructions for Avx512 {
     const ROWS_16: usize = 16;
+    const MASKED: bool = true;
 
     by!(Avx512, permute_16(column: f32x16, indices: u32x16) -> f32x16, _mm512_permutexvar_ps(indices.into(), column.into()));
     transpose_by!(

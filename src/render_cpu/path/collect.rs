@@ -1,17 +1,50 @@
-//! What a ray contributes, and the next sample where its path has ended.
+//! What a ray contributes, where it arrives, and the next sample where its path has ended.
 
-use super::draw::{draw, last_stream, next_stream};
-use super::{HitRecords, Packet, hit_point, pixel_position};
+use super::arrive::{Arrival, albedo_of, arrive};
+use super::draw::{Draw, draw, last_stream, next_stream};
+use super::records::{HitRecords, is_permuted};
+use super::{Packet, hit_point, pixel_position};
 use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
 use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
+use crate::render_cpu::material::{Surface, surface_of};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
 
-/// Adds the arriving light, ends paths, starts the next sample where a path has ended, and draws the numbers for the
-/// next rays.
+/// What [`collect`] finds out for [`super::send_on`].
+#[derive(Clone, Copy)]
+pub(super) struct Collected<L: Lanes> {
+    /// Lanes whose path ends here; their next ray starts at the camera.
+    pub ended: L::M,
+    /// The numbers for the next rays.
+    pub draw: Draw<L>,
+    /// Where the other lanes go on.
+    pub arrival: Arrival<L>,
+    /// The materials there, unless [`is_permuted`].
+    pub surface: Surface<L>,
+}
+
+impl<L: Lanes> Collected<L> {
+    /// The state before anything is collected.
+    #[inline(always)]
+    pub fn nothing(l: L) -> Self {
+        let zero = l.constant(0.0);
+        let nowhere = V3 { x: zero, y: zero, z: zero };
+        Collected {
+            ended: l.mask(0),
+            draw: Draw { pair: [zero; 2], jitter: [zero; 2] },
+            arrival: Arrival { position: nowhere, normal: nowhere, outward_cosine: zero, front: l.mask(0) },
+            surface: Surface { weight: zero, refraction_index: zero, inverse_index: zero, f0: zero },
+        }
+    }
+}
+
+/// Adds the arriving light, ends paths, finds the hit points of the others, starts the next sample where a path has
+/// ended, and draws the numbers for the next rays.
+///
+/// The hit points do not depend on the numbers. Found here, they occupy the processor while it waits for these.
 #[inline(always)]
 pub(super) fn collect<L: Lanes, const PARTS: u32>(
     l: L,
@@ -19,6 +52,7 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     packet: &mut Packet<L>,
     work: &mut Work,
     stats: &mut TileStats,
+    collected: &mut Collected<L>,
 ) {
     let prepared = &broadcast.prepared;
     let miss = packet.nearest.sphere.eq(l.splat_u(NONE));
@@ -39,6 +73,20 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
         add_radiance(l, packet, lit, light, stats);
     }
 
+    let one = l.constant(1.0);
+    let full = V3 { x: one, y: one, z: one };
+    if is_idle::<L>(!ended) {
+        packet.throughput = full;
+    } else {
+        let record = HitRecords::load::<PARTS>(l, broadcast, packet);
+        if !is_permuted::<L, PARTS>(&broadcast.prepared) {
+            collected.surface = surface_of(&record);
+        }
+        collected.arrival = arrive::<L, PARTS>(l, broadcast, packet, &record);
+        let albedo = albedo_of::<L, PARTS>(l, prepared, &record, packet.blocks.pixel);
+        packet.throughput = ended.select(full, packet.throughput.times(albedo));
+    }
+
     // Lanes whose path has ended go on to the next sample or the next block.
     let next = packet.counter + packet.blocks.step;
     packet.counter = ended.select(next, packet.counter);
@@ -48,8 +96,8 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
         enter_block(l, broadcast, packet, work, done);
     }
     packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
-    packet.ended = ended;
-    packet.draw = draw::<L, PARTS>(l, prepared, packet);
+    collected.ended = ended;
+    draw::<L, PARTS>(l, prepared, packet, &mut collected.draw);
 }
 
 /// The sky's radiance in a direction with this y component, in units of the film.
@@ -106,12 +154,13 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
 fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::F>, stats: &mut TileStats) {
     let radiance = light.times(packet.throughput);
     let total = radiance.x + radiance.y + radiance.z;
-    let is_valid = total.lt(l.constant(RADIANCE_TOTAL_LIMIT));
-    let invalid = (lit & !is_valid).bits() & packet.blocks.busy;
+    let is_invalid = lit & !total.lt(l.constant(RADIANCE_TOTAL_LIMIT));
+    let mut added = lit;
+    let invalid = is_invalid.bits();
     if invalid != 0 {
-        stats.rejected += u64::from(invalid.count_ones());
+        stats.rejected += u64::from((invalid & packet.blocks.busy).count_ones());
+        added = lit & !is_invalid;
     }
-    let added = lit & is_valid;
     let mut add = |channel: usize, x: L::F| {
         let sum = &mut packet.blocks.sums[channel];
         *sum = *sum + l.keep(added, l.fixed_point(x));

@@ -1,10 +1,10 @@
 //! The random numbers of a path.
 
-use super::{Packet, is_small};
+use super::Packet;
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, is_idle, unit_float};
+use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::numbers;
 
 /// The numbers for a packet's next rays.
@@ -12,11 +12,7 @@ use crate::render_cpu::rng::numbers;
 pub(super) struct Draw<L: Lanes> {
     /// For a direction, or for a point on the lens.
     pub pair: [L::F; 2],
-    /// Sine of the second number of the pair, in turns.
-    pub sine: L::F,
-    /// Cosine of the second number of the pair, in turns.
-    pub cosine: L::F,
-    /// For the point in the pixel when the pair is used for the lens.
+    /// For the point in the pixel when the pair is used for the lens; otherwise not set.
     pub jitter: [L::F; 2],
 }
 
@@ -26,17 +22,16 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
     l: L,
     prepared: &PreparedScene<L::Real>,
     packet: &Packet<L>,
-) -> Draw<L> {
+    to: &mut Draw<L>,
+) {
     let with_lens = has_lens::<L, PARTS>(prepared);
     let (pixel, settings) = (packet.blocks.pixel, &prepared.settings);
     let [first, second] = numbers(l, settings, pixel, packet.counter, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
-    let pair = unit(first);
-    // A ray from a pinhole needs no direction on the sphere.
-    let needs_direction = !is_small::<L, PARTS>() || with_lens || !is_idle::<L>(!packet.ended);
-    let (sine, cosine) = if needs_direction { l.sin_cos_turns(pair[1]) } else { (pair[0], pair[0]) };
-    let jitter = if with_lens { unit(second) } else { packet.draw.jitter };
-    Draw { pair, sine, cosine, jitter }
+    to.pair = unit(first);
+    if with_lens {
+        to.jitter = unit(second);
+    }
 }
 
 /// Whether rays start on a lens.

@@ -2,12 +2,16 @@
 //!
 //! Each lane traces one pixel at a time. When a path ends, the lane starts the pixel's next sample immediately. When
 //! its block of samples is done, the lane is refilled with the next (block, pixel) of the tile, so a packet never waits
-//! for its longest path. A lane's sums stay in 32-bit registers until its block is done. Several packets take turns in
-//! three phases (intersect, collect, send on), so that the latency of one hides behind the others; in small
-//! kernels with one lane, the last two phases are one.
+//! for its longest path. A lane's sums stay in 32-bit registers until its block is done.
+//!
+//! Several packets take turns in three phases (intersect, collect, send on), so that the latency of one hides behind the
+//! others; in small kernels with one lane, the last two phases are one. A processor looks only a few hundred instructions
+//! ahead, so a phase is fast if it is short and consists of several chains that do not wait for each other. That is why
+//! hit points and random numbers are found together in one phase, and sines and the angles of glass in another.
 //!
 //! Twin: shaders/path.wgsl
 
+mod arrive;
 mod collect;
 mod draw;
 mod records;
@@ -27,8 +31,7 @@ use super::work::{LaneBlocks, TileStats, Work};
 use crate::kernel::{LoadShading, parts};
 use crate::prepared::PreparedScene;
 use crate::stages::SurfaceRule;
-use collect::collect;
-use draw::Draw;
+use collect::{Collected, collect};
 use records::HitRecords;
 use send::send_on;
 
@@ -54,9 +57,6 @@ struct Packet<L: Lanes> {
     screen: [L::F; 2],
     /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and does not count as a ray.
     absorbed: L::M,
-    /// Lanes whose path ends here; their next ray starts at the camera.
-    ended: L::M,
-    draw: Draw<L>,
     blocks: LaneBlocks<L>,
 }
 
@@ -77,8 +77,6 @@ impl<L: Lanes> Packet<L> {
             stream: nought,
             screen: [zero; 2],
             absorbed: l.mask(0),
-            ended: l.mask(0),
-            draw: Draw { pair: [zero; 2], sine: zero, cosine: zero, jitter: [zero; 2] },
             blocks: LaneBlocks::none(l),
         }
     }
@@ -94,9 +92,10 @@ pub fn trace<L: Lanes, const PARTS: u32>(
     let mut packets: [Packet<L>; PACKETS] =
         [Packet::idle(l), Packet::idle(l), Packet::idle(l), Packet::idle(l)];
     let packets = if is_small::<L, PARTS>() { &mut packets[..SINGLE_RAYS] } else { &mut packets[..] };
+    let mut collected = [Collected::nothing(l); PACKETS];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    shade::<L, PARTS>(l, broadcast, packets, work, &mut stats);
+    shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, &mut stats);
     loop {
         let mut busy = 0;
         for packet in &mut *packets {
@@ -107,7 +106,7 @@ pub fn trace<L: Lanes, const PARTS: u32>(
             return stats;
         }
         stats.offered_lanes += (packets.len() * L::WIDTH) as u64;
-        shade::<L, PARTS>(l, broadcast, packets, work, &mut stats);
+        shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, &mut stats);
     }
 }
 
@@ -123,21 +122,23 @@ fn shade<L: Lanes, const PARTS: u32>(
     l: L,
     broadcast: &BroadcastScene<L::Real>,
     packets: &mut [Packet<L>],
+    collected: &mut [Collected<L>],
     work: &mut Work,
     stats: &mut TileStats,
 ) {
     if is_small::<L, PARTS>() {
         for packet in packets {
-            collect::<L, PARTS>(l, broadcast, packet, work, stats);
-            send_on::<L, PARTS>(l, broadcast, packet);
+            let mut collected = Collected::nothing(l);
+            collect::<L, PARTS>(l, broadcast, packet, work, stats, &mut collected);
+            send_on::<L, PARTS>(l, broadcast, packet, &collected);
         }
         return;
     }
-    for packet in &mut *packets {
-        collect::<L, PARTS>(l, broadcast, packet, work, stats);
+    for (packet, collected) in packets.iter_mut().zip(&mut *collected) {
+        collect::<L, PARTS>(l, broadcast, packet, work, stats, collected);
     }
-    for packet in packets {
-        send_on::<L, PARTS>(l, broadcast, packet);
+    for (packet, collected) in packets.iter_mut().zip(collected) {
+        send_on::<L, PARTS>(l, broadcast, packet, collected);
     }
 }
 
@@ -163,12 +164,12 @@ fn intersect<L: Lanes, const PARTS: u32>(
         let t_min = l.constant(t_min);
         for sphere in broadcast.opaque.iter().chain(&broadcast.two_root) {
             let sphere = Spheres::load(l, sphere);
-            nearest.take(book_root(l, rays, &sphere, t_min), sphere.number);
+            nearest.take(l, book_root(l, rays, &sphere, t_min), sphere.number);
         }
     } else {
         for sphere in &broadcast.opaque {
             let sphere = Spheres::load(l, sphere);
-            nearest.take(near_root(l, rays, &sphere), sphere.number);
+            nearest.take(l, near_root(l, rays, &sphere), sphere.number);
         }
         match &prepared.hierarchy {
             Some(hierarchy) if PARTS & parts::HIERARCHY != 0 => {
@@ -179,7 +180,7 @@ fn intersect<L: Lanes, const PARTS: u32>(
             _ if PARTS & parts::GLASS != 0 => {
                 for sphere in &broadcast.two_root {
                     let sphere = Spheres::load(l, sphere);
-                    nearest.take(nearest_root(l, rays, &sphere), sphere.number);
+                    nearest.take(l, nearest_root(l, rays, &sphere), sphere.number);
                 }
                 take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
             }
@@ -203,7 +204,7 @@ fn take_anchored<L: Lanes, const PARTS: u32>(
     let one = l.splat_u(1);
     let mut number = l.splat_u((prepared.opaque.len() + prepared.two_root.len()) as u32);
     for sphere in &prepared.anchored {
-        nearest.take(anchored_root(l, rays, sphere, number), number);
+        nearest.take(l, anchored_root(l, rays, sphere, number), number);
         number = number + one;
     }
 }

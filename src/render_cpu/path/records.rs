@@ -2,6 +2,7 @@
 
 use super::{Packet, is_small};
 use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, NONE, RECORD_COLUMNS, parts};
+use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, Unsigned, V3, rows_of};
 
@@ -21,10 +22,7 @@ impl<L: Lanes> HitRecords<L> {
         let with_anchored = PARTS & parts::EXTREMES != 0 && prepared.features.anchored;
         let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
         let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
-        // With one lane there are no such rows. The general kernel asks all the same: compiled without the question, it
-        // takes 1.07 times as long on the book.
-        if !is_small::<L, PARTS>() && prepared.records.len() <= L::PERMUTED_ROWS {
-            // The records are few enough that a column fits a register.
+        if is_permuted::<L, PARTS>(prepared) {
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
                     for (column, number) in loaded.iter_mut().enumerate() {
@@ -50,6 +48,15 @@ impl<L: Lanes> HitRecords<L> {
         }
         HitRecords { groups }
     }
+}
+
+/// Whether the records are so few that a column fits a register. An instruction then loads a field of all lanes, and to
+/// load it again costs less than to keep it.
+#[inline(always)]
+pub(super) fn is_permuted<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::Real>) -> bool {
+    // With one lane there are no such columns. The general kernel asks all the same: compiled without the question, it
+    // takes 1.07 times as long on the book.
+    !is_small::<L, PARTS>() && prepared.records.len() <= L::PERMUTED_ROWS
 }
 
 impl<L: Lanes> Columns<L::Real> for HitRecords<L> {

@@ -1,6 +1,6 @@
 //! One path, ray by ray, traced by the packets' code.
 
-use super::{Packet, intersect, parts, shade};
+use super::{Collected, Packet, intersect, parts, shade};
 use crate::kernel::Real;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
@@ -22,6 +22,7 @@ impl<L: Lanes> SinglePath<L> {
             l,
             broadcast,
             std::slice::from_mut(&mut packet),
+            &mut [Collected::nothing(l)],
             work,
             &mut TileStats::default(),
         );
@@ -61,7 +62,8 @@ impl<L: Lanes> SinglePath<L> {
         let (mut sphere, mut distance) = (WideU::default(), Wide::default());
         L::store_u(self.packet.nearest.sphere, &mut sphere);
         L::store(self.packet.nearest.distance(), &mut distance);
-        shade::<L, { parts::ALL }>(l, broadcast, std::slice::from_mut(&mut self.packet), work, &mut stats);
+        let packets = std::slice::from_mut(&mut self.packet);
+        shade::<L, { parts::ALL }>(l, broadcast, packets, &mut [Collected::nothing(l)], work, &mut stats);
         (sphere.0[0], distance.0[0].to_f64())
     }
 }
