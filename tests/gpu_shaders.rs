@@ -147,8 +147,8 @@ fn words_are_those_of_the_fields() {
     };
     let record = ShadingRecord {
         curvature: 4.0,
-        weight: 8.0,
-        radius: 9.0,
+        radius: 8.0,
+        weight: 9.0,
         refraction_index: 10.0,
         inverse_index: 11.0,
         f0: 12.0,

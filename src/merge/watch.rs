@@ -237,6 +237,30 @@ mod tests {
     }
 
     #[test]
+    fn a_part_that_could_not_be_read_at_first_is_added_though_its_file_looks_the_same() {
+        for has_memory in [true, false] {
+            let (_directory, plan) = planned();
+            save(&plan, "part-0.exr", 7..30);
+            let path = plan.beside("part-0.exr");
+            let (bytes, changed) =
+                (std::fs::read(&path).unwrap(), std::fs::metadata(&path).unwrap().modified().unwrap());
+            let put = |bytes: &[u8]| {
+                std::fs::write(&path, bytes).unwrap();
+                let file = std::fs::File::options().write(true).open(&path).unwrap();
+                file.set_modified(changed).unwrap();
+            };
+            put(&vec![0; bytes.len()]);
+            let mut watched = Watched::new(&plan).unwrap();
+            assert!(watched.look() && watched.sum.whole() == 0);
+            put(&bytes);
+            let copy = watched.copy().filter(|_| has_memory);
+            assert_eq!(watched.so_far(copy, |sum| sum.whole()).unwrap(), 1);
+            watched.look();
+            assert!(watched.sum.film() == &film(&plan, 7..30), "{has_memory}");
+        }
+    }
+
+    #[test]
     fn the_first_picture_is_due_at_once_and_the_next_after_the_pause() {
         let is_due = |since: Option<u64>| is_due(since.map(Duration::from_secs), Duration::from_secs(60));
         assert_eq!(

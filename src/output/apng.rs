@@ -92,3 +92,25 @@ fn pixels_of(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, OutputError> {
     png::read_pixels(BufReader::new(file), size)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::File;
+
+    #[test]
+    fn a_time_without_a_denominator_is_in_hundredths_of_a_second() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("other.png");
+        for (written, read) in [([4, 0], [4, 100]), ([4, 25], [4, 25])] {
+            let mut encoder = ::png::Encoder::new(File::create(&path).unwrap(), 1, 1);
+            encoder.set_animated(1, 0).unwrap();
+            encoder.set_frame_delay(written[0], written[1]).unwrap();
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_image_data(&[0]).unwrap();
+            writer.finish().unwrap();
+            let rate = FrameRate { frames: read[1], seconds: read[0] };
+            assert_eq!(animation_in(&path), Some((1, Some(rate))), "{written:?}");
+        }
+    }
+}

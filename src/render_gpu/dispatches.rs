@@ -348,6 +348,31 @@ mod tests {
     use super::*;
 
     #[test]
+    fn each_step_of_caution_makes_dispatches_eight_times_shorter() {
+        let turns = |turn_limit: u32, aside: bool| {
+            [0, 1, 2, 3].map(|caution| {
+                let dispatches = Dispatches {
+                    slots: Vec::new(),
+                    under_way: VecDeque::new(),
+                    last_done: Instant::now(),
+                    budgets: HashMap::new(),
+                    target: Duration::ZERO,
+                    turn_limit,
+                    caution,
+                    shortfall: None,
+                    count: 0,
+                    time: Duration::ZERO,
+                };
+                dispatches.turn_limit(&Features { aside, ..Features::default() })
+            })
+        };
+        assert_eq!(turns(5120, true), [5120, 640, 80, 10]);
+        assert_eq!(turns(100, true), [100, 12, 1, 1]);
+        // A kernel that cannot put paths aside has to trace them to their ends.
+        assert_eq!(turns(5120, false), [5120; 4]);
+    }
+
+    #[test]
     fn each_tile_has_a_workgroup() {
         for count in [1, GROUPS_ACROSS, GROUPS_ACROSS + 1, 3 * GROUPS_ACROSS - 1, 1 << 22] {
             let [x, y] = groups(count);

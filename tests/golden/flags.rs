@@ -118,7 +118,7 @@ const COMMANDS: &[(&str, &[&str])] = &[
             "--samples 7",
             "--sampler independent",
             "--isa portable",
-            "--threads 1",
+            "--threads 1000",
             "--adapter some",
             "--runs 2",
             "--run-limit .5",

@@ -39,6 +39,27 @@ fn layers_too_thin_for_single_precision_are_told() {
     assert!(one.len() == 1 && !one[0].contains("in all"), "{one:?}");
 }
 
+/// The distance counts, so a camera that moves can bring a warning and take it away.
+#[test]
+fn warnings_are_those_of_the_camera_even_if_the_hierarchy_is_kept() {
+    let mut balls: Vec<_> = (0..30)
+        .map(|i| (DVec3::new(f64::from(i % 6) - 3.0, -2.0, -f64::from(i / 6)), 0.3, lambertian(0.5)))
+        .collect();
+    balls.extend([(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::ZERO, 1.0 - 1e-4, glass(1.0 / 1.5))]);
+    let scene = scene(&balls);
+    let camera = |z: f64| Camera { look_from: DVec3::Z * z, look_at: DVec3::ZERO, ..Camera::BOOK };
+    let near = job(&scene, camera(4.0), size(2, 2));
+    let mut prepared = PreparedScene::<f32>::new(&near);
+    let mut before = near.clone();
+    for (z, count) in [(4.0, 0), (1000.0, 1), (4.0, 0)] {
+        let job = near.seen_by(camera(z), size(2, 2)).unwrap();
+        assert!(prepared.follow(&before, &job), "{z}");
+        assert_eq!(prepared.warnings().len(), count, "{z}: {:?}", prepared.warnings());
+        assert_eq!(prepared.warnings(), PreparedScene::<f32>::new(&job).warnings(), "{z}");
+        before = job;
+    }
+}
+
 /// How thin a layer may be: prints it, and checks thicknesses without a warning.
 #[test]
 fn layers_without_a_warning_are_right() {

@@ -45,6 +45,17 @@ fn materials_are_named_or_inline() {
 }
 
 #[test]
+fn an_inline_material_takes_no_name_that_is_in_use() {
+    let inline =
+        ONE_SPHERE.replace("material = \"ball\"", "material = { kind = \"metal\", albedo = [1, 0.5, 0] }");
+    let named = "[materials]\n\"sphere-0\" = { kind = \"dielectric\", refraction_index = 1.5 }\n\"sphere-0*\" = { kind = \"dielectric\", refraction_index = 2 }\n[materials.ball]";
+    let recipe = parse(&inline.replace("[materials.ball]", named), "inline").expect("valid");
+    let names: Vec<&str> = recipe.scene.materials.iter().map(|named| named.name.as_str()).collect();
+    assert_eq!(names, ["sphere-0", "sphere-0*", "ball", "sphere-0**"]);
+    assert_eq!(recipe.scene.spheres[0].material, 3);
+}
+
+#[test]
 fn materials_keep_their_order() {
     let text = format!(
         "{CAMERA}[materials.zinc]\nkind = \"metal\"\nalbedo = [1, 1, 1]\n\

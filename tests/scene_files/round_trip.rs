@@ -1,7 +1,8 @@
 //! What is written is read back to the bit.
 
-use super::common::{CAMERA, assert_round_trip};
+use super::common::{CAMERA, ONE_SPHERE, assert_round_trip};
 use std::path::Path;
+use std::sync::Arc;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{load, parse, to_picture_toml, to_toml};
 use weekender::render::{RenderSettings, SamplerKind, SettingValue};
@@ -57,6 +58,16 @@ fn every_setting_is_read_back() {
     }
 }
 
+/// TOML allows some of them only as escapes.
+#[test]
+fn names_with_control_characters_are_read_back() {
+    let mut recipe = parse(ONE_SPHERE, "x").expect("valid");
+    for name in ["\u{7f}", "\u{80}\u{9f}", "\0\t\n\r\u{1f}", "\"\\\u{7f}\\\""] {
+        Arc::make_mut(&mut recipe.scene).materials[0].name = name.to_owned();
+        assert_round_trip(&recipe);
+    }
+}
+
 /// The text of a large scene stays readable, with one line per sphere.
 #[test]
 fn large_scenes_are_written_compactly() {
@@ -81,7 +92,7 @@ fn a_picture_names_a_large_field_and_restores_it() {
     assert_eq!(parse(&text, "field:20000").expect("valid"), field);
     // A changed field is listed sphere by sphere.
     let mut changed = field.clone();
-    std::sync::Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
+    Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
     assert_eq!(parse(&to_picture_toml(&changed), "field:20000").expect("valid"), changed);
     assert!(to_picture_toml(&changed).len() > 1_000_000);
 

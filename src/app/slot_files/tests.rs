@@ -386,3 +386,24 @@ fn that_nothing_can_be_written_is_told_of_once() {
     keeper.finish(&slots);
     assert_eq!(found_in(&folder).0.len(), 2);
 }
+
+#[test]
+fn a_failure_after_a_success_is_told_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let (folder, context, mut slots) = (folder(&directory), Context::default(), two_slots());
+    std::fs::write(folder.path(), "in the way").unwrap();
+    let mut keeper = Keeper::new(folder.clone(), u64::MAX);
+    keeper.follow(&context, &slots);
+    assert!(news(&keeper).2.is_some() && news(&keeper).2.is_none());
+    std::fs::remove_file(folder.path()).unwrap();
+    *slots.name_mut(ONE).unwrap() = "another name".to_owned();
+    keeper.follow(&context, &slots);
+    assert!(news(&keeper).1 && news(&keeper).1);
+    std::fs::remove_dir_all(folder.path()).unwrap();
+    std::fs::write(folder.path(), "in the way").unwrap();
+    let third = Slot { name: "third".to_owned(), kept: Arc::new(kept(of_stage("metal"), 2)) };
+    slots.put(SlotNumber::ALL[2], third);
+    keeper.follow(&context, &slots);
+    let words = news(&keeper).2;
+    assert!(words.as_ref().is_some_and(|words| words.starts_with("Slot 3 (third) will not")), "{words:?}");
+}
