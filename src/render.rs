@@ -325,6 +325,12 @@ pub trait Renderer: Send {
     /// [`RenderError::Backend`] if the backend cannot render this job; [`RenderError::Cancelled`] if it was cancelled.
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
+    /// Estimates how long a sample of every pixel of the prepared job takes, by tracing some that it drops: `film` has
+    /// the job's size and stays as it is. In long passes a sample takes less. `None` from a renderer that cannot tell.
+    fn try_out(&mut self, _film: &mut Film, _cancel: &AtomicBool) -> Option<Duration> {
+        None
+    }
+
     /// Adds samples `range` of every pixel to `film` and records them there. Prepares the job if necessary.
     ///
     /// Checks `cancel` between small units of work.

@@ -30,6 +30,17 @@ impl PassSizer {
         PassSizer { length: samples.clamp(self.smallest, LENGTH_LIMIT), ..self }
     }
 
+    /// Begins with a pass of about `target` at an estimated time per sample.
+    pub fn estimated(&mut self, per_sample: Duration, target: Duration) {
+        let wanted = largest_power_of_two(target.as_secs_f64(), per_sample.as_secs_f64());
+        self.length = wanted.clamp(self.smallest, LENGTH_LIMIT);
+    }
+
+    /// Whether the speed is unknown: no pass has been measured.
+    pub fn is_new(&self) -> bool {
+        self.seconds_per_sample.is_none()
+    }
+
     /// Forgets the measured times, because another backend has a different speed.
     pub fn restart(&mut self) {
         self.length = self.smallest;

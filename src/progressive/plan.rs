@@ -71,6 +71,14 @@ impl Plan {
         Plan::until(Stop::default())
     }
 
+    /// The duration for which the first pass can be planned, once it is known how long a sample takes. `None` if passes
+    /// should begin short: because someone watches, or because the error is to be estimated early.
+    pub fn first_pass_target(&self) -> Option<Duration> {
+        let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
+        let limit = self.stop.time_limit().unwrap_or(Duration::MAX);
+        is_long.then(|| self.pass_target.min(limit))
+    }
+
     /// The samples that every pixel should hold.
     pub fn range(&self) -> Range<u64> {
         self.first_sample..self.stop.samples.unwrap_or(SAMPLE_LIMIT)

@@ -1,4 +1,5 @@
-//! A pass over a film: its tiles are traced by all threads, and a pass that breaks off is taken away again.
+//! A pass over a film: its tiles are traced by all threads, and a pass that breaks off is taken away again. A trial
+//! traces a few tiles to learn how long a pass will take.
 
 use super::broadcast::BroadcastScene;
 use super::kernels::Kernel;
@@ -11,6 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 
 /// A job's prepared scene and kernel in one of the two precisions.
 pub(super) enum Prepared {
@@ -24,8 +26,24 @@ pub(super) struct Pass<'a> {
     pub side: u32,
     pub range: &'a Range<u64>,
     pub cancel: &'a AtomicBool,
-    /// If set, the pass subtracts blocks from the film instead of adding all: the number of blocks by tile.
-    pub taken_away: Option<&'a [u64]>,
+    pub purpose: Purpose<'a>,
+}
+
+/// What a pass does with the sums of its blocks.
+#[derive(Clone, Copy)]
+pub(super) enum Purpose<'a> {
+    /// Adds them to the film.
+    Add,
+    /// Subtracts the first blocks of each tile from the film: how many, by tile.
+    TakeAway(&'a [u64]),
+    /// Drops them, and traces only some of the tiles.
+    Try,
+}
+
+/// Whether a trial traces tile `number`: it takes one of sixteen, spread over the picture, and at least one.
+fn is_tried(number: usize, tile_count: usize) -> bool {
+    const STRIDE: usize = 16;
+    number % STRIDE == tile_count.min(STRIDE) / 2
 }
 
 /// The outcome of tracing a tile.
@@ -37,6 +55,14 @@ pub(super) struct TracedTile {
     pub expected: u64,
     /// The message of the tracer's panic, if it panicked.
     pub panic: Option<String>,
+    /// The time that it took a thread.
+    pub took: Duration,
+}
+
+impl TracedTile {
+    fn is_whole(&self) -> bool {
+        self.panic.is_none() && self.finished == self.expected
+    }
 }
 
 /// What traces passes.
@@ -62,8 +88,18 @@ impl PassTracer<'_> {
     pub fn take_away(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
         let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
         let never = AtomicBool::new(false);
-        let again = self.trace(Pass { taken_away: Some(&added), cancel: &never, ..pass }, film);
+        let again = self.trace(Pass { purpose: Purpose::TakeAway(&added), cancel: &never, ..pass }, film);
         again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added)
+    }
+
+    /// Estimates the time of a pass from some of its tiles; `None` if one of them failed. The film stays as it is.
+    pub fn try_out(&self, pass: Pass, film: &mut Film) -> Option<Duration> {
+        let tile_count = film.width().div_ceil(pass.side) * film.height().div_ceil(pass.side);
+        let traced = self.trace(Pass { purpose: Purpose::Try, ..pass }, film);
+        let share = traced.len() as f64 / f64::from(tile_count);
+        let took: Duration = traced.iter().map(|tile| tile.took).sum();
+        let is_whole = !traced.is_empty() && traced.iter().all(TracedTile::is_whole);
+        is_whole.then(|| took.div_f64(share * self.threads.current_num_threads() as f64))
     }
 
     fn trace_with<R: Real>(
@@ -75,7 +111,12 @@ impl PassTracer<'_> {
     ) -> Vec<TracedTile> {
         let settings = &prepared.prepared.settings;
         let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
-        let tiles = tiles(film.halves_mut(), settings.width, pass.side);
+        let mut tiles = tiles(film.halves_mut(), settings.width, pass.side);
+        if let Purpose::Try = pass.purpose {
+            let count = tiles.len();
+            let tried = tiles.into_iter().enumerate().filter(|(number, _)| is_tried(*number, count));
+            tiles = tried.map(|(_, tile)| tile).collect();
+        }
         let mut orders: Vec<RefillOrder> = Vec::new();
         for tile in &tiles {
             if !orders.iter().any(|order| order.size() == tile.size()) {
@@ -87,21 +128,25 @@ impl PassTracer<'_> {
             let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
             let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
             let expected = work.expected();
-            if let Some(taken_away) = pass.taken_away {
-                work = work.taking_away(taken_away[index]);
-            } else if self.is_to_panic() {
-                work = work.sabotaged();
+            match pass.purpose {
+                Purpose::Add if self.is_to_panic() => work = work.sabotaged(),
+                Purpose::Add => {}
+                Purpose::TakeAway(added) => work = work.taking_away(added[index]),
+                Purpose::Try => work = work.taking_away(0),
             }
-            let mut traced = TracedTile { stats: TileStats::default(), finished: 0, expected, panic: None };
+            let (stats, took) = (TileStats::default(), Duration::ZERO);
+            let mut traced = TracedTile { stats, finished: 0, expected, panic: None, took };
             if pass.cancel.load(Ordering::Relaxed) {
                 return traced;
             }
+            let begin = Instant::now();
             // After a panic `work` is still consistent: the sums that it counts are in the film.
             match catch_unwind(AssertUnwindSafe(|| kernel(prepared, &mut work))) {
                 Ok(stats) => traced.stats = stats,
                 Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
             }
             traced.finished = work.finished();
+            traced.took = begin.elapsed();
             traced
         };
         self.threads.install(|| tiles.into_par_iter().enumerate().map(trace_tile).collect())
@@ -114,7 +159,7 @@ impl PassTracer<'_> {
 
 /// Describes the first tile that lacks samples, and why; `None` if the pass is complete.
 pub(super) fn what_is_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
-    let index = traced.iter().position(|tile| tile.panic.is_some() || tile.finished != tile.expected)?;
+    let index = traced.iter().position(|tile| !tile.is_whole())?;
     let TracedTile { finished, expected, panic, .. } = &traced[index];
     let columns = width.div_ceil(side) as usize;
     let (x, y) = (index % columns * side as usize, index / columns * side as usize);
@@ -129,8 +174,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_trial_needs_few_tiles() {
+        for (tile_count, expected) in
+            [(0, vec![]), (1, vec![0]), (6, vec![3]), (16, vec![8]), (91, vec![8, 24, 40, 56, 72, 88])]
+        {
+            let tried: Vec<usize> = (0..tile_count).filter(|number| is_tried(*number, tile_count)).collect();
+            assert_eq!(tried, expected, "of {tile_count}");
+        }
+    }
+
+    #[test]
     fn a_tile_without_all_its_samples_is_named_by_its_corner() {
-        let tile = |finished| TracedTile { stats: TileStats::default(), finished, expected: 9, panic: None };
+        let (stats, took) = (TileStats::default(), Duration::ZERO);
+        let tile = |finished| TracedTile { stats, finished, expected: 9, panic: None, took };
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
         let told = what_is_missing(&traced, 8, 20).expect("samples are missing");

@@ -4,7 +4,7 @@ use super::broadcast::BroadcastScene;
 use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
-use super::pass::{Pass, PassTracer, Prepared, TracedTile, what_is_missing};
+use super::pass::{Pass, PassTracer, Prepared, Purpose, TracedTile, what_is_missing};
 use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
@@ -183,6 +183,13 @@ impl Renderer for CpuRenderer {
         self.packets.map(|_| self.occupancy.clone())
     }
 
+    fn try_out(&mut self, film: &mut Film, cancel: &AtomicBool) -> Option<Duration> {
+        let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
+        let count = film.halves().len() as u64;
+        let pass = Pass { side, range: &(0..count), cancel, purpose: Purpose::Try };
+        Some(self.pass_tracer()?.try_out(pass, film)? / count as u32)
+    }
+
     fn accumulate(
         &mut self,
         job: &RenderJob,
@@ -197,13 +204,11 @@ impl Renderer for CpuRenderer {
         }
         let start = Instant::now();
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
-        let pass = Pass { side, range: &range, cancel, taken_away: None };
-        let prepared = self.prepared.as_ref().ok_or_else(|| RenderError::Backend {
+        let pass = Pass { side, range: &range, cancel, purpose: Purpose::Add };
+        let tracer = self.pass_tracer().ok_or_else(|| RenderError::Backend {
             backend: self.info().name,
             reason: "no scene is prepared".to_owned(),
         })?;
-        let tracer =
-            PassTracer { threads: &self.threads, prepared, tiles_to_panic: self.tiles_to_panic.as_ref() };
         let traced = tracer.trace(pass, film);
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
@@ -235,6 +240,11 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
+    fn pass_tracer(&self) -> Option<PassTracer<'_>> {
+        let prepared = self.prepared.as_ref()?;
+        Some(PassTracer { threads: &self.threads, prepared, tiles_to_panic: self.tiles_to_panic.as_ref() })
+    }
+
     fn wanted_parts<R: Real>(&self, prepared: &PreparedScene<R>) -> u32 {
         if self.general { parts::ALL } else { prepared.features.parts() }
     }
@@ -329,6 +339,22 @@ mod tests {
         renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
         assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
         assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
+    }
+
+    #[test]
+    fn a_trial_tells_a_time_and_adds_nothing() {
+        let (job, never) = (small("three-spheres"), AtomicBool::new(false));
+        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
+        let mut film = job.new_film();
+        assert_eq!(renderer.try_out(&mut film, &never), None, "nothing is prepared");
+        renderer.prepare(&job, &never).expect("prepared");
+        assert!(renderer.try_out(&mut film, &never).is_some_and(|time| time > Duration::ZERO));
+        assert_eq!(renderer.try_out(&mut film, &AtomicBool::new(true)), None, "it was cancelled");
+        assert!(film == job.new_film());
+        renderer.accumulate(&job, 0..4, &mut film, &never).expect("traced");
+        let before = film.clone();
+        assert!(renderer.try_out(&mut film, &never).is_some());
+        assert!(film == before);
     }
 
     #[cfg(target_os = "linux")]

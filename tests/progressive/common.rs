@@ -27,6 +27,8 @@ pub struct Fake {
     pub preparation: Duration,
     /// What it says after every pass.
     pub message: Option<&'static str>,
+    /// How long it says that a sample takes, before its first pass.
+    pub trial: Option<Duration>,
 }
 
 impl Fake {
@@ -39,6 +41,7 @@ impl Fake {
             panics_at: None,
             preparation: Duration::ZERO,
             message: None,
+            trial: None,
         }
     }
 }
@@ -60,6 +63,10 @@ impl Renderer for Fake {
     fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
         std::thread::sleep(self.preparation);
         Ok(())
+    }
+
+    fn try_out(&mut self, _: &mut Film, _: &AtomicBool) -> Option<Duration> {
+        self.trial
     }
 
     fn accumulate(

@@ -23,6 +23,40 @@ fn a_plan_of_samples_is_met_exactly() {
     assert_eq!(progressive.finish(), Some(expected(200)));
 }
 
+/// The samples in the film at the end of each pass that reaches another power of two.
+fn history(trial: Option<Duration>, plan: Plan) -> Vec<u64> {
+    let factory = move |choice: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
+        Ok(Box::new(Fake { trial, pause: Duration::ZERO, ..Fake::new(choice.name()) }))
+    };
+    let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, plan));
+    let status = progressive.wait_until_over();
+    assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+    status.history.iter().map(|point| point.samples_per_pixel).collect()
+}
+
+#[test]
+fn the_first_pass_is_as_long_as_the_others_where_nobody_watches() {
+    let trial = |milliseconds| Some(Duration::from_millis(milliseconds));
+    let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
+    let samples = batch(Stop::at_samples(200));
+    let doubling = [2, 4, 8, 16, 32, 64, 128];
+    // 900 ms have room for 900, 90 and 9 samples, and for less than the two that a pass has at least.
+    assert_eq!(history(trial(1), samples.clone()), [128]);
+    assert_eq!(history(trial(10), samples.clone()), [64, 128]);
+    assert_eq!(history(trial(100), samples.clone()), [8, 16, 32, 64, 128]);
+    assert_eq!(history(trial(10_000), samples.clone()), doubling);
+    assert_eq!(history(Some(Duration::ZERO), samples.clone()), [128]);
+    assert_eq!(history(None, samples), doubling, "the renderer cannot tell");
+    assert_eq!(history(trial(1), Plan::samples(200)), doubling, "someone watches");
+    // Of a time limit the first pass takes no more than there is: 20 samples.
+    let in_time = batch(Stop { seconds: Some(0.2), ..Stop::at_samples(200) });
+    assert_eq!(history(trial(10), in_time)[0], 16);
+    // It must not go far beyond a noise target.
+    let target = Stop { noise: Some(expected(64).error().unwrap().rmse), ..Stop::default() };
+    assert_eq!(history(trial(1), batch(target))[..4], [2, 4, 8, 16]);
+}
+
 #[test]
 fn pauses_lose_nothing() {
     let progressive = started(CPU, Plan::samples(1000));

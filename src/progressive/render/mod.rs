@@ -139,7 +139,7 @@ impl Render {
         let begin = Instant::now();
         let outcome = match backend {
             _ if !self.is_prepared => self.prepare(backend, factory, begin),
-            Some((_, renderer)) => self.pass(renderer.as_mut(), is_picture_wanted, begin),
+            Some((_, renderer)) => self.pass(renderer.as_mut(), is_picture_wanted),
             None => Ok(()),
         };
         self.status.elapsed += begin.elapsed();
@@ -161,12 +161,7 @@ impl Render {
         self.sizer.next(&self.requested, self.plan.range(), time_left)
     }
 
-    fn pass(
-        &mut self,
-        renderer: &mut dyn Renderer,
-        is_picture_wanted: bool,
-        mut begin: Instant,
-    ) -> Result<(), RenderError> {
+    fn pass(&mut self, renderer: &mut dyn Renderer, is_picture_wanted: bool) -> Result<(), RenderError> {
         if self.meets_noise_target() {
             self.collect(renderer)?;
             // The samples that were outstanding can show that the estimate was too low.
@@ -175,13 +170,16 @@ impl Render {
                 self.end(EndReason::NoiseTarget);
                 return Ok(());
             }
-            begin = Instant::now();
+        }
+        if self.sizer.is_new() {
+            self.plan_first_pass(renderer)?;
         }
         let Some(range) = self.next_pass() else {
             self.collect(renderer)?;
             self.end_of_plan();
             return Ok(());
         };
+        let begin = Instant::now();
         let added = range.end - range.start;
         let held = self.film.sample_count();
         let outcome = guarded(self.choice.name(), || {
@@ -209,6 +207,23 @@ impl Render {
             self.collect(renderer)?;
         } else if is_picture_wanted {
             guarded(self.choice.name(), || renderer.fetch())?;
+        }
+        Ok(())
+    }
+
+    /// Makes the first pass as long as the others if nobody waits for it and the renderer can tell how long it will take.
+    fn plan_first_pass(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
+        let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
+        let gap = self.requested.first_gap(self.plan.range(), u64::MAX);
+        if gap.is_none_or(|gap| gap.end - gap.start <= self.film.halves().len() as u64) {
+            return Ok(());
+        }
+        let begin = Instant::now();
+        let outcome = guarded(self.choice.name(), || Ok(renderer.try_out(&mut self.film, &self.cancel.pass)));
+        self.status.trace += begin.elapsed();
+        if let Some(per_sample) = outcome? {
+            log::debug!("a trial: a sample takes {:.3} ms or less", per_sample.as_secs_f64() * 1e3);
+            self.sizer.estimated(per_sample, target);
         }
         Ok(())
     }
