@@ -69,7 +69,7 @@ impl<R: Real> Hierarchy<R> {
     ) -> Self {
         let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
         let spheres = Bounded::all(spheres, &origin);
-        let tree = build_tree(&spheres, LEAF_SPHERES, effort, |tree| tree, fits, cancel);
+        let tree = build_tree(&spheres, LEAF_SPHERES, effort, in_walking_order, fits, cancel);
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree
@@ -113,6 +113,20 @@ pub(super) fn build_tree<T>(
     let top_down = |halved| lay_out(parted::build(spheres, leaf_spheres as usize, halved, cancel));
     let tree = top_down(false);
     if fits(&tree) { tree } else { top_down(true) }
+}
+
+/// The tree with its nodes and spheres in the order of a walk from node to child, so that what is visited in turn lies
+/// close together in memory.
+fn in_walking_order(mut tree: Bvh2) -> Bvh2 {
+    tree.reorder_in_stack_traversal_order();
+    let mut ordered = Vec::with_capacity(tree.primitive_indices.len());
+    for node in tree.nodes.iter_mut().filter(|node| node.is_leaf()) {
+        let first = node.first_index as usize;
+        node.first_index = ordered.len() as u32;
+        ordered.extend_from_slice(&tree.primitive_indices[first..first + node.prim_count as usize]);
+    }
+    tree.primitive_indices = ordered;
+    tree
 }
 
 /// The number of nodes on the longest path from the root to a leaf.
