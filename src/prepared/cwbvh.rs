@@ -5,7 +5,7 @@
 //! than its contents.
 
 use super::bounded::Bounded;
-use super::hierarchy::{Effort, build_tree};
+use super::hierarchy::{Effort, Leaves, build_tree};
 use crate::kernel::CWBVH_STACK_SIZE;
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};
@@ -43,7 +43,8 @@ impl Cwbvh {
             Cwbvh { nodes: wide.nodes, order: wide.primitive_indices }
         };
         let fits = |built: &Cwbvh| built.depth() <= DEPTH_LIMIT;
-        let mut built = build_tree(&bounded, 1, Effort::Quick, wide, fits, &AtomicBool::new(false));
+        let mut built =
+            build_tree(&bounded, Leaves::SINGLE, Effort::Quick, wide, fits, &AtomicBool::new(false));
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         debug_assert_eq!(built.validate(&bounded), Ok(()));
