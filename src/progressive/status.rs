@@ -95,7 +95,7 @@ pub struct Status {
     pub error: Option<ErrorEstimate>,
     /// Why the estimate is doubtful, in words.
     pub doubt: Option<String>,
-    /// The error at powers of two of samples per pixel.
+    /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it.
     pub history: Vec<HistoryPoint>,
     /// Which backends have added how many samples, in order of first appearance.
     pub contributions: Vec<Contribution>,
