@@ -73,7 +73,7 @@ cluster_up "$work/cluster" 4
 said "$(sinfo --version), munge: one node with 4 slots is idle"
 
 cd "$work"
-picture=(--scene book --size 160x90 --device cpu --samples 4096)
+picture=(--scene book --size 160x90 --device cpu --samples 16384)
 start=$("$program" plan "${picture[@]}" --threads 1 --parts 8 --every 0.1s --format slurm --program "$work/weekender" \
     --out plan 2> plan.log)
 [ "$start" = "sh plan/submit.sh" ] || fail "plan prints: $start"
@@ -114,7 +114,7 @@ wait_for 30 "task 3 is cancelled" has_state "${array}_3" CANCELLED
 wait_for 30 "task 1 is queued again" was_queued_again "${array}_1"
 for part in "${ended[@]}"; do
     count=$(samples_of "$part")
-    [ "$count" -lt 512 ] || [ "$part" -eq 1 ] || fail "part $part was whole before it could be ended"
+    [ "$count" -lt 2048 ] || [ "$part" -eq 1 ] || fail "part $part was whole before it could be ended"
 done
 code=$(field "${array}_2" ExitCode)
 [ "$code" = 137:0 ] || fail "task 2 was killed, and its exit code is $code"
@@ -128,8 +128,8 @@ wait "$whole" || fail "the single run failed"
 [ "$(field "${array}_1" JobState)" = COMPLETED ] || fail "task 1 did not go on"
 expect plan/part-1.log " of them new) per pixel"
 [ "$(field "$merge_job" ExitCode)" = 1:0 ] || fail "the merge did not end with 1"
-expect plan/merge.log "part 2: part-2.exr has $(samples_of 2) of 512 samples per pixel"
-expect plan/merge.log "part 3: part-3.exr has $(samples_of 3) of 512 samples per pixel"
+expect plan/merge.log "part 2: part-2.exr has $(samples_of 2) of 2048 samples per pixel"
+expect plan/merge.log "part 3: part-3.exr has $(samples_of 3) of 2048 samples per pixel"
 expect plan/merge.log "6 of 8 parts are whole"
 said "task 1 went on from its checkpoint; the merge has the picture so far and names parts 2 and 3"
 
