@@ -109,9 +109,9 @@ impl<R: Real> Hierarchy<R> {
     }
 }
 
-/// Builds and lays out a tree over at least one sphere. obvhs builds it, unless
-/// that would take long for these spheres or its tree has more levels than a traversal supports. Once `cancel` is set, any
-/// tree that fits will do; obvhs itself cannot be interrupted.
+/// Builds and lays out a tree over at least one sphere. obvhs builds it, unless that would take long for these spheres or
+/// its tree has more levels than a traversal supports. Once `cancel` is set, any tree that fits will do; obvhs itself cannot
+/// be interrupted.
 pub(super) fn build_tree<T>(
     spheres: &[Bounded<'_, '_>],
     leaves: Leaves,
