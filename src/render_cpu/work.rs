@@ -37,6 +37,8 @@ pub struct RefillBlock {
     half: u32,
     /// The part of the sampler's keys that depends on the half.
     half_key: HalfKey,
+    /// Number of samples.
+    count: u32,
     counter: u32,
     step: u32,
     /// The counter after the last sample.
@@ -53,6 +55,7 @@ impl RefillBlock {
                 RefillBlock {
                     half: block.half,
                     half_key: HalfKey::new(settings, block.half),
+                    count: block.count,
                     counter,
                     step,
                     end: counter.wrapping_add(step.wrapping_mul(block.count)),
@@ -65,6 +68,8 @@ impl RefillBlock {
 /// What a packet's lanes work on: a block of samples of a pixel each.
 #[derive(Clone, Copy)]
 pub struct LaneBlocks<L: Lanes> {
+    /// The sampler's counter, which selects the sample.
+    pub counter: L::U,
     /// The increment of the counter.
     pub step: L::U,
     /// The counter after the block's last sample.
@@ -77,8 +82,6 @@ pub struct LaneBlocks<L: Lanes> {
     pub sums: [L::U; 3],
     /// Destination of the sums: `column | row << 16` of the tile's rows.
     slot: L::U,
-    /// Lanes that have a block, as bits. The others go on tracing, but nobody looks at what they do.
-    pub busy: u32,
 }
 
 impl<L: Lanes> LaneBlocks<L> {
@@ -86,7 +89,15 @@ impl<L: Lanes> LaneBlocks<L> {
     #[inline(always)]
     pub fn none(l: L) -> Self {
         let zero = l.splat_u(0);
-        LaneBlocks { step: zero, end: zero, key: zero, pixel: zero, sums: [zero; 3], slot: zero, busy: 0 }
+        LaneBlocks {
+            counter: zero,
+            step: zero,
+            end: zero,
+            key: zero,
+            pixel: zero,
+            sums: [zero; 3],
+            slot: zero,
+        }
     }
 }
 
@@ -186,17 +197,25 @@ impl<'film> Work<'film> {
         self
     }
 
-    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the blocks, and the lanes'
-    /// counters, which are at the first sample where there is a new block.
+    /// Steps that lanes wait for a refill, at most. A refill takes nearly as long for one lane as for several, so it pays
+    /// to wait where refills are frequent; a lane with a single sample would wait as long as it works.
+    pub fn pause(&self) -> u32 {
+        let samples: u32 = self.blocks.iter().map(|block| block.count).sum();
+        let per_block = samples.checked_div(self.blocks.len() as u32).unwrap_or(0);
+        u32::from((2..=8).contains(&per_block))
+    }
+
+    /// Collects the sums of the lanes `done` and gives each of them its next block. `busy` are the lanes that have a
+    /// block, as bits, before and after.
     #[inline(always)]
     pub fn refill<L: Lanes>(
         &mut self,
         l: L,
         done: u32,
+        busy: &mut u32,
         mut lanes: LaneBlocks<L>,
-        mut counter: L::U,
-    ) -> (LaneBlocks<L>, L::U) {
-        self.add_sums::<L>(done & lanes.busy, &lanes);
+    ) -> LaneBlocks<L> {
+        self.add_sums::<L>(done & *busy, &lanes);
         let is_done = l.mask(done);
         let [red, green, blue] = lanes.sums;
         lanes.sums = [l.keep(!is_done, red), l.keep(!is_done, green), l.keep(!is_done, blue)];
@@ -214,7 +233,7 @@ impl<'film> Work<'film> {
             lanes.step = m.select(l.splat_u(block.step), lanes.step);
             lanes.end = m.select(l.splat_u(block.end), lanes.end);
             lanes.key = m.select(rng::sampler_key(l, block.half_key, pixel), lanes.key);
-            counter = m.select(l.splat_u(block.counter), counter);
+            lanes.counter = m.select(l.splat_u(block.counter), lanes.counter);
             self.next_place += given.count_ones() as usize;
             if self.next_place == self.order.len() {
                 self.next_place = 0;
@@ -225,10 +244,10 @@ impl<'film> Work<'film> {
             // A counter that stands still before its end never asks for another block.
             let m = l.mask(idle);
             lanes.step = l.keep(!m, lanes.step);
-            lanes.end = m.select(counter + l.splat_u(1), lanes.end);
+            lanes.end = m.select(lanes.counter + l.splat_u(1), lanes.end);
         }
-        lanes.busy = (lanes.busy | done) & !idle;
-        (lanes, counter)
+        *busy = (*busy | done) & !idle;
+        lanes
     }
 
     /// Adds the sums of the lanes `done` to the film.
@@ -298,6 +317,19 @@ mod tests {
         let order = RefillOrder::new(5, 3);
         assert_eq!(order.row(0)[..5], [0, 1, 2, 3, 1 << 16]);
         assert_eq!(order.row(14)[..2], [4 | 2 << 16, 0]);
+    }
+
+    #[test]
+    fn lanes_wait_where_blocks_are_short() {
+        let settings = RenderSettings { estimate_error: true, ..RenderSettings::default() };
+        let order = RefillOrder::new(1, 1);
+        let pause = |range: std::ops::Range<u64>| {
+            let blocks = RefillBlock::of_range(range, &settings, 1 << 10);
+            Work::new(&blocks, &order, [0; 2], Vec::new()).pause()
+        };
+        // Half of the samples belong to each half of the film.
+        assert_eq!([0..2, 0..4, 0..8, 8..16, 0..16, 0..32, 0..256].map(pause), [0, 1, 1, 1, 1, 0, 0]);
+        assert_eq!(pause(0..0), 0);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
-use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle, is_wide};
 use crate::render_cpu::material::{Surface, surface_of};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
@@ -18,6 +18,8 @@ use crate::stages::Shading;
 pub(super) struct Collected<L: Lanes> {
     /// Lanes whose path ends here; their next ray starts at the camera.
     pub ended: L::M,
+    /// Lanes whose block is done and which wait to be refilled.
+    pub waiting: L::M,
     /// The numbers for the next rays.
     pub draw: Draw<L>,
     /// Where the other lanes go on.
@@ -34,6 +36,7 @@ impl<L: Lanes> Collected<L> {
         let nowhere = V3 { x: zero, y: zero, z: zero };
         Collected {
             ended: l.mask(0),
+            waiting: l.mask(0),
             draw: Draw { pair: [zero; 2], jitter: [zero; 2] },
             arrival: Arrival { position: nowhere, normal: nowhere, outward_cosine: zero, front: l.mask(0) },
             surface: Surface { weight: zero, refraction_index: zero, inverse_index: zero, f0: zero },
@@ -42,7 +45,8 @@ impl<L: Lanes> Collected<L> {
 }
 
 /// Adds the arriving light, ends paths, finds the hit points of the others, starts the next sample where a path has
-/// ended, and draws the numbers for the next rays.
+/// ended, and draws the numbers for the next rays. Lanes whose block is done are refilled only if `refills`; otherwise
+/// they wait.
 ///
 /// The hit points do not depend on the numbers. Found here, they occupy the processor while it waits for these.
 #[inline(always)]
@@ -52,6 +56,7 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     packet: &mut Packet<L>,
     work: &mut Work,
     stats: &mut TileStats,
+    refills: bool,
     collected: &mut Collected<L>,
 ) {
     let prepared = &broadcast.prepared;
@@ -66,8 +71,8 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     };
     if PARTS & parts::RULES != 0 && prepared.features.shading != Shading::Path {
         light = shade_hit::<L, PARTS>(l, broadcast, packet, miss, light);
-        lit = l.mask(u32::MAX);
-        ended = lit;
+        lit = if is_wide::<L>() { !packet.absorbed } else { l.mask(u32::MAX) };
+        ended = l.mask(u32::MAX);
     }
     if !is_idle::<L>(lit) {
         add_radiance(l, packet, lit, light, stats);
@@ -88,12 +93,17 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     }
 
     // Lanes whose path has ended go on to the next sample or the next block.
-    let next = packet.counter + packet.blocks.step;
-    packet.counter = ended.select(next, packet.counter);
-    let at_end = packet.counter.eq(packet.blocks.end);
-    let done = (ended & at_end).bits();
-    if done != 0 {
+    let next = packet.blocks.counter + packet.blocks.step;
+    let at_end = ended & next.eq(packet.blocks.end);
+    let goes_on = if is_wide::<L>() { ended & !at_end } else { ended };
+    packet.blocks.counter = goes_on.select(next, packet.blocks.counter);
+    let done = at_end.bits();
+    if is_wide::<L>() {
+        collected.waiting = at_end;
+    }
+    if done != 0 && (refills || !is_wide::<L>()) {
         enter_block(l, broadcast, packet, work, done);
+        collected.waiting = l.mask(0);
     }
     packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
     collected.ended = ended;
@@ -158,7 +168,7 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
     let mut added = lit;
     let invalid = is_invalid.bits();
     if invalid != 0 {
-        stats.rejected += u64::from((invalid & packet.blocks.busy).count_ones());
+        stats.rejected += u64::from((invalid & packet.busy).count_ones());
         added = lit & !is_invalid;
     }
     let mut add = |channel: usize, x: L::F| {
@@ -179,8 +189,7 @@ fn enter_block<L: Lanes>(
     work: &mut Work,
     done: u32,
 ) {
-    let (blocks, counter) = work.refill(l, done, packet.blocks, packet.counter);
-    (packet.blocks, packet.counter) = (blocks, counter);
-    let [x, y] = pixel_position(l, blocks.pixel);
+    packet.blocks = work.refill(l, done, &mut packet.busy, packet.blocks);
+    let [x, y] = pixel_position(l, packet.blocks.pixel);
     packet.screen = screen(l, &broadcast.camera, x, y);
 }

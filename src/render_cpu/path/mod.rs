@@ -22,7 +22,7 @@ pub use single::SinglePath;
 
 use super::broadcast::BroadcastScene;
 use super::bvh::{EMPTY_STACK, Stack, traverse};
-use super::lanes::{Float, Lanes, Mask, V3};
+use super::lanes::{Float, Lanes, Mask, V3, is_wide};
 use super::sphere::{
     NONE, Nearest, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, book_point, book_root,
     near_root, nearest_root, speck_surface_point, surface_point,
@@ -50,14 +50,15 @@ struct Packet<L: Lanes> {
     /// Squared sine of the angle between a ray inside steep glass and the normal where it starts; it is the same where
     /// the ray ends.
     sine2: L::F,
-    /// The sampler's counter, which selects the sample.
-    counter: L::U,
     /// The sampler's stream, which selects the ray of the sample.
     stream: L::U,
     screen: [L::F; 2],
-    /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and does not count as a ray.
+    /// Lanes whose path was absorbed, or which wait to be refilled. It ends at its next shading, adds nothing and does not
+    /// count as a ray.
     absorbed: L::M,
     blocks: LaneBlocks<L>,
+    /// Lanes that have a block, as bits. The others go on tracing, but nobody looks at what they do.
+    busy: u32,
 }
 
 impl<L: Lanes> Packet<L> {
@@ -73,11 +74,11 @@ impl<L: Lanes> Packet<L> {
             nearest: Nearest::nothing(l),
             throughput: nowhere,
             sine2: zero,
-            counter: nought,
             stream: nought,
             screen: [zero; 2],
             absorbed: l.mask(0),
             blocks: LaneBlocks::none(l),
+            busy: 0,
         }
     }
 }
@@ -95,18 +96,22 @@ pub fn trace<L: Lanes, const PARTS: u32>(
     let mut collected = [Collected::nothing(l); PACKETS];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, &mut stats);
+    shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, true, &mut stats);
+    let pause = if is_wide::<L>() { work.pause() } else { 0 };
+    let mut steps_left = pause;
     loop {
         let mut busy = 0;
         for packet in &mut *packets {
             intersect::<L, PARTS>(l, broadcast, packet, &mut stack, &mut stats);
-            busy |= packet.blocks.busy;
+            busy |= packet.busy;
         }
         if busy == 0 {
             return stats;
         }
         stats.offered_lanes += (packets.len() * L::WIDTH) as u64;
-        shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, &mut stats);
+        let refills = steps_left == 0;
+        steps_left = if refills { pause } else { steps_left - 1 };
+        shade::<L, PARTS>(l, broadcast, packets, &mut collected, work, refills, &mut stats);
     }
 }
 
@@ -124,18 +129,19 @@ fn shade<L: Lanes, const PARTS: u32>(
     packets: &mut [Packet<L>],
     collected: &mut [Collected<L>],
     work: &mut Work,
+    refills: bool,
     stats: &mut TileStats,
 ) {
     if is_small::<L, PARTS>() {
         for packet in packets {
             let mut collected = Collected::nothing(l);
-            collect::<L, PARTS>(l, broadcast, packet, work, stats, &mut collected);
+            collect::<L, PARTS>(l, broadcast, packet, work, stats, refills, &mut collected);
             send_on::<L, PARTS>(l, broadcast, packet, &collected);
         }
         return;
     }
     for (packet, collected) in packets.iter_mut().zip(&mut *collected) {
-        collect::<L, PARTS>(l, broadcast, packet, work, stats, collected);
+        collect::<L, PARTS>(l, broadcast, packet, work, stats, refills, collected);
     }
     for (packet, collected) in packets.iter_mut().zip(collected) {
         send_on::<L, PARTS>(l, broadcast, packet, collected);
@@ -151,10 +157,10 @@ fn intersect<L: Lanes, const PARTS: u32>(
     stack: &mut Stack,
     stats: &mut TileStats,
 ) {
-    if packet.blocks.busy == 0 {
+    if packet.busy == 0 {
         return;
     }
-    let active = packet.blocks.busy & !packet.absorbed.bits();
+    let active = packet.busy & !packet.absorbed.bits();
     stats.rays += u64::from(active.count_ones());
     let (rays, prepared) = (&packet.rays, &broadcast.prepared);
     let mut nearest = Nearest::nothing(l);

@@ -8,7 +8,7 @@ use super::{Packet, is_small};
 use crate::kernel::{EYE, NEAR_ZERO, NONE, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
-use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle, is_wide};
 use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
@@ -43,6 +43,9 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     let (direction, length2) = with_length2_or(l, direction, arrival.normal);
     // Metal absorbs a fuzzy reflection that points into the surface.
     packet.absorbed = bounced.is_metal & !l.constant(0.0).lt(direction.dot(arrival.normal)) & !ended;
+    if is_wide::<L>() {
+        packet.absorbed = packet.absorbed | collected.waiting;
+    }
     let none = l.splat_u(NONE);
     let hit = l.fill(ended, hit);
     let mut left = bounced.outward.select(hit, none);

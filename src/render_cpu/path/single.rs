@@ -24,6 +24,7 @@ impl<L: Lanes> SinglePath<L> {
             std::slice::from_mut(&mut packet),
             &mut [Collected::nothing(l)],
             work,
+            true,
             &mut TileStats::default(),
         );
         SinglePath { packet, stack: EMPTY_STACK }
@@ -31,7 +32,7 @@ impl<L: Lanes> SinglePath<L> {
 
     /// Whether there is a ray left to trace.
     pub fn is_alive(&self) -> bool {
-        self.packet.blocks.busy != 0
+        self.packet.busy != 0
     }
 
     /// Whether the path was absorbed at its last hit.
@@ -63,7 +64,15 @@ impl<L: Lanes> SinglePath<L> {
         L::store_u(self.packet.nearest.sphere, &mut sphere);
         L::store(self.packet.nearest.distance(), &mut distance);
         let packets = std::slice::from_mut(&mut self.packet);
-        shade::<L, { parts::ALL }>(l, broadcast, packets, &mut [Collected::nothing(l)], work, &mut stats);
+        shade::<L, { parts::ALL }>(
+            l,
+            broadcast,
+            packets,
+            &mut [Collected::nothing(l)],
+            work,
+            true,
+            &mut stats,
+        );
         (sphere.0[0], distance.0[0].to_f64())
     }
 }
