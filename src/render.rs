@@ -363,6 +363,27 @@ pub trait Renderer: Send {
         self.accumulate(job, range, film, cancel)
     }
 
+    /// Like [`Renderer::advance`], but if `stop` is set meanwhile, does what is quicker: finishes, or removes what it has
+    /// added. `None` if it has removed it: the film is then as it was. By default, it finishes.
+    ///
+    /// # Errors
+    /// As for [`Renderer::advance`].
+    fn advance_unless(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+        _stop: &AtomicBool,
+    ) -> Result<Option<Stats>, RenderError> {
+        self.advance(job, range, film, cancel).map(Some)
+    }
+
+    /// Whether [`Renderer::advance_unless`] heeds a stop, so that one takes at most half the time of a pass.
+    fn heeds_stop(&self) -> bool {
+        false
+    }
+
     /// Requests what has been traced so far: the next [`Renderer::advance`] adds it to the film while tracing.
     ///
     /// # Errors

@@ -7,25 +7,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(super) struct Cancel {
     /// Ends a pass, which spoils the film.
     pub pass: AtomicBool,
-    /// Ends preparing, which can begin again.
-    pub preparing: AtomicBool,
+    /// Ends preparing, which can begin again, and a pass that can be taken away more quickly than finished.
+    pub stop: AtomicBool,
 }
 
 impl Cancel {
     /// Ends whatever is going on, for good.
     pub fn abandon(&self) {
         self.pass.store(true, Ordering::Relaxed);
-        self.preparing.store(true, Ordering::Relaxed);
+        self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Ends preparing until the command to stop is obeyed.
+    /// Ends preparing and a pass until the command to stop is obeyed.
     pub fn stop(&self) {
-        self.preparing.store(true, Ordering::Relaxed);
+        self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// The command to stop is obeyed: if the render is resumed, preparing begins again.
+    /// The command to stop is obeyed: if the render is resumed, what was ended begins again.
     pub fn stop_is_obeyed(&self) {
-        self.preparing.store(self.is_abandoned(), Ordering::Relaxed);
+        self.stop.store(self.is_abandoned(), Ordering::Relaxed);
     }
 
     pub fn is_abandoned(&self) -> bool {

@@ -42,7 +42,7 @@ pub struct Plan {
     pub first_sample: u64,
     /// The stop conditions.
     pub stop: Stop,
-    /// The duration that a pass should have. Commands are obeyed between passes.
+    /// The duration that a pass should have, and the longest that a stop should take. Commands are obeyed between passes.
     pub pass_target: Duration,
     /// For a preview, the samples of its first pass, a power of two. Its pictures are smoothed as long as they have few
     /// samples.
@@ -77,6 +77,14 @@ impl Plan {
         let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
         let limit = self.stop.time_limit().unwrap_or(Duration::MAX);
         is_long.then(|| self.pass_target.min(limit))
+    }
+
+    /// The duration of the passes after the first. If a stop takes at most half of it, long passes can be twice as long.
+    pub fn later_pass_target(&self, heeds_stop: bool) -> Duration {
+        match self.first_pass_target() {
+            Some(_) if heeds_stop => 2 * self.pass_target,
+            _ => self.pass_target,
+        }
     }
 
     /// The samples that every pixel should hold.
@@ -137,6 +145,20 @@ mod tests {
             assert_eq!(limit(seconds), Some(expected), "{seconds} s");
         }
         assert_eq!(Stop::at_samples(8).time_limit(), None);
+    }
+
+    #[test]
+    fn passes_are_long_where_a_stop_is_heeded_and_nobody_watches() {
+        let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
+        let to_a_noise = Stop { noise: Some(0.1), ..Stop::default() };
+        for (plan, heeds_stop, factor) in [
+            (batch(Stop::at_samples(8)), true, 2),
+            (batch(Stop::at_samples(8)), false, 1),
+            (batch(to_a_noise), true, 1),
+            (Plan::endless(), true, 1),
+        ] {
+            assert_eq!(plan.later_pass_target(heeds_stop), factor * plan.pass_target, "{plan:?}");
+        }
     }
 
     #[test]

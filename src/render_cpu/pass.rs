@@ -11,7 +11,8 @@ use crate::render::panic_text;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// A job's prepared scene and kernel in one of the two precisions.
@@ -26,7 +27,35 @@ pub(super) struct Pass<'a> {
     pub side: u32,
     pub range: &'a Range<u64>,
     pub cancel: &'a AtomicBool,
+    /// Set if tiles need not be traced any more, provided that little has been.
+    pub stop: &'a Stop<'a>,
     pub purpose: Purpose<'a>,
+}
+
+/// Decides, when a stop is wanted, whether the tiles of a pass are finished or taken away again.
+pub(super) struct Stop<'a> {
+    wanted: &'a AtomicBool,
+    tiles_begun: AtomicUsize,
+    is_given_up: OnceLock<bool>,
+}
+
+impl<'a> Stop<'a> {
+    /// A stop that comes when `wanted` is set.
+    pub fn when(wanted: &'a AtomicBool) -> Self {
+        Stop { wanted, tiles_begun: AtomicUsize::new(0), is_given_up: OnceLock::new() }
+    }
+
+    /// Whether the pass was given up.
+    pub fn is_given_up(&self) -> bool {
+        self.is_given_up.get().copied().unwrap_or(false)
+    }
+
+    /// Whether the next of `tile_count` tiles is left out. To take a tile away is to trace it again, so a pass is given up
+    /// if fewer than half of its tiles have begun.
+    fn leaves_out(&self, tile_count: usize) -> bool {
+        let begun = self.tiles_begun.fetch_add(1, Ordering::Relaxed);
+        self.wanted.load(Ordering::Relaxed) && *self.is_given_up.get_or_init(|| 2 * begun < tile_count)
+    }
 }
 
 /// What a pass does with the sums of its blocks.
@@ -88,7 +117,8 @@ impl PassTracer<'_> {
     pub fn take_away(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
         let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
         let never = AtomicBool::new(false);
-        let again = self.trace(Pass { purpose: Purpose::TakeAway(&added), cancel: &never, ..pass }, film);
+        let (purpose, stop) = (Purpose::TakeAway(&added), &Stop::when(&never));
+        let again = self.trace(Pass { purpose, cancel: &never, stop, ..pass }, film);
         again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added)
     }
 
@@ -124,6 +154,7 @@ impl PassTracer<'_> {
                 orders.push(RefillOrder::new(width, height));
             }
         }
+        let tile_count = tiles.len();
         let trace_tile = |(index, tile): (usize, Tile)| {
             let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
             let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
@@ -136,7 +167,12 @@ impl PassTracer<'_> {
             }
             let (stats, took) = (TileStats::default(), Duration::ZERO);
             let mut traced = TracedTile { stats, finished: 0, expected, panic: None, took };
-            if pass.cancel.load(Ordering::Relaxed) {
+            let has_nothing_to_take_away =
+                matches!(pass.purpose, Purpose::TakeAway(added) if added[index] == 0);
+            if has_nothing_to_take_away
+                || pass.cancel.load(Ordering::Relaxed)
+                || pass.stop.leaves_out(tile_count)
+            {
                 return traced;
             }
             let begin = Instant::now();
@@ -180,6 +216,20 @@ mod tests {
         {
             let tried: Vec<usize> = (0..tile_count).filter(|number| is_tried(*number, tile_count)).collect();
             assert_eq!(tried, expected, "of {tile_count}");
+        }
+    }
+
+    #[test]
+    fn a_pass_is_given_up_if_fewer_than_half_of_its_tiles_have_begun() {
+        for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
+            let wanted = AtomicBool::new(false);
+            let stop = Stop::when(&wanted);
+            (0..begun).for_each(|_| assert!(!stop.leaves_out(5)));
+            assert!(!stop.is_given_up(), "nobody wanted it");
+            wanted.store(true, Ordering::Relaxed);
+            // The decision does not change when more tiles have been left out or begun.
+            (begun..5).for_each(|_| assert_eq!(stop.leaves_out(5), is_given_up, "after {begun} of 5"));
+            assert_eq!(stop.is_given_up(), is_given_up, "after {begun} of 5");
         }
     }
 

@@ -4,7 +4,7 @@ use super::broadcast::BroadcastScene;
 use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
-use super::pass::{Pass, PassTracer, Prepared, Purpose, TracedTile, what_is_missing};
+use super::pass::{Pass, PassTracer, Prepared, Purpose, Stop, TracedTile, what_is_missing};
 use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
@@ -186,7 +186,8 @@ impl Renderer for CpuRenderer {
     fn try_out(&mut self, film: &mut Film, cancel: &AtomicBool) -> Option<Duration> {
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
         let count = film.halves().len() as u64;
-        let pass = Pass { side, range: &(0..count), cancel, purpose: Purpose::Try };
+        let stop = Stop::when(cancel);
+        let pass = Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Try };
         Some(self.pass_tracer()?.try_out(pass, film)? / count as u32)
     }
 
@@ -197,6 +198,22 @@ impl Renderer for CpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
+        let never = AtomicBool::new(false);
+        Ok(self.advance_unless(job, range, film, cancel, &never)?.unwrap_or_default())
+    }
+
+    fn heeds_stop(&self) -> bool {
+        true
+    }
+
+    fn advance_unless(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+        stop: &AtomicBool,
+    ) -> Result<Option<Stats>, RenderError> {
         self.prepare(job, cancel)?;
         self.take_better_hierarchy(job);
         if let Some(range) = film.samples().overlap(&range) {
@@ -204,7 +221,8 @@ impl Renderer for CpuRenderer {
         }
         let start = Instant::now();
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
-        let pass = Pass { side, range: &range, cancel, purpose: Purpose::Add };
+        let stop = Stop::when(stop);
+        let pass = Pass { side, range: &range, cancel, stop: &stop, purpose: Purpose::Add };
         let tracer = self.pass_tracer().ok_or_else(|| RenderError::Backend {
             backend: self.info().name,
             reason: "no scene is prepared".to_owned(),
@@ -215,11 +233,12 @@ impl Renderer for CpuRenderer {
         }
         if let Some(reason) = what_is_missing(&traced, side, film.width()) {
             let backend = self.info().name;
-            return Err(if tracer.take_away(pass, &traced, film) {
-                RenderError::Backend { backend, reason }
-            } else {
-                RenderError::FilmLost { backend, reason }
-            });
+            let is_taken_away = tracer.take_away(pass, &traced, film);
+            return match (is_taken_away, stop.is_given_up()) {
+                (false, _) => Err(RenderError::FilmLost { backend, reason }),
+                (true, true) => Ok(None),
+                (true, false) => Err(RenderError::Backend { backend, reason }),
+            };
         }
         let pixels = u64::from(film.width()) * u64::from(film.height());
         let paths = pixels * range.end.saturating_sub(range.start);
@@ -228,14 +247,14 @@ impl Renderer for CpuRenderer {
         self.note_occupancy(side, film.width().div_ceil(side), &traced);
         let trace = start.elapsed();
         self.begin_better_hierarchy(job, trace);
-        Ok(Stats {
+        Ok(Some(Stats {
             paths,
             rays: tiles.rays,
             rejected: tiles.rejected,
             busy_lanes: tiles.rays,
             offered_lanes: tiles.offered_lanes,
             trace,
-        })
+        }))
     }
 }
 
@@ -355,6 +374,40 @@ mod tests {
         let before = film.clone();
         assert!(renderer.try_out(&mut film, &never).is_some());
         assert!(film == before);
+    }
+
+    #[test]
+    fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
+        let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
+        (recipe.settings.width, recipe.settings.height) = (256, 144);
+        let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
+        let mut renderer =
+            CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).expect("available");
+        let mut held = job.new_film();
+        renderer.accumulate(&job, 0..4, &mut held, &never).expect("traced");
+        let mut whole = held.clone();
+        let begin = Instant::now();
+        renderer.accumulate(&job, 4..68, &mut whole, &never).expect("traced");
+        let pass = begin.elapsed();
+        for eighths in [0, 1, 2, 3, 4, 6, 80] {
+            let (mut film, stop) = (held.clone(), AtomicBool::new(eighths == 0));
+            let outcome = std::thread::scope(|scope| {
+                scope.spawn(|| {
+                    std::thread::sleep(eighths * pass / 8);
+                    stop.store(true, Ordering::Relaxed);
+                });
+                renderer.advance_unless(&job, 4..68, &mut film, &never, &stop).expect("no failure")
+            });
+            assert!(
+                film == if outcome.is_some() { whole.clone() } else { held.clone() },
+                "{eighths} eighths"
+            );
+            match eighths {
+                0 => assert!(outcome.is_none(), "it was to be given up"),
+                80 => assert!(outcome.is_some(), "it was to be finished"),
+                _ => {}
+            }
+        }
     }
 
     #[cfg(target_os = "linux")]

@@ -126,7 +126,7 @@ impl Render {
             }
         }
         if let Some((_, renderer)) = backend {
-            match guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel.preparing)) {
+            match guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel.stop)) {
                 // The command to stop comes next.
                 Err(RenderError::Cancelled) if !self.cancel.is_abandoned() => return Ok(()),
                 outcome => outcome?,

@@ -85,7 +85,7 @@ impl Render {
         self.pictured_samples = None;
     }
 
-    /// Lets preparing go on if the render is resumed after the stop that is now obeyed.
+    /// Lets preparing and passes go on if the render is resumed after the stop that is now obeyed.
     pub fn stop_is_obeyed(&self) {
         self.cancel.stop_is_obeyed();
     }
@@ -183,11 +183,27 @@ impl Render {
         let added = range.end - range.start;
         let held = self.film.sample_count();
         let outcome = guarded(self.choice.name(), || {
-            renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel.pass)
+            let (range, film, cancel) = (range.clone(), &mut self.film, &self.cancel);
+            if self.requested.count() == 0 {
+                // A stop is not to leave a film without a sample.
+                renderer.advance(&self.job, range, film, &cancel.pass).map(Some)
+            } else {
+                renderer.advance_unless(&self.job, range, film, &cancel.pass, &cancel.stop)
+            }
         });
         // Measured before the samples are noted, because the history includes the seconds of their tracing.
         let took = begin.elapsed();
         self.status.trace += took;
+        if matches!(outcome, Ok(None)) {
+            log::debug!(
+                "pass of samples {}..{} given up after {:.3} s",
+                range.start,
+                range.end,
+                took.as_secs_f64()
+            );
+            return Ok(());
+        }
+        let outcome = outcome.map(Option::unwrap_or_default);
         self.note_added(renderer, held, &outcome);
         log::debug!(
             "pass of samples {}..{} took {:.3} ms; the film holds {}",
@@ -198,7 +214,7 @@ impl Render {
         );
         outcome?;
         self.requested.insert(range)?;
-        self.sizer.measured(added, took, self.plan.pass_target);
+        self.sizer.measured(added, took, self.plan.later_pass_target(renderer.heeds_stop()));
         // A renderer can change during use (it lost an adapter or gave up threads) and then reports it here.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
