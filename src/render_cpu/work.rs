@@ -206,16 +206,16 @@ impl<'film> Work<'film> {
     }
 
     /// Collects the sums of the lanes `done` and gives each of them its next block. `busy` are the lanes that have a
-    /// block, as bits, before and after.
+    /// block, as bits. Returns the blocks, and the lanes that have one now.
     #[inline(always)]
     pub fn refill<L: Lanes>(
         &mut self,
         l: L,
         done: u32,
-        busy: &mut u32,
+        busy: u32,
         mut lanes: LaneBlocks<L>,
-    ) -> LaneBlocks<L> {
-        self.add_sums::<L>(done & *busy, &lanes);
+    ) -> (LaneBlocks<L>, u32) {
+        self.add_sums::<L>(done & busy, &lanes);
         let is_done = l.mask(done);
         let [red, green, blue] = lanes.sums;
         lanes.sums = [l.keep(!is_done, red), l.keep(!is_done, green), l.keep(!is_done, blue)];
@@ -246,8 +246,7 @@ impl<'film> Work<'film> {
             lanes.step = l.keep(!m, lanes.step);
             lanes.end = m.select(lanes.counter + l.splat_u(1), lanes.end);
         }
-        *busy = (*busy | done) & !idle;
-        lanes
+        (lanes, (busy | done) & !idle)
     }
 
     /// Adds the sums of the lanes `done` to the film.

@@ -94,16 +94,21 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
 
     // Lanes whose path has ended go on to the next sample or the next block.
     let next = packet.blocks.counter + packet.blocks.step;
-    let at_end = ended & next.eq(packet.blocks.end);
-    let goes_on = if is_wide::<L>() { ended & !at_end } else { ended };
-    packet.blocks.counter = goes_on.select(next, packet.blocks.counter);
-    let done = at_end.bits();
     if is_wide::<L>() {
+        let at_end = ended & next.eq(packet.blocks.end);
+        packet.blocks.counter = (ended & !at_end).select(next, packet.blocks.counter);
         collected.waiting = at_end;
-    }
-    if done != 0 && (refills || !is_wide::<L>()) {
-        enter_block(l, broadcast, packet, work, done);
-        collected.waiting = l.mask(0);
+        let done = at_end.bits();
+        if refills && done != 0 {
+            enter_block(l, broadcast, packet, work, done);
+            collected.waiting = l.mask(0);
+        }
+    } else {
+        packet.blocks.counter = ended.select(next, packet.blocks.counter);
+        let done = (ended & packet.blocks.counter.eq(packet.blocks.end)).bits();
+        if done != 0 {
+            enter_block(l, broadcast, packet, work, done);
+        }
     }
     packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
     collected.ended = ended;
@@ -189,7 +194,8 @@ fn enter_block<L: Lanes>(
     work: &mut Work,
     done: u32,
 ) {
-    packet.blocks = work.refill(l, done, &mut packet.busy, packet.blocks);
-    let [x, y] = pixel_position(l, packet.blocks.pixel);
+    let (blocks, busy) = work.refill(l, done, packet.busy, packet.blocks);
+    (packet.blocks, packet.busy) = (blocks, busy);
+    let [x, y] = pixel_position(l, blocks.pixel);
     packet.screen = screen(l, &broadcast.camera, x, y);
 }
