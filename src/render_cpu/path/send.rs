@@ -42,10 +42,8 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     let direction = ended.select(camera.direction, bounced.direction);
     let (direction, length2) = with_length2_or(l, direction, arrival.normal);
     // Metal absorbs a fuzzy reflection that points into the surface.
-    packet.absorbed = bounced.is_metal & !l.constant(0.0).lt(direction.dot(arrival.normal)) & !ended;
-    if is_wide::<L>() {
-        packet.absorbed = packet.absorbed | collected.waiting;
-    }
+    let absorbed = bounced.is_metal & !l.constant(0.0).lt(direction.dot(arrival.normal)) & !ended;
+    packet.absorbed = if is_wide::<L>() { absorbed | collected.waiting } else { absorbed };
     let none = l.splat_u(NONE);
     let hit = l.fill(ended, hit);
     let mut left = bounced.outward.select(hit, none);
