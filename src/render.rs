@@ -325,9 +325,10 @@ pub trait Renderer: Send {
     /// [`RenderError::Backend`] if the backend cannot render this job; [`RenderError::Cancelled`] if it was cancelled.
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
-    /// Estimates how long a sample of every pixel of the prepared job takes, by tracing some that it drops: `film` has
-    /// the job's size and stays as it is. In long passes a sample takes less. `None` from a renderer that cannot tell.
-    fn try_out(&mut self, _film: &mut Film, _cancel: &AtomicBool) -> Option<Duration> {
+    /// Estimates how long a sample of every pixel of the prepared job takes, by tracing about one pixel in `one_in` and
+    /// dropping what it finds: `film` has the job's size and stays as it is. In long passes a sample takes less. `None` from
+    /// a renderer that cannot tell.
+    fn try_out(&mut self, _film: &mut Film, _one_in: usize, _cancel: &AtomicBool) -> Option<Duration> {
         None
     }
 

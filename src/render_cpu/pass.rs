@@ -65,14 +65,14 @@ pub(super) enum Purpose<'a> {
     Add,
     /// Subtracts the first blocks of each tile from the film: how many, by tile.
     TakeAway(&'a [u64]),
-    /// Drops them, and traces only some of the tiles.
-    Try,
+    /// Drops them, and traces only one of so many tiles.
+    Try(usize),
 }
 
-/// Whether a trial traces tile `number`: it takes one of sixteen, spread over the picture, and at least one.
-fn is_tried(number: usize, tile_count: usize) -> bool {
-    const STRIDE: usize = 16;
-    number % STRIDE == tile_count.min(STRIDE) / 2
+/// Whether a trial of one tile in `one_in` traces tile `number`. These tiles are spread over the picture; there is at least
+/// one.
+fn is_tried(number: usize, tile_count: usize, one_in: usize) -> bool {
+    number % one_in == tile_count.min(one_in) / 2
 }
 
 /// The outcome of tracing a tile.
@@ -123,9 +123,9 @@ impl PassTracer<'_> {
     }
 
     /// Estimates the time of a pass from some of its tiles; `None` if one of them failed. The film stays as it is.
-    pub fn try_out(&self, pass: Pass, film: &mut Film) -> Option<Duration> {
+    pub fn try_out(&self, pass: Pass, one_in: usize, film: &mut Film) -> Option<Duration> {
         let tile_count = film.width().div_ceil(pass.side) * film.height().div_ceil(pass.side);
-        let traced = self.trace(Pass { purpose: Purpose::Try, ..pass }, film);
+        let traced = self.trace(Pass { purpose: Purpose::Try(one_in), ..pass }, film);
         let share = traced.len() as f64 / f64::from(tile_count);
         let took: Duration = traced.iter().map(|tile| tile.took).sum();
         let is_whole = !traced.is_empty() && traced.iter().all(TracedTile::is_whole);
@@ -142,9 +142,9 @@ impl PassTracer<'_> {
         let settings = &prepared.prepared.settings;
         let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
         let mut tiles = tiles(film.halves_mut(), settings.width, pass.side);
-        if let Purpose::Try = pass.purpose {
+        if let Purpose::Try(one_in) = pass.purpose {
             let count = tiles.len();
-            let tried = tiles.into_iter().enumerate().filter(|(number, _)| is_tried(*number, count));
+            let tried = tiles.into_iter().enumerate().filter(|(number, _)| is_tried(*number, count, one_in));
             tiles = tried.map(|(_, tile)| tile).collect();
         }
         let mut orders: Vec<RefillOrder> = Vec::new();
@@ -163,7 +163,7 @@ impl PassTracer<'_> {
                 Purpose::Add if self.is_to_panic() => work = work.sabotaged(),
                 Purpose::Add => {}
                 Purpose::TakeAway(added) => work = work.taking_away(added[index]),
-                Purpose::Try => work = work.taking_away(0),
+                Purpose::Try(_) => work = work.taking_away(0),
             }
             let (stats, took) = (TileStats::default(), Duration::ZERO);
             let mut traced = TracedTile { stats, finished: 0, expected, panic: None, took };
@@ -211,11 +211,16 @@ mod tests {
 
     #[test]
     fn a_trial_needs_few_tiles() {
-        for (tile_count, expected) in
-            [(0, vec![]), (1, vec![0]), (6, vec![3]), (16, vec![8]), (91, vec![8, 24, 40, 56, 72, 88])]
-        {
-            let tried: Vec<usize> = (0..tile_count).filter(|number| is_tried(*number, tile_count)).collect();
-            assert_eq!(tried, expected, "of {tile_count}");
+        for (tile_count, one_in, expected) in [
+            (0, 16, vec![]),
+            (1, 16, vec![0]),
+            (6, 16, vec![3]),
+            (16, 16, vec![8]),
+            (91, 16, vec![8, 24, 40, 56, 72, 88]),
+            (91, 128, vec![45]),
+        ] {
+            let tried = (0..tile_count).filter(|number| is_tried(*number, tile_count, one_in));
+            assert_eq!(tried.collect::<Vec<usize>>(), expected, "of {tile_count}");
         }
     }
 

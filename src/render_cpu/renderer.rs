@@ -183,12 +183,12 @@ impl Renderer for CpuRenderer {
         self.packets.map(|_| self.occupancy.clone())
     }
 
-    fn try_out(&mut self, film: &mut Film, cancel: &AtomicBool) -> Option<Duration> {
+    fn try_out(&mut self, film: &mut Film, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
         let count = film.halves().len() as u64;
         let stop = Stop::when(cancel);
-        let pass = Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Try };
-        Some(self.pass_tracer()?.try_out(pass, film)? / count as u32)
+        let pass = Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Try(one_in) };
+        Some(self.pass_tracer()?.try_out(pass, one_in, film)? / count as u32)
     }
 
     fn accumulate(
@@ -365,14 +365,14 @@ mod tests {
         let (job, never) = (small("three-spheres"), AtomicBool::new(false));
         let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
         let mut film = job.new_film();
-        assert_eq!(renderer.try_out(&mut film, &never), None, "nothing is prepared");
+        assert_eq!(renderer.try_out(&mut film, 16, &never), None, "nothing is prepared");
         renderer.prepare(&job, &never).expect("prepared");
-        assert!(renderer.try_out(&mut film, &never).is_some_and(|time| time > Duration::ZERO));
-        assert_eq!(renderer.try_out(&mut film, &AtomicBool::new(true)), None, "it was cancelled");
+        assert!(renderer.try_out(&mut film, 16, &never).is_some_and(|time| time > Duration::ZERO));
+        assert_eq!(renderer.try_out(&mut film, 16, &AtomicBool::new(true)), None, "it was cancelled");
         assert!(film == job.new_film());
         renderer.accumulate(&job, 0..4, &mut film, &never).expect("traced");
         let before = film.clone();
-        assert!(renderer.try_out(&mut film, &never).is_some());
+        assert!(renderer.try_out(&mut film, 16, &never).is_some());
         assert!(film == before);
     }
 

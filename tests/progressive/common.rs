@@ -27,8 +27,8 @@ pub struct Fake {
     pub preparation: Duration,
     /// What it says after every pass.
     pub message: Option<&'static str>,
-    /// How long it says that a sample takes, before its first pass.
-    pub trial: Option<Duration>,
+    /// How long it says that a sample takes, before its first pass: after a quick trial and after a thorough one.
+    pub trial: Option<[Duration; 2]>,
 }
 
 impl Fake {
@@ -65,8 +65,8 @@ impl Renderer for Fake {
         Ok(())
     }
 
-    fn try_out(&mut self, _: &mut Film, _: &AtomicBool) -> Option<Duration> {
-        self.trial
+    fn try_out(&mut self, _: &mut Film, one_in: usize, _: &AtomicBool) -> Option<Duration> {
+        self.trial.map(|[quick, thorough]| if one_in > 16 { quick } else { thorough })
     }
 
     fn accumulate(

@@ -231,13 +231,27 @@ impl Render {
     fn plan_first_pass(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
         let gap = self.requested.first_gap(self.plan.range(), u64::MAX);
-        if gap.is_none_or(|gap| gap.end - gap.start <= self.film.halves().len() as u64) {
+        let wanted = gap.map_or(0, |gap| gap.end - gap.start);
+        if wanted <= self.film.halves().len() as u64 {
             return Ok(());
         }
         let begin = Instant::now();
-        let outcome = guarded(self.choice.name(), || Ok(renderer.try_out(&mut self.film, &self.cancel.pass)));
+        let mut estimate = None;
+        // A small part of the picture does if all samples fit, even should the rest take four times as long.
+        for (one_in, caution) in [(128, 4.0), (16, 1.0)] {
+            let outcome = guarded(self.choice.name(), || {
+                Ok(renderer.try_out(&mut self.film, one_in, &self.cancel.pass))
+            });
+            estimate = outcome?;
+            let fits = |per_sample: &Duration| {
+                caution * wanted as f64 * per_sample.as_secs_f64() <= target.as_secs_f64()
+            };
+            if estimate.as_ref().is_none_or(fits) {
+                break;
+            }
+        }
         self.status.trace += begin.elapsed();
-        if let Some(per_sample) = outcome? {
+        if let Some(per_sample) = estimate {
             log::debug!("a trial: a sample takes {:.3} ms or less", per_sample.as_secs_f64() * 1e3);
             self.sizer.estimated(per_sample, target);
         }
