@@ -28,21 +28,21 @@ pub(super) struct Pass<'a> {
     pub range: &'a Range<u64>,
     pub cancel: &'a AtomicBool,
     /// Set if tiles need not be traced any more, provided that little has been.
-    pub stop: &'a Stop<'a>,
+    pub stop: &'a StopRequest<'a>,
     pub purpose: Purpose<'a>,
 }
 
 /// Decides, when a stop is wanted, whether the tiles of a pass are finished or taken away again.
-pub(super) struct Stop<'a> {
+pub(super) struct StopRequest<'a> {
     wanted: &'a AtomicBool,
     tiles_begun: AtomicUsize,
     is_given_up: OnceLock<bool>,
 }
 
-impl<'a> Stop<'a> {
+impl<'a> StopRequest<'a> {
     /// A stop that comes when `wanted` is set.
     pub fn when(wanted: &'a AtomicBool) -> Self {
-        Stop { wanted, tiles_begun: AtomicUsize::new(0), is_given_up: OnceLock::new() }
+        StopRequest { wanted, tiles_begun: AtomicUsize::new(0), is_given_up: OnceLock::new() }
     }
 
     /// Whether the pass was given up.
@@ -117,7 +117,7 @@ impl PassTracer<'_> {
     pub fn take_away(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
         let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
         let never = AtomicBool::new(false);
-        let (purpose, stop) = (Purpose::TakeAway(&added), &Stop::when(&never));
+        let (purpose, stop) = (Purpose::TakeAway(&added), &StopRequest::when(&never));
         let again = self.trace(Pass { purpose, cancel: &never, stop, ..pass }, film);
         again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added)
     }
@@ -228,7 +228,7 @@ mod tests {
     fn a_pass_is_given_up_if_fewer_than_half_of_its_tiles_have_begun() {
         for (begun, is_given_up) in [(0, true), (1, true), (2, true), (3, false), (4, false)] {
             let wanted = AtomicBool::new(false);
-            let stop = Stop::when(&wanted);
+            let stop = StopRequest::when(&wanted);
             (0..begun).for_each(|_| assert!(!stop.leaves_out(5)));
             assert!(!stop.is_given_up(), "nobody wanted it");
             wanted.store(true, Ordering::Relaxed);

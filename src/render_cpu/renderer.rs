@@ -4,7 +4,7 @@ use super::broadcast::BroadcastScene;
 use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
-use super::pass::{Pass, PassTracer, Prepared, Purpose, Stop, TracedTile, what_is_missing};
+use super::pass::{Pass, PassTracer, Prepared, Purpose, StopRequest, TracedTile, what_is_missing};
 use super::priority::give_way;
 use super::rebuild::Rebuild;
 use super::tiles::tile_side;
@@ -186,7 +186,7 @@ impl Renderer for CpuRenderer {
     fn try_out(&mut self, film: &mut Film, one_in: usize, cancel: &AtomicBool) -> Option<Duration> {
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
         let count = film.halves().len() as u64;
-        let stop = Stop::when(cancel);
+        let stop = StopRequest::when(cancel);
         let pass = Pass { side, range: &(0..count), cancel, stop: &stop, purpose: Purpose::Try(one_in) };
         Some(self.pass_tracer()?.try_out(pass, one_in, film)? / count as u32)
     }
@@ -221,7 +221,7 @@ impl Renderer for CpuRenderer {
         }
         let start = Instant::now();
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
-        let stop = Stop::when(stop);
+        let stop = StopRequest::when(stop);
         let pass = Pass { side, range: &range, cancel, stop: &stop, purpose: Purpose::Add };
         let tracer = self.pass_tracer().ok_or_else(|| RenderError::Backend {
             backend: self.info().name,
@@ -297,131 +297,4 @@ impl CpuRenderer {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::recipe::Recipe;
-    #[cfg(target_os = "linux")]
-    use crate::render_cpu::priority::NICENESS;
-    use crate::scene::{Material, Sphere};
-    use glam::DVec3;
-
-    fn small(scene: &str) -> RenderJob {
-        let mut recipe = Recipe::find(scene).expect("a built-in scene");
-        (recipe.settings.width, recipe.settings.height) = (20, 12);
-        recipe.job().expect("valid")
-    }
-
-    fn film(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
-        let mut film = job.new_film();
-        renderer.accumulate(job, 0..4, &mut film, &AtomicBool::new(false)).expect("traced");
-        film
-    }
-
-    #[test]
-    fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
-        let first = small("field:200");
-        let mut moved = *first.camera();
-        moved.look_from += DVec3::new(0.5, 0.25, -1.0);
-        moved.defocus_angle_degrees = 1.0;
-        let scene = first.scene();
-        let is_small_and_opaque =
-            |s: &&Sphere| s.radius < 10.0 && !matches!(scene.material_of(s), Material::Dielectric { .. });
-        let mut inside = *first.camera();
-        inside.look_from = scene.spheres.iter().find(is_small_and_opaque).expect("one").center;
-        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
-        film(&mut renderer, &first);
-        assert_ne!(renderer.hierarchy_time(), Duration::ZERO);
-        // Inside an opaque ball nothing else is visible, so there is nothing to build.
-        for (camera, is_kept) in [(moved, true), (inside, true), (moved, false), (*first.camera(), true)] {
-            let job = first.seen_by(camera, *first.settings()).expect("valid");
-            let again = film(&mut renderer, &job);
-            assert_eq!(renderer.hierarchy_time() == Duration::ZERO, is_kept, "{camera:?}");
-            let mut fresh = CpuRenderer::new(CpuOptions::default()).expect("available");
-            assert!(again == film(&mut fresh, &job), "{camera:?}");
-        }
-    }
-
-    #[test]
-    fn the_tiles_add_up_to_the_picture() {
-        let job = small("three-spheres");
-        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
-        let mut film = job.new_film();
-        let mut stats = Stats::default();
-        for range in [0..2, 2..4] {
-            stats.add(&renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false)).expect("traced"));
-        }
-        let occupancy = renderer.tile_occupancy().expect("packets");
-        let sum = |which: usize| occupancy.tiles.iter().map(|tile| tile[which]).sum::<u64>();
-        assert_eq!([sum(0), sum(1)], [stats.busy_lanes, stats.offered_lanes]);
-        assert!(occupancy.share_at([19, 11]).is_some_and(|share| share > 0.0 && share <= 1.0));
-        assert_eq!(occupancy.share_at([0, 4000]), None);
-        renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
-        assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
-        assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
-    }
-
-    #[test]
-    fn a_trial_tells_a_time_and_adds_nothing() {
-        let (job, never) = (small("three-spheres"), AtomicBool::new(false));
-        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
-        let mut film = job.new_film();
-        assert_eq!(renderer.try_out(&mut film, 16, &never), None, "nothing is prepared");
-        renderer.prepare(&job, &never).expect("prepared");
-        assert!(renderer.try_out(&mut film, 16, &never).is_some_and(|time| time > Duration::ZERO));
-        assert_eq!(renderer.try_out(&mut film, 16, &AtomicBool::new(true)), None, "it was cancelled");
-        assert!(film == job.new_film());
-        renderer.accumulate(&job, 0..4, &mut film, &never).expect("traced");
-        let before = film.clone();
-        assert!(renderer.try_out(&mut film, 16, &never).is_some());
-        assert!(film == before);
-    }
-
-    #[test]
-    fn a_stop_leaves_the_film_with_a_whole_pass_or_without_it() {
-        let mut recipe = Recipe::find("three-spheres").expect("a built-in scene");
-        (recipe.settings.width, recipe.settings.height) = (256, 144);
-        let (job, never) = (recipe.job().expect("valid"), AtomicBool::new(false));
-        let mut renderer =
-            CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).expect("available");
-        let mut held = job.new_film();
-        renderer.accumulate(&job, 0..4, &mut held, &never).expect("traced");
-        let mut whole = held.clone();
-        let begin = Instant::now();
-        renderer.accumulate(&job, 4..68, &mut whole, &never).expect("traced");
-        let pass = begin.elapsed();
-        for eighths in [0, 1, 2, 3, 4, 6, 80] {
-            let (mut film, stop) = (held.clone(), AtomicBool::new(eighths == 0));
-            let outcome = std::thread::scope(|scope| {
-                scope.spawn(|| {
-                    std::thread::sleep(eighths * pass / 8);
-                    stop.store(true, Ordering::Relaxed);
-                });
-                renderer.advance_unless(&job, 4..68, &mut film, &never, &stop).expect("no failure")
-            });
-            assert!(
-                film == if outcome.is_some() { whole.clone() } else { held.clone() },
-                "{eighths} eighths"
-            );
-            match eighths {
-                0 => assert!(outcome.is_none(), "it was to be given up"),
-                80 => assert!(outcome.is_some(), "it was to be finished"),
-                _ => {}
-            }
-        }
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn threads_of_low_priority_give_way() {
-        let niceness = |low_priority| {
-            let options = CpuOptions { threads: Some(1), low_priority, ..CpuOptions::default() };
-            CpuRenderer::new(options).unwrap().threads.install(|| {
-                let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
-                // The 19th field; the second is a name in brackets, which may hold blanks.
-                let (_, from_third) = stat.rsplit_once(") ").unwrap();
-                from_third.split(' ').nth(16).unwrap().parse::<i32>().unwrap()
-            })
-        };
-        assert_eq!(niceness(true), (niceness(false) + NICENESS).min(19));
-    }
-}
+mod tests;

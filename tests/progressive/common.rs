@@ -29,6 +29,8 @@ pub struct Fake {
     pub message: Option<&'static str>,
     /// How long it says that a sample takes, before its first pass: after a quick trial and after a thorough one.
     pub trial: Option<[Duration; 2]>,
+    /// Whether passes after the first last until they are stopped, and are given up.
+    pub waits_for_stop: bool,
 }
 
 impl Fake {
@@ -42,6 +44,7 @@ impl Fake {
             preparation: Duration::ZERO,
             message: None,
             trial: None,
+            waits_for_stop: false,
         }
     }
 }
@@ -67,6 +70,23 @@ impl Renderer for Fake {
 
     fn try_out(&mut self, _: &mut Film, one_in: usize, _: &AtomicBool) -> Option<Duration> {
         self.trial.map(|[quick, thorough]| if one_in > 16 { quick } else { thorough })
+    }
+
+    fn advance_unless(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+        stop: &AtomicBool,
+    ) -> Result<Option<Stats>, RenderError> {
+        if !self.waits_for_stop {
+            return self.advance(job, range, film, cancel).map(Some);
+        }
+        while !stop.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(None)
     }
 
     fn accumulate(

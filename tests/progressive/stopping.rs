@@ -216,47 +216,10 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
     assert_eq!(progressive.finish(), Some(expected(2100)));
 }
 
-/// Traces its first pass at once. From then on each pass lasts until it is stopped, and is given up.
-struct Stoppable(Fake);
-
-impl Renderer for Stoppable {
-    fn info(&self) -> BackendInfo {
-        self.0.info()
-    }
-
-    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.0.prepare(job, cancel)
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.0.accumulate(job, range, film, cancel)
-    }
-
-    fn advance_unless(
-        &mut self,
-        _: &RenderJob,
-        _: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-        stop: &AtomicBool,
-    ) -> Result<Option<Stats>, RenderError> {
-        while !stop.load(Ordering::Relaxed) {
-            std::thread::sleep(Duration::from_millis(1));
-        }
-        Ok(None)
-    }
-}
-
 #[test]
 fn a_stop_during_a_pass_leaves_what_was_there_before_it() {
     let factory = |choice: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
-        Ok(Box::new(Stoppable(Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) })))
+        Ok(Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) }))
     };
     let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
