@@ -218,14 +218,14 @@ fn what_cannot_be_compared_is_refused() {
     }
 }
 
-/// The README shows the end of what a command prints. Both of its sides are the same on every processor.
+/// The page shows the end of what a command prints. Both of its sides are the same on every processor.
 #[test]
-fn the_readme_shows_what_the_program_prints() {
-    let readme = include_str!("../README.md");
-    let command = readme.lines().find_map(|line| line.strip_prefix("weekender diff --seed")).unwrap();
+fn the_page_shows_what_the_program_prints() {
+    let page = include_str!("../docs/compare.md");
+    let command = page.lines().find_map(|line| line.strip_prefix("weekender diff --seed")).unwrap();
     let words = command.split('#').next().unwrap().split_whitespace();
     let arguments: Vec<&str> = std::iter::once("--seed").chain(words).collect();
-    let block = readme.split("```\n").find(|block| block.starts_with("ray ")).unwrap();
+    let block = page.split("```\n").find(|block| block.starts_with("ray ")).unwrap();
     let (code, text, errors) = diff(&arguments);
     assert_eq!(code, 1, "{errors}");
     assert!(text.ends_with(block), "{text}");
