@@ -51,8 +51,8 @@ header "Scenes (tracing only)"
     done
 }
 
-printf '\nThe two hierarchies, run in turn\n\n'
-echo "| scene, width, height, samples, depth, runs | BVH2 ns per path | CWBVH ns per path | median of the ratios |"
+printf '\nWhole and compressed boxes, run in turn\n\n'
+echo "| scene, width, height, samples, depth, runs | compressed, ns per path | whole, ns per path | whole / compressed |"
 echo "|---|---|---|---|"
 # shellcheck disable=SC2086
 {
@@ -60,9 +60,9 @@ echo "|---|---|---|---|"
     pair $field $field_size $field_spp 24 $runs
 }
 
-printf '\nSize and build time of the hierarchies, on one core\n\n'
-echo "| scene | BVH2 bytes per sphere | CWBVH bytes per sphere | BVH2 build ms | CWBVH build ms |"
-echo "|---|---|---|---|---|"
+printf '\nSize and build time of the hierarchy, on one core\n\n'
+echo "| scene | compressed, bytes per sphere | whole, bytes per sphere | build ms |"
+echo "|---|---|---|---|"
 "$bench" hierarchy book "$field"
 
 printf '\nSize of the kernel in operations\n\n| scene | general | specialised | features |\n|---|---|---|---|\n'

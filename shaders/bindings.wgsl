@@ -46,12 +46,6 @@ fn anchored_at(number: u32) -> AnchoredSphere {
     return anchored[number];
 }
 
-fn node_at(number: u32) -> Node {
-    let low = nodes[2u * number];
-    let high = nodes[2u * number + 1u];
-    return Node(bitcast<vec3f>(low.xyz), low.w, bitcast<vec3f>(high.xyz), high.w);
-}
-
 fn cwbvh_node_at(number: u32) -> CwbvhNode {
     let first = 5u * number;
     let low = nodes[first];
@@ -63,7 +57,7 @@ fn cwbvh_node_at(number: u32) -> CwbvhNode {
 
 // A sphere's place in the list, which differs from its place in the leaves. The places are stored after the nodes.
 fn rank_of(number: u32) -> u32 {
-    return nodes[select(2u, 5u, CWBVH) * job.node_count + number / 4u][number % 4u];
+    return nodes[select(WHOLE_ROWS, 5u, CWBVH) * job.node_count + number / 4u][number % 4u];
 }
 
 // Adds sums to a pixel of the film. No other thread writes to this pixel.

@@ -1,6 +1,18 @@
-// Traversal of the hierarchy by a single ray.
+// Traversal of a hierarchy with eight children per node by a single ray. (Ylitie, Karras and Laine 2017, "Efficient
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4.) The boxes of its nodes are
+// compressed (CWBVH) or whole, which takes three times the memory and half the instructions.
 //
 // Twin: src/render_cpu/bvh.rs
+
+// The 8 bits of a mask of hits that stand for nodes; the node to visit first has the highest bit. The 24 bits below
+// stand for spheres.
+const NODE_HITS = 0xFF000000u;
+
+const BYTE_SHIFTS = vec4u(0u, 8u, 16u, 24u);
+
+// Rows of a node with whole boxes: the bounds of children 0 to 3 and 4 to 7, lower then upper, along x, y and z; the
+// bits that each child adds to a mask of hits; first child, first sphere and mask of nodes.
+const WHOLE_ROWS = 15u;
 
 // A ray prepared for box tests: 1/d, and the origin moved outwards by the largest possible rounding error.
 struct Slabs {
@@ -23,69 +35,195 @@ fn inverse_of(d: f32) -> f32 {
     return copysign(1.0 / max(abs(d), LEAST_COMPONENT), d);
 }
 
-// Returns the bits of the distance at which the ray enters the box, or MISS_KEY if it does not hit the box before
-// distance `limit`.
-fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
-    let a = fma(low, slabs.inverse, -slabs.low);
-    let b = fma(high, slabs.inverse, -slabs.high);
-    let near = min(a, b);
-    let far = max(a, b);
-    let enter = max(max(near.x, near.y), max(near.z, 0.0));
-    let leave = min(min(far.x, far.y), min(far.z, limit));
-    // The factor covers the rounding of the distances themselves.
-    return select(MISS_KEY, bitcast<u32>(enter), leave * BOX_WIDENING >= enter);
+// A ray as it goes through the hierarchy: the origin times 1/d for the planes where boxes are entered and left, and the
+// axes along which it goes backward.
+struct Slope {
+    inverse: vec3f,
+    near: vec3f,
+    far: vec3f,
+    backward: vec3<bool>,
+    // The bits of a child's slot say which side of its node it lies on, x in the highest bit. The slot of the ray's own
+    // octant is the nearest.
+    octant: u32,
 }
+
+fn slope_of(slabs: Slabs) -> Slope {
+    let backward = slabs.inverse < vec3f(0.0);
+    let forward = select(vec3u(4u, 2u, 1u), vec3u(0u), backward);
+    return Slope(
+        slabs.inverse,
+        select(slabs.low, slabs.high, backward),
+        select(slabs.high, slabs.low, backward),
+        backward,
+        forward.x | forward.y | forward.z,
+    );
+}
+
+// The children of a node that a ray hits, as bits. Nodes are adjacent from `first_child` on, in the order of `nodes`,
+// which has a bit for each slot; spheres are adjacent from `first_sphere` on.
+struct Hits {
+    bits: u32,
+    first_child: u32,
+    first_sphere: u32,
+    nodes: u32,
+}
+
+// The `bits` of the boxes that a ray enters before `limit`, given the distances to the planes where it enters and leaves
+// four boxes.
+fn hit_bits(
+    near_x: vec4f, near_y: vec4f, near_z: vec4f,
+    far_x: vec4f, far_y: vec4f, far_z: vec4f,
+    limit: f32, bits: vec4u,
+) -> u32 {
+    let enter = max(max(near_x, near_y), max(near_z, vec4f(0.0)));
+    let leave = min(min(far_x, far_y), min(far_z, vec4f(limit)));
+    // The factor covers the rounding of the distances themselves.
+    let hits = select(vec4u(0u), bits, leave * BOX_WIDENING >= enter);
+    return hits.x | hits.y | hits.z | hits.w;
+}
+
+fn bytes_of(word: u32) -> vec4u {
+    return (vec4u(word) >> BYTE_SHIFTS) & vec4u(0xFFu);
+}
+
+// The bytes as floats. A processor converts few integers at once, so two of them are made from the bits of 2^23 + byte.
+fn floats_of(word: u32) -> vec4f {
+    let middle = bitcast<vec2f>((vec2u(word >> 8u, word >> 16u) & vec2u(0xFFu)) | vec2u(0x4B000000u)) - 8388608.0;
+    return vec4f(f32(word & 0xFFu), middle, f32(word >> 24u));
+}
+
+// Along each axis the distance to the entry plane is `bound * step + near`, and to the exit plane `bound * step + far`.
+struct Grid {
+    step: vec3f,
+    near: vec3f,
+    far: vec3f,
+}
+
+// The hits among four compressed children, as the bits that their marks select. `x`, `y` and `z` hold the bounds of the
+// entry and exit planes. `octants` holds the ray's octant in each byte; it orders the slots of nodes.
+fn four_hits(grid: Grid, x: vec2u, y: vec2u, z: vec2u, marks: u32, octants: u32, limit: f32) -> u32 {
+    // A mark's upper 3 bits, shifted by its lower 5, which for nodes are 24 + slot.
+    let is_node = ((marks & (marks << 1u)) >> 4u) & 0x01010101u;
+    let places = marks ^ (octants & (is_node * 0xFFu));
+    let bits = (bytes_of(marks) >> vec4u(5u)) << (bytes_of(places) & vec4u(31u));
+    return hit_bits(
+        fma(floats_of(x.x), vec4f(grid.step.x), vec4f(grid.near.x)),
+        fma(floats_of(y.x), vec4f(grid.step.y), vec4f(grid.near.y)),
+        fma(floats_of(z.x), vec4f(grid.step.z), vec4f(grid.near.z)),
+        fma(floats_of(x.y), vec4f(grid.step.x), vec4f(grid.far.x)),
+        fma(floats_of(y.y), vec4f(grid.step.y), vec4f(grid.far.y)),
+        fma(floats_of(z.y), vec4f(grid.step.z), vec4f(grid.far.z)),
+        limit,
+        bits,
+    );
+}
+
+fn compressed_hits(number: u32, slope: Slope, limit: f32) -> Hits {
+    let node = cwbvh_node_at(number);
+    let unit = bitcast<vec3f>(bytes_of(node.units).xyz << vec3u(23u));
+    let grid = Grid(
+        unit * slope.inverse,
+        fma(node.low, slope.inverse, -slope.near),
+        fma(node.low, slope.inverse, -slope.far),
+    );
+    let x = select(node.x, node.x.zwxy, slope.backward.x);
+    let y = select(node.y, node.y.zwxy, slope.backward.y);
+    let z = select(node.z, node.z.zwxy, slope.backward.z);
+    let octants = slope.octant * 0x01010101u;
+    let bits = four_hits(grid, x.xz, y.xz, z.xz, node.marks.x, octants, limit)
+        | four_hits(grid, x.yw, y.yw, z.yw, node.marks.y, octants, limit);
+    return Hits(bits, node.first_child, node.first_sphere, node.units >> 24u);
+}
+
+// Distances to four planes.
+fn planes_at(row: u32, inverse: f32, origin: f32) -> vec4f {
+    return fma(bitcast<vec4f>(nodes[row]), vec4f(inverse), vec4f(-origin));
+}
+
+fn whole_hits(number: u32, slope: Slope, limit: f32) -> Hits {
+    let first = number * WHOLE_ROWS;
+    let flip = select(vec3u(0u), vec3u(2u), slope.backward);
+    let near = first + vec3u(0u, 4u, 8u) + flip;
+    let far = first + vec3u(2u, 6u, 10u) - flip;
+    let last = nodes[first + 14u];
+    var bits = 0u;
+    for (var four = 0u; four < 2u; four++) {
+        bits |= hit_bits(
+            planes_at(near.x + four, slope.inverse.x, slope.near.x),
+            planes_at(near.y + four, slope.inverse.y, slope.near.y),
+            planes_at(near.z + four, slope.inverse.z, slope.near.z),
+            planes_at(far.x + four, slope.inverse.x, slope.far.x),
+            planes_at(far.y + four, slope.inverse.y, slope.far.y),
+            planes_at(far.z + four, slope.inverse.z, slope.far.z),
+            limit,
+            nodes[first + 12u + four],
+        );
+    }
+    return Hits(in_order(bits, slope.octant), last.x, last.y, last.z);
+}
+
+// Moves the bit of each node from its slot to slot ^ octant.
+fn in_order(hits: u32, octant: u32) -> u32 {
+    var m = hits & NODE_HITS;
+    m = select(m, ((m & 0x55000000u) << 1u) | ((m >> 1u) & 0x55000000u), (octant & 1u) != 0u);
+    m = select(m, ((m & 0x33000000u) << 2u) | ((m >> 2u) & 0x33000000u), (octant & 2u) != 0u);
+    m = select(m, ((m & 0x0F000000u) << 4u) | ((m >> 4u) & 0x0F000000u), (octant & 4u) != 0u);
+    return m | (hits & ~NODE_HITS);
+}
+
+// The groups of children that are still to be visited. Not a variable of the function, which would be cleared for each
+// ray.
+var<private> stack: array<vec2u, CWBVH_STACK_SIZE>;
 
 // Finds the nearest hit among the spheres of the hierarchy.
 fn traverse(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
-    let slabs = slabs_of(ray, job.extent, BOX_MARGIN);
-    var stack: array<u32, STACK_SIZE>;
-    var depth = 0u;
-    var node = node_at(0u);
-    if box_key(slabs, node.low, node.high, bitcast<f32>(nearest.key)) == MISS_KEY {
-        return nearest;
+    // The sphere that the ray starts on. Only glass has another root for a ray inside.
+    var start = ray.left;
+    if ray.inside < job.opaque_count + job.two_root_count && sphere_at(ray.inside).w >= 0.0 {
+        start = ray.inside;
+        nearest = take_in_any_order(nearest, chord_end(ray, sphere_at(start)), start);
     }
+    let slope = slope_of(slabs_of(ray, job.extent, select(BOX_MARGIN, CWBVH_MARGIN, CWBVH)));
+    // The children of one parent that are still to be visited: the first child, and the hits with the parent's mask of
+    // nodes below. The traversal starts with the root as an only child.
+    var group = vec2u(0u, 1u << 31u);
+    var depth = 0u;
     ray_is_cut = true;
-    var is_leaf_cut = false;
     // The `break` ends this loop before its limit, because no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
         turns += 1u;
-        let count = node.count & COUNT_MASK;
-        var next = NONE;
-        if count > 0u {
-            var i = 0u;
-            // Terminates, because a leaf has at most COUNT_MASK spheres.
-            for (; i < count; i++) {
-                let number = node.first + i;
-                nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);
-            }
-            turns += count;
-            is_leaf_cut = i < count;
-        } else {
-            let left = node_at(node.first);
-            let right = node_at(node.first + 1u);
-            let limit = bitcast<f32>(nearest.key);
-            let left_key = box_key(slabs, left.low, left.high, limit);
-            let right_key = box_key(slabs, right.low, right.high, limit);
-            let left_is_near = left_key <= right_key;
-            if min(left_key, right_key) != MISS_KEY {
-                next = node.first + select(1u, 0u, left_is_near);
-                if max(left_key, right_key) != MISS_KEY {
-                    stack[depth] = node.first + select(0u, 1u, left_is_near);
-                    depth++;
-                }
-            }
+        let bit = firstLeadingBit(group.y);
+        let slot = (bit - 24u) ^ slope.octant;
+        let number = group.x + countOneBits(group.y & ((1u << slot) - 1u));
+        group.y &= ~(1u << bit);
+        if group.y >= 1u << 24u {
+            stack[depth] = group;
+            depth++;
         }
-        if next == NONE {
+        let limit = bitcast<f32>(nearest.key);
+        var hits: Hits;
+        if CWBVH {
+            hits = compressed_hits(number, slope, limit);
+        } else {
+            hits = whole_hits(number, slope, limit);
+        }
+        var left = hits.bits & ~NODE_HITS;
+        // Terminates, because each turn clears one of 24 bits.
+        for (; left != 0u; left &= left - 1u) {
+            turns += 1u;
+            let sphere = hits.first_sphere + firstTrailingBit(left);
+            nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(sphere), sphere, start), sphere);
+        }
+        group = vec2u(hits.first_child, (hits.bits & NODE_HITS) | hits.nodes);
+        if group.y < 1u << 24u {
             if depth == 0u {
-                ray_is_cut = is_leaf_cut;
+                ray_is_cut = left != 0u;
                 break;
             }
             depth--;
-            next = stack[depth];
+            group = stack[depth];
         }
-        node = node_at(next);
     }
     return nearest;
 }

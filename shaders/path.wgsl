@@ -142,9 +142,6 @@ fn intersect(ray: Ray) -> Nearest {
     if HIERARCHY {
         // A hit of the ground rules out the boxes behind it.
         nearest = take_anchored(ray, nearest, listed);
-        if CWBVH {
-            return traverse_cwbvh(ray, nearest);
-        }
         return traverse(ray, nearest);
     }
     for (var i = 0u; i < opaque_count; i++) {

@@ -61,8 +61,10 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             words[base] = near_root(ray, sphere, 1u);
             words[base + 1u] = nearest_root(ray, sphere, 1u);
             words[base + 2u] = book_root(ray, sphere, f(base, 14u));
-            words[base + 3u] = signed_root(ray, sphere, 1u);
-            words[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u);
+            // As `traverse` does: the chord of a ray inside, and the other spheres.
+            let start = select(ray.left, 1u, ray.inside == 1u);
+            words[base + 3u] = select(signed_root(ray, sphere, 1u, start), chord_end(ray, sphere), ray.inside == 1u);
+            words[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u, ray.left);
         }
         case PROBE_ANCHORED: {
             let ray = probe_ray(base);
@@ -132,14 +134,22 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         }
         case PROBE_BOX: {
             let slabs = slabs_of(probe_ray(base), f(base, 15u), BOX_MARGIN);
-            words[base] = box_key(slabs, v3(base, 8u), v3(base, 11u), f(base, 14u));
+            let slope = slope_of(slabs);
+            let low = fma(v3(base, 8u), slope.inverse, -slabs.low);
+            let high = fma(v3(base, 11u), slope.inverse, -slabs.high);
+            let near = select(low, high, slope.backward);
+            let far = select(high, low, slope.backward);
+            words[base] = hit_bits(
+                vec4f(near.x), vec4f(near.y), vec4f(near.z), vec4f(far.x), vec4f(far.y), vec4f(far.z),
+                f(base, 14u), vec4u(1u, 2u, 4u, 8u),
+            );
         }
         case PROBE_FOUR_HITS: {
             let grid = Grid(v3(base, 0u), v3(base, 3u), v3(base, 6u));
             let x = vec2u(words[base + 9u], words[base + 10u]);
             let y = vec2u(words[base + 11u], words[base + 12u]);
             let z = vec2u(words[base + 13u], words[base + 14u]);
-            words[base] = four_hits(grid, x, y, z, words[base + 15u], words[base + 16u], f(base, 17u));
+            words[base] = four_hits(grid, x, y, z, words[base + 15u], words[base + 16u] * 0x01010101u, f(base, 17u));
         }
         default: {}
     }

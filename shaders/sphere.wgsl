@@ -73,17 +73,19 @@ fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     return smaller_key(near, select(-1.0, far, (meets || enters) && !leaves));
 }
 
-// Distance to a sphere of a hierarchy. Its squared radius is negative if only the nearer root counts.
-fn signed_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
+// Distance to a sphere of a hierarchy, unless the ray starts on it. Its squared radius is negative if only the nearer
+// root counts.
+fn signed_root(ray: Ray, sphere: vec4f, number: u32, start: u32) -> u32 {
     let hd = chord(ray, vec4f(sphere.xyz, abs(sphere.w)));
     let s = sqrt(max(hd.y, 0.0));
-    let meets = hd.y >= 0.0;
-    let leaves = ray.left == number;
-    let enters = ray.inside == number;
-    let both = sphere.w >= 0.0;
-    let near = select(-1.0, hd.x - s, meets && !leaves && !(enters && both));
-    let far = hd.x + select(s, abs(hd.x), enters);
-    return smaller_key(near, select(-1.0, far, both && (meets || enters) && !leaves));
+    let key = select(bitcast<u32>(hd.x - s), smaller_key(hd.x - s, hd.x + s), sphere.w >= 0.0);
+    return select(MISS_KEY, key, hd.y >= 0.0 && number != start);
+}
+
+// Distance to the far end of the chord of a ray that enters a sphere from its surface.
+fn chord_end(ray: Ray, sphere: vec4f) -> u32 {
+    let h = dot3(ray.direction, sphere.xyz - ray.origin);
+    return bitcast<u32>(h + abs(h));
 }
 
 // Distance to an anchored sphere: everything is measured from the anchor.

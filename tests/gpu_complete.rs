@@ -67,8 +67,8 @@ fn steep_glass() -> (Scene, Camera) {
 #[test]
 fn paths_that_are_put_aside_give_the_same_film() {
     let scenes: [(Scene, Camera); 3] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA), steep_glass()];
-    for hierarchy in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
-        let options = GpuOptions { hierarchy, ..GpuOptions::default() };
+    for hierarchy in [HierarchyKind::Whole, HierarchyKind::Compressed] {
+        let options = GpuOptions { hierarchy: Some(hierarchy), ..GpuOptions::default() };
         let Some(mut at_once) = gpu(options.clone()) else { return };
         let mut in_turns = gpu(GpuOptions { turn_limit: Some(1), ..options }).unwrap();
         for (scene, camera) in &scenes {

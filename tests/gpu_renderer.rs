@@ -177,9 +177,9 @@ fn fuzzless(job: &RenderJob) -> RenderJob {
 
 #[test]
 fn hierarchies_agree() {
-    let options = |hierarchy| GpuOptions { hierarchy, ..GpuOptions::default() };
-    let Some(mut bvh2) = gpu(options(HierarchyKind::Bvh2)) else { return };
-    let Some(mut cwbvh) = gpu(options(HierarchyKind::Cwbvh)) else { return };
+    let options = |hierarchy| GpuOptions { hierarchy: Some(hierarchy), ..GpuOptions::default() };
+    let Some(mut whole) = gpu(options(HierarchyKind::Whole)) else { return };
+    let Some(mut compressed) = gpu(options(HierarchyKind::Compressed)) else { return };
     let (book, fields) = ((book(), BOOK_CAMERA), field(2000));
     // Each sphere twice, in different materials: at a tie, the first in the list is hit.
     let mut twice = field(300);
@@ -189,11 +189,11 @@ fn hierarchies_agree() {
     twice.0.spheres.extend(again);
     for (name, (scene, camera)) in [("book", book), ("field", fields), ("field twice", twice)] {
         let job = job_of(&scene, camera, [96, 54], 20, SamplerKind::Sobol, false);
-        let (a, b) = (rendered(&mut bvh2, &job, 4), rendered(&mut cwbvh, &job, 4));
+        let (a, b) = (rendered(&mut whole, &job, 4), rendered(&mut compressed, &job, 4));
         assert!(a == b, "{name}");
         assert!(a.means().iter().any(|mean| mean[1] < 0.4), "{name} shows spheres");
-        assert!(cwbvh.report().features.contains("compressed hierarchy"), "{name}");
-        assert!(!bvh2.report().features.contains("compressed hierarchy"), "{name}");
+        assert!(compressed.report().features.contains("compressed hierarchy"), "{name}");
+        assert!(!whole.report().features.contains("compressed hierarchy"), "{name}");
     }
 }
 

@@ -79,8 +79,10 @@ fn closed_forms_hold() {
         ("a closed ball on the ground", vec![(DVec3::ZERO, 1.0, WHITE), ground], inside, 300, 0.0),
         ("total reflection", vec![(DVec3::ZERO, 1.0, GLASS)], trapped, 1000, 0.0),
     ];
-    for kind in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
-        let Some(mut gpu) = gpu(GpuOptions { hierarchy: kind, ..GpuOptions::default() }) else { return };
+    for kind in [HierarchyKind::Whole, HierarchyKind::Compressed] {
+        let Some(mut gpu) = gpu(GpuOptions { hierarchy: Some(kind), ..GpuOptions::default() }) else {
+            return;
+        };
         for (what, balls, camera, max_depth, expected) in &cases {
             for balls in [balls.clone(), among_many(balls)] {
                 let found = mean(&film(&mut gpu, &job(&balls, *camera, *max_depth)));

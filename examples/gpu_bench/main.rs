@@ -1,10 +1,10 @@
 //! Times the GPU backend; benches/gpu.sh calls it.
 //!
-//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [bvh2] [samples=N] [target_ms=N] [adapter=NAME]`
+//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [whole|compressed] [samples=N] [target_ms=N] [adapter=NAME]`
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
-//! `gpu_bench pair SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [OPTION...]` runs both hierarchies in turn and prints the
-//! median of each and of the ratios.
-//! `gpu_bench hierarchy SCENE...` prints the size of both hierarchies and how long they take to build.
+//! `gpu_bench pair SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [OPTION...]` runs whole and compressed
+//! boxes in turn and prints the median of each and of the ratios.
+//! `gpu_bench hierarchy SCENE...` prints the size of both kinds and how long the hierarchy takes to build.
 //! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
 //! `gpu_bench work SCENE...` prints the operations of one turn of the path loop, for scenes without a hierarchy.
@@ -18,10 +18,8 @@ use kernel_count::Counted;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
-use weekender::kernel::Node;
 use weekender::prepared::PreparedScene;
-use weekender::prepared::cwbvh::{CwBvhNode, Cwbvh};
-use weekender::prepared::hierarchy::{Effort, Hierarchy};
+use weekender::prepared::wide_bvh::{CwBvhNode, WideBvh};
 use weekender::progressive::{Plan, Progressive, RenderRequest};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, Renderer};
@@ -62,7 +60,8 @@ fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
     for option in arguments {
         match option.split_once('=') {
             None if option == "general" => options.specialise = false,
-            None if option == "bvh2" => options.hierarchy = HierarchyKind::Bvh2,
+            None if option == "whole" => options.hierarchy = Some(HierarchyKind::Whole),
+            None if option == "compressed" => options.hierarchy = Some(HierarchyKind::Compressed),
             Some(("samples", count)) => options.samples_per_dispatch = Some(count.parse()?),
             Some(("target_ms", ms)) => options.dispatch_target = Duration::from_millis(ms.parse()?),
             Some(("adapter", name)) => options.adapter = Some(name.to_owned()),
@@ -122,7 +121,7 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
     let range = 0..samples.parse()?;
     let go_on = AtomicBool::new(false);
     let mut renderers = Vec::new();
-    for hierarchy in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
+    for hierarchy in [HierarchyKind::Compressed, HierarchyKind::Whole].map(Some) {
         renderers.push(GpuRenderer::new(GpuOptions { hierarchy, ..options_of(rest)? })?);
     }
     let mut times = [Vec::new(), Vec::new()];
@@ -134,13 +133,14 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
             }
         }
     }
-    let ratios: Vec<f64> = times[1].iter().zip(&times[0]).map(|(cwbvh, bvh2)| cwbvh / bvh2).collect();
-    let [bvh2, cwbvh] = &times;
+    let ratios: Vec<f64> =
+        times[1].iter().zip(&times[0]).map(|(whole, compressed)| whole / compressed).collect();
+    let [compressed, whole] = &times;
     println!(
         "| {} | {:.1} | {:.1} | {:.2} |",
         arguments.join(" "),
-        median(bvh2),
-        median(cwbvh),
+        median(compressed),
+        median(whole),
         median(&ratios)
     );
     Ok(())
@@ -150,26 +150,17 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
     let prepared = PreparedScene::<f32>::new(&job);
     let spheres: Vec<_> = prepared.spheres_of_hierarchy(&job).collect();
-    let [mut bvh2_times, mut cwbvh_times] = [Vec::new(), Vec::new()];
     let count = spheres.len() as f64;
-    let ms = |start: Instant| start.elapsed().as_secs_f64() * 1e3;
-    let mut sizes = [0, 0];
+    let mut times = Vec::new();
+    let mut sizes = [0.0; 2];
     for _ in 0..5 {
         let start = Instant::now();
-        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), prepared.origin, Effort::Quick);
-        bvh2_times.push(ms(start));
-        let start = Instant::now();
-        let cwbvh = Cwbvh::build(spheres.iter().copied(), prepared.origin);
-        cwbvh_times.push(ms(start));
-        sizes = [bvh2.nodes.len() * size_of::<Node<f32>>(), cwbvh.nodes.len() * size_of::<CwBvhNode>()];
+        let built = WideBvh::build(spheres.iter().copied(), prepared.origin);
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+        let bytes = [built.nodes.len() * size_of::<CwBvhNode>(), size_of_val(&*built.whole_nodes())];
+        sizes = bytes.map(|bytes| bytes as f64 / count + size_of::<u32>() as f64);
     }
-    println!(
-        "| {scene} | {:.1} | {:.1} | {:.2} | {:.2} |",
-        sizes[0] as f64 / count,
-        sizes[1] as f64 / count + size_of::<u32>() as f64,
-        median(&bvh2_times),
-        median(&cwbvh_times),
-    );
+    println!("| {scene} | {:.1} | {:.1} | {:.2} |", sizes[0], sizes[1], median(&times));
     Ok(())
 }
 

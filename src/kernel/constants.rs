@@ -55,10 +55,7 @@ constants! {
     /// Capacity of the uniform buffer in anchored spheres.
     pub const UNIFORM_ANCHORED: usize = 4;
 
-    /// Stack entries of a traversal, one per level, and therefore the most levels of a tree.
-    pub const STACK_SIZE: usize = 64;
-
-    /// Stack entries of a traversal of the compressed hierarchy.
+    /// Stack entries of a traversal on the GPU, one per level, and therefore the most levels of a tree.
     pub const CWBVH_STACK_SIZE: usize = 24;
 
     /// Words of a probe's input and output.
@@ -75,9 +72,6 @@ constants! {
 
     /// Bit of an anchored sphere's flags that is set if the eye is on its surface.
     pub const UNDER_EYE: u32 = 4;
-
-    /// Bits of a node's count that hold the number of spheres.
-    pub const COUNT_MASK: u32 = (1 << 29) - 1;
 
     /// Bits of the distance where nothing is hit.
     pub const INFINITE_KEY: u32 = 0x7F80_0000;
@@ -121,6 +115,12 @@ constants! {
     FIXED_POINT_SCALE: f64,
     FIXED_POINT_MAX: f64,
 }
+
+/// Stack entries of a traversal on the CPU, one per level, and therefore the most levels of a tree.
+pub const STACK_SIZE: usize = 64;
+
+/// Bits of a node's count that hold the number of spheres.
+pub const COUNT_MASK: u32 = (1 << 29) - 1;
 
 /// Half a unit in the last place of 1, in `f32`.
 pub const HALF_EPSILON: f64 = f32::EPSILON as f64 / 2.0;

@@ -160,21 +160,19 @@ impl<R: Copy> CameraTable<R> {
     }
 }
 
-record! {
-    /// A node of the hierarchy: a box and its contents.
-    #[derive(Clone, Copy, Debug, Default, PartialEq)]
-    pub struct Node<R> as "Node" {
-        /// Lowest corner of the box.
-        pub low: [R; 3],
-        /// First sphere of a leaf, or first of two adjacent children.
-        pub first: u32,
-        /// Highest corner of the box.
-        pub high: [R; 3],
-        /// For a leaf, the number of spheres in the bits of `COUNT_MASK`. For an inner node these bits are 0; bits 30
-        /// and 31 hold the axis that separates the children, and bit 29 is set if the second child comes before the
-        /// first.
-        pub count: u32,
-    }
+/// A node of the CPU's hierarchy: a box and its contents.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Node<R> {
+    /// Lowest corner of the box.
+    pub low: [R; 3],
+    /// First sphere of a leaf, or first of two adjacent children.
+    pub first: u32,
+    /// Highest corner of the box.
+    pub high: [R; 3],
+    /// For a leaf, the number of spheres in the bits of `COUNT_MASK`. For an inner node these bits are 0; bits 30 and 31
+    /// hold the axis that separates the children, and bit 29 is set if the second child comes before the first.
+    pub count: u32,
 }
 
 record! {
@@ -346,7 +344,6 @@ all! {
     ShadingRecord<f32> = RECORD_COLUMNS * size_of::<f32>(),
     AnchoredSphere<f32> = size_of::<AnchoredSphere<f32>>(),
     CameraTable<f32> = size_of::<CameraTable<f32>>(),
-    Node<f32> = size_of::<Node<f32>>(),
     GpuCwbvhNode = size_of::<GpuCwbvhNode>(),
     GpuJob = size_of::<GpuJob>(),
     GpuDispatch = size_of::<GpuDispatch>(),

@@ -3,12 +3,12 @@
 mod bounded;
 mod camera;
 mod contacts;
-pub mod cwbvh;
 mod facts;
 mod groups;
 pub mod hierarchy;
 mod parted;
 mod validate;
+pub mod wide_bvh;
 
 use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{

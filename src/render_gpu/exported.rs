@@ -32,7 +32,7 @@ impl Exported {
     /// If the hierarchy has more levels than a traversal supports.
     pub fn new(job: &RenderJob) -> Result<Self, String> {
         let prepared = PreparedScene::<f32>::new(job);
-        let kind = HierarchyKind::Cwbvh;
+        let kind = HierarchyKind::Compressed;
         let data = SceneData::new(job, &prepared, kind)?;
         let features = kind.in_features(prepared.features);
         Ok(Exported {

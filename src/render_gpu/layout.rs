@@ -6,7 +6,7 @@ pub use crate::kernel::{
     WORKGROUP_SIZE,
 };
 use crate::prepared::PreparedScene;
-use crate::prepared::cwbvh::CwBvhNode;
+use crate::prepared::wide_bvh::CwBvhNode;
 use crate::render::RenderSettings;
 
 impl GpuJob {

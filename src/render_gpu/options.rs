@@ -16,20 +16,28 @@ pub const PATIENCE: Duration = Duration::from_secs(8);
 /// Factor for the wait at a kernel's first dispatch, when the driver may have to compile it.
 pub const COMPILING_PATIENCE: u32 = 6;
 
-/// The kind of hierarchy for scenes of many spheres. Both kinds find the same hits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The boxes in the hierarchy of scenes of many spheres. Both kinds find the same hits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HierarchyKind {
-    /// Two children per node: the hierarchy of the prepared scene, which the CPU uses, too.
-    Bvh2,
-    /// Eight children per node, with compressed boxes.
-    #[default]
-    Cwbvh,
+    /// Whole boxes, 240 bytes per node: half the instructions.
+    Whole,
+    /// Compressed boxes, 80 bytes per node (CWBVH): a third of the memory.
+    Compressed,
 }
 
+/// Most spheres of a hierarchy with whole boxes. Nodes and spheres of so many fit the first-level cache of a
+/// multiprocessor (256 kB on the H100).
+const WHOLE_LIMIT: usize = 3000;
+
 impl HierarchyKind {
+    /// The faster kind. Software adapters are faster with compressed boxes.
+    pub(super) fn of(is_software: bool, spheres: usize) -> Self {
+        if is_software || spheres > WHOLE_LIMIT { HierarchyKind::Compressed } else { HierarchyKind::Whole }
+    }
+
     /// The features of a kernel that traverses a hierarchy of this kind, if it traverses one.
     pub(super) fn in_features(self, features: Features) -> Features {
-        Features { cwbvh: features.hierarchy && self == HierarchyKind::Cwbvh, ..features }
+        Features { cwbvh: features.hierarchy && self == HierarchyKind::Compressed, ..features }
     }
 }
 
@@ -84,8 +92,8 @@ pub struct GpuOptions {
     pub dispatch_target: Duration,
     /// Whether kernels contain only what the job needs. Turned off to measure the gain.
     pub specialise: bool,
-    /// The kind of hierarchy for scenes of many spheres.
-    pub hierarchy: HierarchyKind,
+    /// The kind of hierarchy for scenes of many spheres; by default the faster one.
+    pub hierarchy: Option<HierarchyKind>,
     /// Samples per pixel in a dispatch, for measurements; by default as many as the target time allows.
     pub samples_per_dispatch: Option<u64>,
     /// Loop turns after which a thread puts its path aside, for tests; by default as many as are safe.
@@ -105,7 +113,7 @@ impl Default for GpuOptions {
             allow_software: false,
             dispatch_target: BATCH_TARGET,
             specialise: true,
-            hierarchy: HierarchyKind::default(),
+            hierarchy: None,
             samples_per_dispatch: None,
             turn_limit: None,
             film_limit: None,
@@ -211,10 +219,10 @@ mod tests {
     #[test]
     fn only_a_kernel_with_a_hierarchy_traverses_the_compressed_one() {
         for (hierarchy, kind, expected) in [
-            (true, HierarchyKind::Cwbvh, true),
-            (true, HierarchyKind::Bvh2, false),
-            (false, HierarchyKind::Cwbvh, false),
-            (false, HierarchyKind::Bvh2, false),
+            (true, HierarchyKind::Compressed, true),
+            (true, HierarchyKind::Whole, false),
+            (false, HierarchyKind::Compressed, false),
+            (false, HierarchyKind::Whole, false),
         ] {
             // Whatever the features say, the kind decides.
             for cwbvh in [false, true] {

@@ -2,9 +2,9 @@
 
 use super::HierarchyKind;
 use super::layout::{GpuCwbvhNode, GpuJob};
-use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, RECORD_COLUMNS, STACK_SIZE, words_of};
+use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
-use crate::prepared::cwbvh::Cwbvh;
+use crate::prepared::wide_bvh::WideBvh;
 use crate::render::RenderJob;
 use std::borrow::Cow;
 
@@ -36,18 +36,10 @@ impl SceneData {
             node_count: 0,
         };
         let Some(hierarchy) = &prepared.hierarchy else { return Ok(data) };
-        let (depth, room) = match kind {
-            HierarchyKind::Bvh2 => {
-                let nodes = words_of(&hierarchy.nodes);
-                let count = hierarchy.nodes.len();
-                data.take_nodes(count, bytemuck::cast_slice(&nodes), hierarchy.ranks.iter().copied());
-                (hierarchy.depth(), STACK_SIZE)
-            }
-            HierarchyKind::Cwbvh => (data.take_cwbvh(job, prepared, &hierarchy.ranks), CWBVH_STACK_SIZE),
-        };
-        if depth > room {
+        let depth = data.take_hierarchy(job, prepared, &hierarchy.ranks, kind);
+        if depth > CWBVH_STACK_SIZE {
             return Err(format!(
-                "the hierarchy has {depth} levels, but the kernel has room for {room}; render this scene on the CPU"
+                "the hierarchy has {depth} levels, but the kernel has room for {CWBVH_STACK_SIZE}; render this scene on the CPU"
             ));
         }
         Ok(data)
@@ -70,29 +62,35 @@ impl SceneData {
         ]
     }
 
-    /// Builds the compressed hierarchy, puts spheres and records in the order of its leaves, and returns its depth.
-    fn take_cwbvh(&mut self, job: &RenderJob, prepared: &PreparedScene<f32>, ranks: &[u32]) -> usize {
-        let built = Cwbvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
+    /// Builds the hierarchy, puts spheres and records in the order of its leaves, and returns its depth.
+    fn take_hierarchy(
+        &mut self,
+        job: &RenderJob,
+        prepared: &PreparedScene<f32>,
+        ranks: &[u32],
+        kind: HierarchyKind,
+    ) -> usize {
+        let built = WideBvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
         let records: Vec<_> = built.order.iter().map(|i| self.records[*i as usize]).collect();
         self.records[..records.len()].copy_from_slice(&records);
         let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
         self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
-        let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();
-        let ranks = built.order.iter().map(|place| ranks[*place as usize]);
-        self.take_nodes(nodes.len(), bytemuck::cast_slice(&nodes), ranks);
-        built.depth()
-    }
-
-    fn take_nodes(&mut self, count: usize, nodes: &[[u32; 4]], ranks: impl Iterator<Item = u32>) {
-        self.node_count = count as u32;
-        self.nodes = nodes.to_vec();
-        let ranks: Vec<u32> = ranks.collect();
+        self.node_count = built.nodes.len() as u32;
+        self.nodes = match kind {
+            HierarchyKind::Whole => built.whole_nodes(),
+            HierarchyKind::Compressed => {
+                let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();
+                bytemuck::cast_slice(&nodes).to_vec()
+            }
+        };
+        let ranks: Vec<u32> = built.order.iter().map(|place| ranks[*place as usize]).collect();
         self.nodes.extend(ranks.chunks(4).map(|four| {
             let mut places = [0; 4];
             places[..four.len()].copy_from_slice(four);
             places
         }));
+        built.depth()
     }
 }
 
@@ -100,22 +98,6 @@ impl SceneData {
 mod tests {
     use super::*;
     use crate::recipe::Recipe;
-
-    #[test]
-    fn both_hierarchies_know_which_sphere_of_the_scene_each_row_is() {
-        let job = Recipe::find("field:500").unwrap().job().unwrap();
-        let prepared = PreparedScene::<f32>::new(&job);
-        let of = |kind| SceneData::new(&job, &prepared, kind).unwrap();
-        let (narrow, wide) = (of(HierarchyKind::Bvh2), of(HierarchyKind::Cwbvh));
-        assert!(narrow.spheres != wide.spheres, "they have orders of their own");
-        let by_index = |data: &SceneData| {
-            let spheres = data.scene_index.iter().copied().zip(data.spheres.iter().copied());
-            let mut rows: Vec<(u32, [f32; 4])> = spheres.collect();
-            rows.sort_by_key(|row| row.0);
-            rows
-        };
-        assert_eq!(by_index(&wide), by_index(&narrow));
-    }
 
     #[test]
     fn each_sphere_has_its_record_and_its_rank() {
@@ -135,11 +117,11 @@ mod tests {
             ranks.sort_unstable();
             ranks
         };
-        let narrow = ranks_in_the_scene(HierarchyKind::Bvh2, 2);
-        assert_eq!(ranks_in_the_scene(HierarchyKind::Cwbvh, 5), narrow);
-        let mut order: Vec<u32> = narrow.iter().map(|(_, rank)| *rank).collect();
+        let whole = ranks_in_the_scene(HierarchyKind::Whole, 15);
+        assert_eq!(ranks_in_the_scene(HierarchyKind::Compressed, 5), whole);
+        let mut order: Vec<u32> = whole.iter().map(|(_, rank)| *rank).collect();
         order.sort_unstable();
-        assert!(order.into_iter().eq(0..narrow.len() as u32), "each rank once");
+        assert!(order.into_iter().eq(0..whole.len() as u32), "each rank once");
     }
 
     #[test]
@@ -147,7 +129,7 @@ mod tests {
         for name in ["three-spheres", "field:500"] {
             let job = Recipe::find(name).unwrap().job().unwrap();
             let prepared = PreparedScene::<f32>::new(&job);
-            let data = SceneData::new(&job, &prepared, HierarchyKind::Cwbvh).unwrap();
+            let data = SceneData::new(&job, &prepared, HierarchyKind::Compressed).unwrap();
             let buffers = data.buffers(&prepared);
             let bytes = buffers.each_ref().map(|(label, bytes)| (*label, bytes.len()));
             let spheres = prepared.opaque.len() + prepared.two_root.len();

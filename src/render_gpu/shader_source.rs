@@ -42,13 +42,12 @@ impl EntryPoint {
 }
 
 /// The files with functions and bindings that all entry points share.
-const SHARED: [&str; 11] = [
+const SHARED: [&str; 10] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
     include_str!("../../shaders/sphere.wgsl"),
     include_str!("../../shaders/bvh.wgsl"),
-    include_str!("../../shaders/cwbvh.wgsl"),
     include_str!("../../shaders/bindings.wgsl"),
     include_str!("../../shaders/material.wgsl"),
     include_str!("../../shaders/path.wgsl"),
@@ -65,7 +64,7 @@ pub enum Probe {
     Sobol,
     /// `unit_float` and `sin_cos_turns`.
     SinCos,
-    /// `near_root`, `nearest_root`, `book_root` and `signed_root`.
+    /// `near_root`, `nearest_root`, `book_root`, `signed_root` and `chord_end`.
     Roots,
     /// `anchored_root` and `anchored_surface_point`.
     Anchored,
@@ -79,7 +78,7 @@ pub enum Probe {
     FixedPoint,
     /// `incidence_of`, `incidence_of_sine2`, `hemisphere` and `strip_reflectance`.
     Incidence,
-    /// `slabs_of` and `box_key`.
+    /// `slabs_of`, `slope_of` and `hit_bits`.
     Box,
     /// `four_hits`.
     FourHits,

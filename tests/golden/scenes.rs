@@ -4,7 +4,7 @@ use crate::common::{at_once, check, digest, digest_of};
 use std::fmt::Write as _;
 use weekender::kernel::Real;
 use weekender::prepared::PreparedScene;
-use weekender::prepared::cwbvh::Cwbvh;
+use weekender::prepared::wide_bvh::WideBvh;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{to_picture_toml, to_toml};
 use weekender::scene::builtin::BuiltinScene;
@@ -59,7 +59,7 @@ fn prepared_scenes_are_as_kept() {
     let scenes = BuiltinScene::ALL.iter().map(|scene| Recipe::find(scene.name).unwrap());
     let recipes: Vec<Recipe> = Stage::ALL.iter().map(Stage::recipe).chain(scenes).chain(fields).collect();
     let texts = at_once(&recipes, |recipe| {
-        let wide = Cwbvh::build(recipe.scene.spheres.iter(), recipe.camera.look_from);
+        let wide = WideBvh::build(recipe.scene.spheres.iter(), recipe.camera.look_from);
         format!(
             "{}, {}x{}, {} samples, scene {}, picture {}\n  wide {} nodes, depth {}, order {}\n{}  in f64 {}\n",
             recipe.name,

@@ -3,7 +3,7 @@
 use super::gpu_common::gpu;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
-use weekender::kernel::{BOX_WIDENING, MISS_KEY, NONE, Node};
+use weekender::kernel::{BOX_WIDENING, NONE, Node};
 use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_gpu::GpuOptions;
@@ -76,7 +76,8 @@ fn boxes_are_met_alike() {
         let (limit, extent) = (float(&input, 14), float(&input, 15));
         let node = Node { low, first: 0, high, count: 1 };
         let on_cpu = !misses_box(L, &slabs_of(L, &rays(&input), extent), &node, Single(limit));
-        let on_gpu = output[0] != MISS_KEY;
+        assert!(output[0] == 0 || output[0] == 15, "four times the same box: {:b}", output[0]);
+        let on_gpu = output[0] != 0;
         let rays = rays(&input);
         let [enter, leave] = slab(list(rays.origin), list(rays.direction), low, high, limit);
         // Boxes are enlarged slightly, which matters most along an axis along which the ray hardly moves.
@@ -84,8 +85,6 @@ fn boxes_are_met_alike() {
         let margin = 2e-5 / f64::from(slowest);
         if leave - enter > 0.0 {
             assert!(on_cpu && on_gpu, "{input:?}");
-            let entered = f64::from(f32::from_bits(output[0]));
-            assert!((entered - enter).abs() < margin, "{input:?}: {entered} in place of {enter}");
             met += 1;
         } else if leave - enter < -4.0 * margin {
             assert!(!on_cpu && !on_gpu, "{input:?}");

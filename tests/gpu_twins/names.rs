@@ -33,7 +33,10 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "sphere.wgsl",
         twins: &["sphere.rs"],
-        shader_alone: &[("smaller_key", "`Lanes::min_key`")],
+        shader_alone: &[
+            ("smaller_key", "`Lanes::min_key`"),
+            ("chord_end", "a thread tests the glass that it is inside of before the hierarchy"),
+        ],
         twin_alone: &[
             ("splat", "a sphere for all lanes"),
             ("load", "a sphere for all lanes"),
@@ -48,10 +51,20 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "bvh.wgsl",
         twins: &["bvh.rs"],
-        shader_alone: &[("box_key", "`misses_box` with the distance, by which a thread orders the children")],
+        shader_alone: &[
+            ("slope_of", "a thread knows in which direction its ray goes; the rays of a packet differ"),
+            ("hit_bits", "`misses_box` for four boxes"),
+            ("bytes_of", "compressed boxes"),
+            ("floats_of", "compressed boxes"),
+            ("four_hits", "compressed boxes"),
+            ("compressed_hits", "eight children"),
+            ("planes_at", "eight children"),
+            ("whole_hits", "eight children"),
+            ("in_order", "the order of eight children"),
+        ],
         twin_alone: &[
-            ("misses_box", "`box_key` without the distance: a packet has an order of its own"),
-            ("near_children", "the order of a packet; a thread orders children by `box_key`"),
+            ("misses_box", "one box for all lanes"),
+            ("near_children", "the order of two children for a packet"),
         ],
     },
     Pair {

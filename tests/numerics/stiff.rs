@@ -122,7 +122,7 @@ fn shells_and_crowds_have_low_trees() {
         assert!(order.iter().enumerate().all(|(place, rank)| place == *rank as usize), "each once");
         println!("{} spheres: {} levels", spheres.len(), hierarchy.depth());
         assert!(hierarchy.depth() <= DEPTH_LIMIT);
-        assert!(weekender::prepared::cwbvh::Cwbvh::build(spheres, DVec3::ZERO).depth() <= 24);
+        assert!(weekender::prepared::wide_bvh::WideBvh::build(spheres, DVec3::ZERO).depth() <= 24);
     }
 }
 

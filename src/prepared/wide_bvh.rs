@@ -1,4 +1,5 @@
-//! A compressed wide hierarchy: eight children per node, 8 bits per box bound, 80 bytes per node.
+//! The GPU's hierarchy, with eight children per node. Its boxes are compressed to 8 bits per bound (CWBVH, 80 bytes per
+//! node) or whole (240 bytes).
 //!
 //! Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs". obvhs
 //! builds the tree and lays out its nodes. This module recomputes the boxes, so that rounding never makes a box smaller
@@ -25,30 +26,57 @@ pub const DEPTH_LIMIT: usize = CWBVH_STACK_SIZE;
 /// Largest value of a compressed bound.
 const BOUND_MAX: f64 = 255.0;
 
-/// The nodes of a compressed hierarchy, root first.
+/// Rows of four words in a node with whole boxes. Twin: `WHOLE_ROWS` in shaders/bvh.wgsl.
+const WHOLE_ROWS: usize = 15;
+
+/// The nodes of a wide hierarchy, root first.
 #[derive(Clone, Debug)]
-pub struct Cwbvh {
-    /// All nodes; children come after their parents.
+pub struct WideBvh {
+    /// All nodes, with compressed boxes; children come after their parents.
     pub nodes: Vec<CwBvhNode>,
+    /// The whole boxes of each node's children.
+    boxes: Vec<[Aabb; 8]>,
     /// For each place in the order of the leaves, the index of the sphere.
     pub order: Vec<u32>,
 }
 
-impl Cwbvh {
+impl WideBvh {
     /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
     pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
         let bounded = Bounded::all(spheres, &origin);
         let wide = |tree: Bvh2| {
             let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
-            Cwbvh { nodes: wide.nodes, order: wide.primitive_indices }
+            WideBvh { nodes: wide.nodes, boxes: Vec::new(), order: wide.primitive_indices }
         };
-        let fits = |built: &Cwbvh| built.depth() <= DEPTH_LIMIT;
+        let fits = |built: &WideBvh| built.depth() <= DEPTH_LIMIT;
         let mut built =
             build_tree(&bounded, Leaves::SINGLE, Effort::Quick, wide, fits, &AtomicBool::new(false));
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         debug_assert_eq!(built.validate(&bounded), Ok(()));
         built
+    }
+
+    /// The nodes with whole boxes, as rows of four words. Rows 0 to 11 hold the bounds of children 0 to 3 and 4 to 7,
+    /// lower then upper, along x, y and z. Rows 12 and 13 hold the bits that each child adds to a mask of hits. Row 14
+    /// holds the first child, the first sphere, and which children are nodes.
+    pub fn whole_nodes(&self) -> Vec<[u32; 4]> {
+        let mut rows = Vec::with_capacity(WHOLE_ROWS * self.nodes.len());
+        for (node, boxes) in self.nodes.iter().zip(&self.boxes) {
+            let mut whole = [[0; 4]; WHOLE_ROWS];
+            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+                let (four, column) = (child / 4, child % 4);
+                for axis in 0..3 {
+                    whole[4 * axis + four][column] = boxes[child].min[axis].to_bits();
+                    whole[4 * axis + 2 + four][column] = boxes[child].max[axis].to_bits();
+                }
+                let mark = u32::from(node.child_meta[child]);
+                whole[12 + four][column] = (mark >> 5) << (mark & 31);
+            }
+            whole[14] = [node.child_base_idx, node.primitive_base_idx, u32::from(node.imask), 0];
+            rows.extend(whole);
+        }
+        rows
     }
 
     /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
@@ -104,6 +132,7 @@ impl Cwbvh {
     /// Computes all boxes from the spheres' boxes, given in the order of the leaves.
     fn set_boxes(&mut self, spheres: &[Aabb]) {
         let mut boxes = vec![Aabb::empty(); self.nodes.len()];
+        self.boxes = vec![[Aabb::empty(); 8]; self.nodes.len()];
         for index in (0..self.nodes.len()).rev() {
             let node = &mut self.nodes[index];
             let children: [Aabb; 8] = std::array::from_fn(|child| {
@@ -118,6 +147,7 @@ impl Cwbvh {
             });
             boxes[index] = united(&children);
             set_children(node, &boxes[index], &children);
+            self.boxes[index] = children;
         }
     }
 
@@ -174,7 +204,7 @@ mod tests {
     use crate::scene::builtin::field;
 
     fn check(spheres: &[Sphere]) {
-        let built = Cwbvh::build(spheres, DVec3::ZERO);
+        let built = WideBvh::build(spheres, DVec3::ZERO);
         assert_eq!(built.validate(&Bounded::all(spheres, &DVec3::ZERO)), Ok(()));
     }
 
@@ -194,14 +224,53 @@ mod tests {
         check(&[field(1).0.spheres[0]; 40]);
     }
 
+    /// The bounds, marks and links of whole nodes, read back, are those of the compressed nodes or within them.
+    #[test]
+    fn whole_boxes_lie_within_compressed_ones_and_hold_their_spheres() {
+        let spheres = field(3000).0.spheres;
+        let built = WideBvh::build(&spheres, DVec3::ZERO);
+        let rows = built.whole_nodes();
+        assert_eq!(rows.len(), WHOLE_ROWS * built.nodes.len());
+        let mut held = 0;
+        for (node, rows) in built.nodes.iter().zip(rows.chunks_exact(WHOLE_ROWS)) {
+            assert_eq!(rows[14][..3], [node.child_base_idx, node.primitive_base_idx, u32::from(node.imask)]);
+            for child in 0..8 {
+                let mark = u32::from(node.child_meta[child]);
+                assert_eq!(rows[12 + child / 4][child % 4], (mark >> 5) << (mark & 31));
+                if node.is_child_empty(child) {
+                    continue;
+                }
+                let bound = |row: usize| {
+                    DVec3::from(
+                        [0, 4, 8]
+                            .map(|axis| f64::from(f32::from_bits(rows[row + axis + child / 4][child % 4]))),
+                    )
+                };
+                let (low, high) = (bound(0), bound(2));
+                let [outer_low, outer_high] = corners(node, child);
+                assert!(outer_low.cmple(low).all() && outer_high.cmpge(high).all());
+                if node.is_leaf(child) {
+                    let (first, count) = node.child_primitives(child);
+                    for place in first..first + count {
+                        let sphere = &spheres[built.order[place as usize] as usize];
+                        assert!(low.cmplt(sphere.center - sphere.radius).all());
+                        assert!(high.cmpgt(sphere.center + sphere.radius).all());
+                        held += 1;
+                    }
+                }
+            }
+        }
+        assert_eq!(held, spheres.len());
+    }
+
     /// How a test damages a tree, and part of the error that the check must report.
-    type Damage = (&'static str, fn(&mut Cwbvh));
+    type Damage = (&'static str, fn(&mut WideBvh));
 
     #[test]
     fn damaged_nodes_are_refused() {
         let spheres = field(500).0.spheres;
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
-        let whole = Cwbvh::build(&spheres, DVec3::ZERO);
+        let whole = WideBvh::build(&spheres, DVec3::ZERO);
         let damages: [Damage; 6] = [
             ("two leaves", |tree| tree.order[0] = tree.order[1]),
             ("names sphere", |tree| tree.order[0] = 1 << 20),
