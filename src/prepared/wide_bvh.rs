@@ -1,5 +1,5 @@
 //! The GPU's hierarchy, with eight children per node. Its boxes are compressed to 8 bits per bound (CWBVH, 80 bytes per
-//! node) or whole (240 bytes).
+//! node) or whole (256 bytes).
 //!
 //! Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs". obvhs
 //! builds the tree and lays out its nodes. This module recomputes the boxes, so that rounding never makes a box smaller
@@ -27,7 +27,7 @@ pub const DEPTH_LIMIT: usize = CWBVH_STACK_SIZE;
 const BOUND_MAX: f64 = 255.0;
 
 /// Rows of four words in a node with whole boxes. Twin: `WHOLE_ROWS` in shaders/bvh.wgsl.
-const WHOLE_ROWS: usize = 15;
+const WHOLE_ROWS: usize = 16;
 
 /// The nodes of a wide hierarchy, root first.
 #[derive(Clone, Debug)]
@@ -59,7 +59,7 @@ impl WideBvh {
 
     /// The nodes with whole boxes, as rows of four words. Rows 0 to 11 hold the bounds of children 0 to 3 and 4 to 7,
     /// lower then upper, along x, y and z. Rows 12 and 13 hold the bits that each child adds to a mask of hits. Row 14
-    /// holds the first child, the first sphere, and which children are nodes.
+    /// holds the first child, the first sphere, and which children are nodes; row 15 is padding.
     pub fn whole_nodes(&self) -> Vec<[u32; 4]> {
         let mut rows = Vec::with_capacity(WHOLE_ROWS * self.nodes.len());
         for (node, boxes) in self.nodes.iter().zip(&self.boxes) {

@@ -19,7 +19,7 @@ pub const COMPILING_PATIENCE: u32 = 6;
 /// The boxes in the hierarchy of scenes of many spheres. Both kinds find the same hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HierarchyKind {
-    /// Whole boxes, 240 bytes per node: half the instructions.
+    /// Whole boxes, 256 bytes per node: three fifths of the instructions.
     Whole,
     /// Compressed boxes, 80 bytes per node (CWBVH): a third of the memory.
     Compressed,

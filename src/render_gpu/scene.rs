@@ -117,7 +117,7 @@ mod tests {
             ranks.sort_unstable();
             ranks
         };
-        let whole = ranks_in_the_scene(HierarchyKind::Whole, 15);
+        let whole = ranks_in_the_scene(HierarchyKind::Whole, 16);
         assert_eq!(ranks_in_the_scene(HierarchyKind::Compressed, 5), whole);
         let mut order: Vec<u32> = whole.iter().map(|(_, rank)| *rank).collect();
         order.sort_unstable();

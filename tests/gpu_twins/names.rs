@@ -59,6 +59,7 @@ const PAIRS: &[Pair] = &[
             ("four_hits", "compressed boxes"),
             ("compressed_hits", "eight children"),
             ("planes_at", "eight children"),
+            ("four_whole_hits", "eight children"),
             ("whole_hits", "eight children"),
             ("in_order", "the order of eight children"),
         ],
