@@ -159,16 +159,9 @@ fn unreadable(path: &Path, reason: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed};
+    use crate::app::tests::dressed;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-
-    fn drawn(check: Check, size: [f32; 2]) -> Harness<'static, Check> {
-        let draw = |ui: &mut egui::Ui, check: &mut Check| check.ui(ui.ctx());
-        let mut harness = dressed(size).build_ui_state(draw, check);
-        harness.run_steps(5);
-        harness
-    }
 
     /// A finding about a picture of this size.
     fn finding(size: [u32; 2]) -> Shown {
@@ -179,20 +172,6 @@ mod tests {
             size,
             textures: [(); 3].map(|()| Texture::new(size, &rgb8, None)),
         }
-    }
-
-    #[test]
-    fn the_check_of_a_picture_in_all_its_states() {
-        let mut drawings = Drawings::default();
-        let waiting = Check { waiting: Some("/of/mine.ppm".into()), ..Check::default() };
-        drawings.add("awaited", &drawn(waiting, [1280.0, 800.0]));
-        for (size, window) in
-            [([32, 18], [1280.0, 800.0]), ([9, 16], [1280.0, 800.0]), ([32, 18], [500.0, 400.0])]
-        {
-            let check = Check { shown: Some(finding(size)), ..Check::default() };
-            drawings.add(&format!("{size:?} in {window:?}"), &drawn(check, window));
-        }
-        drawings.keep("your_picture");
     }
 
     #[test]
@@ -208,16 +187,6 @@ mod tests {
             assert_eq!(told.ends_with("scene files end in .toml and films in .exr"), is_other, "{told}");
         }
         assert_eq!(unreadable(directory.path(), "a folder".to_owned()), "a folder");
-    }
-
-    #[test]
-    fn a_finding_stays_until_it_is_closed() {
-        let check = Check { shown: Some(finding([32, 18])), ..Check::default() };
-        let mut harness = drawn(check, [1280.0, 800.0]);
-        assert!(harness.state().words().unwrap().starts_with("The picture is that of stage sky."));
-        harness.get_by_label("Close window").click();
-        harness.run_steps(3);
-        assert_eq!(harness.state().words(), None);
     }
 
     #[test]

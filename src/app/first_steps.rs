@@ -118,7 +118,7 @@ fn hint(ui: &mut Ui, is_done: bool, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed, facts_of};
+    use crate::app::tests::{dressed, facts_of};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -141,33 +141,6 @@ mod tests {
     }
 
     const ROOM: Rect = Rect { min: egui::pos2(20.0, 10.0), max: egui::pos2(680.0, 490.0) };
-
-    #[test]
-    fn the_card_lists_what_to_try_in_the_stage_that_is_shown() {
-        let mut drawings = Drawings::default();
-        for words in ["--stage glass-schlick", "--stage ppm-tiny", "--stage sky", "--stage red-sphere"] {
-            drawings.add(words, &shown(words, ROOM));
-        }
-        for (name, over) in [
-            ("a narrow room", Rect::from_min_size(ROOM.min, vec2(220.0, 480.0))),
-            ("a low room", Rect::from_min_size(ROOM.min, vec2(660.0, 140.0))),
-            ("hardly any room", Rect::from_min_size(ROOM.min, vec2(60.0, 60.0))),
-        ] {
-            drawings.add(name, &shown("--stage glass-schlick", over));
-        }
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-            harness.run_steps(3);
-            drawings.add(&format!("{step:?} is done"), &harness);
-        }
-        assert!(harness.state().commands.is_empty(), "it says good-bye first");
-        drawings.add_tips(&mut harness);
-        harness.state_mut().facts.model.has_first_steps = false;
-        harness.run_steps(3);
-        drawings.add("closed", &harness);
-        drawings.keep("first_steps_card");
-    }
 
     #[test]
     fn buttons_lead_to_the_first_stage_and_close_the_card() {

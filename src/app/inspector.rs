@@ -217,7 +217,7 @@ mod tests {
     use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use crate::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;
@@ -292,39 +292,6 @@ mod tests {
                 assert!(texts.iter().any(|found| found == text), "{layer:?}: no {text} in {texts:?}");
             }
         }
-    }
-
-    #[test]
-    fn the_pixel_is_told_line_by_line() {
-        let mut document =
-            Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        document.set_size([32, 18]);
-        let plain = Pixel {
-            at: [16, 9],
-            mean: [0.5, 0.25, 1.0 / 3.0],
-            error: Some([1e-3, 0.25, 0.0]),
-            bytes: [188, 137, 155],
-            samples: 4096,
-        };
-        let sky = Pixel { at: [0, 1], error: None, ..plain.clone() };
-        let [other, scaled] =
-            [None, Some([7, 5])].map(|scaled| OtherPixel { mean: [0.75, 0.0, 2.0], scaled });
-        let mut drawings = Drawings::default();
-        for (name, pixel, layer, other) in [
-            ("a picture", Some(plain.clone()), None, None),
-            ("the sky", Some(sky), None, None),
-            ("normals", Some(plain.clone()), Some((Layer::Normals, [0.5, 1.0, 0.25])), None),
-            ("albedo", Some(plain.clone()), Some((Layer::Albedo, [0.125, 0.75, 1.0])), None),
-            ("rays", Some(plain.clone()), Some((Layer::RaysPerPath, [2.5; 3])), None),
-            ("a difference", Some(plain.clone()), None, Some(other)),
-            ("a difference that is scaled", Some(plain), None, Some(scaled)),
-            ("none", None, None, None),
-        ] {
-            let inspector = Inspector { pixel, ..Inspector::default() };
-            let panel = part([270.0, 400.0], |ui| inspector.ui(ui, &document, layer, other));
-            drawings.add(name, &panel);
-        }
-        drawings.keep("inspector");
     }
 
     #[test]

@@ -200,7 +200,7 @@ fn paint(ui: &mut Ui, timelines: &[Timeline; 2]) {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::app::tests::{Drawings, dressed};
+    use crate::app::tests::dressed;
     use crate::stages::Stage;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -227,23 +227,6 @@ mod tests {
         let mut harness = dressed(size).build_ui_state(draw, (packet, Vec::new()));
         harness.run_steps(3);
         harness
-    }
-
-    #[test]
-    fn each_lane_has_a_row_and_each_step_a_column() {
-        let mut drawings = Drawings::default();
-        for (stage, lanes, size) in [
-            ("metal-fuzzy", 4, [700.0, 400.0]),
-            ("red-sphere", 2, [700.0, 400.0]),
-            ("glass-schlick", 1, [300.0, 250.0]),
-        ] {
-            drawings.add(&format!("{stage}, {lanes} lanes, {size:?}"), &panel(stage, lanes, size));
-        }
-        let mut empty = panel("red-sphere", 2, [700.0, 400.0]);
-        empty.state_mut().0 = Packet::default();
-        empty.run_steps(3);
-        drawings.add("nothing is recorded yet", &empty);
-        drawings.keep("packets");
     }
 
     #[test]

@@ -110,7 +110,7 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::model::view::ViewState;
-    use crate::app::tests::{Drawings, until, window};
+    use crate::app::tests::{until, window};
     use crate::stages::Stage;
     use egui::pos2;
 
@@ -123,30 +123,6 @@ mod tests {
         assert_eq!(visible(rect.translate(vec2(5000.0, 0.0)), area, [64, 36]), None, "out of sight");
         let right = rect.translate(vec2(-3000.0, 0.0));
         assert_eq!(visible(right, area, [64, 36]), Some([[62, 0], [64, 3]]), "no pixel beyond the last");
-    }
-
-    #[test]
-    fn each_pixel_has_its_numbers_in_its_middle() {
-        let area = Rect::from_min_max(pos2(8.0, 8.0), pos2(292.0, 192.0));
-        let rect = Rect::from_min_size(pos2(-40.0, -10.0), vec2(400.0, 240.0));
-        let means = vec![[0.0, 0.5, 123456.0], [0.1, 0.2, 0.3], [0.19, 0.19, 0.19], [0.21, 0.21, 0.21]];
-        let part = Part { first: [1, 1], width: 2, means };
-        let values = PixelValues { part: Some(part), ..PixelValues::default() };
-        let mut drawings = Drawings::default();
-        for exposure in [0.0, 1.0] {
-            let tone = Tone { exposure, ..Tone::default() };
-            let size = [5, 3];
-            let picture = crate::app::tests::part([300.0, 200.0], |ui| {
-                values.paint(ui, area, rect, size, &tone);
-            });
-            drawings.add(&format!("{exposure} stops"), &picture);
-        }
-        let tone = Tone::default();
-        let small = crate::app::tests::part([300.0, 200.0], |ui| {
-            values.paint(ui, area, rect, [10, 6], &tone);
-        });
-        drawings.add("pixels without room", &small);
-        drawings.keep("pixel_values");
     }
 
     #[test]

@@ -264,24 +264,6 @@ mod tests {
     }
 
     #[test]
-    fn only_changes_are_written_and_not_too_often() {
-        let directory = tempfile::tempdir().unwrap();
-        let (context, path) = (Context::default(), directory.path().join("settings.json"));
-        let mut file = SettingsFile::read(&path).file;
-        let mut mine = Remembered::default();
-        assert_eq!(keep_now(&mut file, &mine), None);
-        fs::remove_file(&path).unwrap();
-        assert_eq!((keep_now(&mut file, &mine), file.finish(&mine)), (None, Ok(())));
-        assert!(!path.exists(), "nothing has changed");
-        mine.theme = Theme::Light;
-        file.next = Instant::now() + Duration::from_secs(3600);
-        assert_eq!(file.keep(&context, &mine), None);
-        assert!(!file.is_writing, "it waits for further changes");
-        assert_eq!(file.finish(&mine), Ok(()));
-        assert_eq!(stored(&path).theme, Theme::Light);
-    }
-
-    #[test]
     fn changes_of_one_moment_are_written_together() {
         let directory = tempfile::tempdir().unwrap();
         let mut file = SettingsFile::read(&directory.path().join("settings.json")).file;

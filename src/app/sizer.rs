@@ -166,7 +166,7 @@ mod tests {
     use crate::app::corner_card::corner_card;
     use crate::app::model::origin::Origin;
     use crate::app::places::Place;
-    use crate::app::tests::{Drawings, dressed, leave};
+    use crate::app::tests::{dressed, leave};
     use crate::stages::Stage;
     use egui_kittest::kittest::Queryable;
 
@@ -309,22 +309,5 @@ mod tests {
         let card = harness.state().unwrap();
         let offer = harness.get_by_label("Render at 1037x583").rect();
         assert!(card.bottom() > offer.top() && !offer.intersects(card), "{offer} {card}");
-    }
-
-    #[test]
-    fn the_offer_is_above_the_axes_and_gives_its_command() {
-        let mut drawings = Drawings::default();
-        let sizer = Sizer { offer: Some([1037, 583]), ..Sizer::default() };
-        let over = Rect::from_min_max(egui::pos2(40.0, 30.0), egui::pos2(600.0, 390.0));
-        let draw = move |ui: &mut Ui, commands: &mut Vec<Command>| sizer.ui(ui, over, commands);
-        let mut harness = dressed([640.0, 400.0]).build_ui_state(draw, Vec::new());
-        harness.run_steps(2);
-        leave(&mut harness);
-        drawings.add("the offer", &harness);
-        drawings.add_tips(&mut harness);
-        harness.get_by_label("Render at 1037x583").click();
-        harness.run_steps(2);
-        assert_eq!(*harness.state(), [Command::Size(Sizing::Viewport)]);
-        drawings.keep("size_offer");
     }
 }

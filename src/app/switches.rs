@@ -83,54 +83,10 @@ mod tests {
     use crate::app::model::remembered::Theme;
     use crate::app::model::sizing::Sizing;
     use crate::app::model::slots::{Slot, SlotNumber};
-    use crate::app::tests::{Case, Drawings, facts_of};
+    use crate::app::tests::facts_of;
     use crate::film::Film;
     use crate::stress::shown_cases;
     use std::sync::Arc;
-
-    #[test]
-    fn a_switch_is_on_while_what_it_shows_is_shown() {
-        let mut facts = facts_of("--stage glass-schlick --size 32x18");
-        let is_on = |facts: &Facts| -> Vec<String> {
-            let all = Command::all().into_iter();
-            all.filter(|command| facts.is_on(*command)).map(|command| format!("{command:?}")).collect()
-        };
-        let mut drawings = Drawings::default();
-        let changes: [Case<Facts>; 9] = [
-            ("at first", |_| {}),
-            ("a wipe", |facts| facts.model.view.toggle(Mode::Wipe, With::Stage)),
-            ("a wipe against the book", |facts| facts.model.view.toggle(Mode::Wipe, With::Book)),
-            ("a difference", |facts| facts.model.view.toggle(Mode::Difference, With::Stage)),
-            ("a wipe against a slot", |facts| {
-                facts.model.view.toggle(Mode::Wipe, With::Slot(SlotNumber::ALL[1]));
-            }),
-            ("a difference from a slot", |facts| {
-                facts.model.view.toggle(Mode::Difference, With::Slot(SlotNumber::ALL[1]));
-            }),
-            ("another view", |facts| facts.model.view.choose(Show::Error)),
-            ("a crop, all panels and a sight", |facts| {
-                facts.model.view.crop = Some(None);
-                let remembered = &mut facts.model.remembered;
-                (remembered.has_plot, remembered.has_packet, remembered.has_code) = (true, true, true);
-                (facts.has_sight, facts.model.has_first_steps) = (true, true);
-                facts.model.is_full_screen = true;
-                facts.model.presentation =
-                    Some(Presentation { was_full_screen: false, has_captions: true, is_blank: false });
-            }),
-            ("hardly anything", |facts| {
-                let remembered = &mut facts.model.remembered;
-                (remembered.has_panels, remembered.has_controls, remembered.has_info) = (false, false, false);
-                (remembered.has_gizmo, remembered.has_flights) = (false, false);
-                (remembered.theme, remembered.sizing) = (Theme::Light, Sizing::Book);
-                facts.model.document.has_own_size = false;
-            }),
-        ];
-        for (name, change) in changes {
-            change(&mut facts);
-            drawings.tell(&format!("{name}: {}", is_on(&facts).join(", ")));
-        }
-        drawings.keep("switches");
-    }
 
     #[test]
     fn slots_that_are_shown_are_on() {

@@ -159,7 +159,7 @@ impl Toasts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use eframe::egui::{Rect, pos2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -177,29 +177,6 @@ mod tests {
         harness.get_all_by_label("×").nth(1).unwrap().click();
         harness.run_steps(2);
         assert_eq!(harness.state().texts().collect::<Vec<_>>(), ["first", "third"]);
-    }
-
-    #[test]
-    fn messages_are_stacked_over_the_lower_edge() {
-        let mut drawings = Drawings::default();
-        for [width, height] in [[600.0, 400.0], [300.0, 400.0], [130.0, 400.0]] {
-            let over = Rect::from_min_size(pos2(8.0, 8.0), vec2(width, height - 20.0));
-            let mut toasts = Toasts::default();
-            let mut harness = part([width + 16.0, height], |ui| {
-                if toasts.0.is_empty() {
-                    toasts.good("Saved /of/a.png");
-                    toasts.add(
-                        "Not opened: there is no such file, so nothing was opened".to_owned(),
-                        Tone::Bad,
-                    );
-                }
-                toasts.ui(ui, over, &mut Vec::new());
-            });
-            harness.run_steps(3);
-            drawings.add(&format!("{width} points"), &harness);
-            drawings.add_tips(&mut harness);
-        }
-        drawings.keep("toasts");
     }
 
     #[test]
@@ -306,30 +283,5 @@ mod tests {
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
         let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["11"]);
-    }
-
-    #[test]
-    fn an_offer_stays_until_it_is_taken_or_withdrawn() {
-        let (mut toasts, long_ago) = (Toasts::default(), Instant::now().checked_sub(Duration::from_secs(99)));
-        toasts.good("Saved");
-        toasts.offer("It was changed", Command::Reload);
-        toasts.0.iter_mut().for_each(|toast| toast.since = long_ago.unwrap());
-        let draw = |ui: &mut egui::Ui, (toasts, commands): &mut (Toasts, Vec<Command>)| {
-            toasts.ui(ui, ui.ctx().content_rect(), commands);
-        };
-        let mut harness =
-            Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, (toasts, Vec::new()));
-        harness.run_steps(2);
-        assert_eq!(harness.state().0.texts().collect::<Vec<_>>(), ["It was changed"]);
-        harness.get_by_label(&Command::Reload.name()).click();
-        harness.run_steps(2);
-        let (toasts, commands) = harness.state_mut();
-        assert_eq!(*commands, [Command::Reload]);
-        assert_eq!(toasts.texts().count(), 0);
-        toasts.offer("It was changed", Command::Reload);
-        toasts.withdraw(Command::Open);
-        assert_eq!(toasts.texts().count(), 1);
-        toasts.withdraw(Command::Reload);
-        assert_eq!(toasts.texts().count(), 0);
     }
 }

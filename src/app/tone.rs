@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::model::view::With;
-    use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, part, rest_at, sleep_after};
+    use crate::app::tests::{dressed, facts_of, leave, part, rest_at, sleep_after};
     use crate::film::Film;
     use crate::progressive::{Phase, Status};
     use egui_kittest::Harness;
@@ -215,67 +215,10 @@ mod tests {
         Histogram { pixels: 652, clipped: 43, largest: 123.456, ..histogram }
     }
 
-    #[test]
-    fn the_histogram_is_drawn_as_it_was_counted() {
-        let mut drawings = Drawings::default();
-        for (width, exposure) in [(300.0, 0.0), (300.0, 2.0), (200.0, -3.5), (300.0, 12.0)] {
-            let panel = part([width, 200.0], |ui| paint(ui, &histogram(), exposure));
-            drawings.add(&format!("{width} points, {exposure} stops"), &panel);
-        }
-        let empty = Histogram { pixels: 0, ..histogram() };
-        drawings.add("no pixels", &part([300.0, 200.0], |ui| paint(ui, &empty, 0.0)));
-        drawings.keep("histogram");
-    }
-
     struct Panel {
         tone: ToneUi,
         view: ViewState,
         facts: Facts,
-    }
-
-    #[test]
-    fn each_view_has_the_controls_that_it_needs() {
-        let draw = |ui: &mut Ui, Panel { tone, view, facts }: &mut Panel| tone.ui(ui, view, facts);
-        let panel = Panel {
-            tone: ToneUi::default(),
-            view: ViewState::default(),
-            facts: facts_of("--stage glass-schlick --size 32x18"),
-        };
-        let mut harness = dressed([270.0, 400.0]).build_ui_state(draw, panel);
-        let mut drawings = Drawings::default();
-        drawings.add("the picture", &harness);
-        drawings.add_tips(&mut harness);
-        let changes: [Case<Panel>; 6] = [
-            ("a darker picture", |panel| panel.view.tone.expose(-2.5)),
-            ("a wipe", |panel| panel.view.toggle(Mode::Wipe, With::Stage)),
-            ("a difference", |panel| panel.view.toggle(Mode::Difference, With::Stage)),
-            ("normals", |panel| panel.view.choose(Show::Normals)),
-            ("luminance", |panel| panel.view.choose(Show::Luminance)),
-            ("a counted histogram", |panel| panel.tone.histogram = Some(histogram())),
-        ];
-        for (name, change) in changes {
-            change(harness.state_mut());
-            harness.run_steps(2);
-            drawings.add(name, &harness);
-        }
-        drawings.add_tips(&mut harness);
-        assert!(!harness.state().tone.is_open);
-        harness.state_mut().tone.histogram = None;
-        harness.get_all_by_label("Histogram").next().unwrap().click();
-        harness.run_steps(4);
-        leave(&mut harness);
-        assert!(harness.state().tone.is_open);
-        drawings.add("no samples", &harness);
-        harness.state_mut().facts.status = Arc::new(Status { phase: Phase::Tracing, ..Status::default() });
-        harness.run_steps(2);
-        drawings.add("while they are counted", &harness);
-        harness.state_mut().tone.histogram = Some(histogram());
-        harness.run_steps(2);
-        drawings.add("the histogram", &harness);
-        let middle = harness.get_by_label_contains("Histogram:").rect().center();
-        rest_at(&mut harness, middle);
-        drawings.add("the pointer is on it", &harness);
-        drawings.keep("tone");
     }
 
     #[test]

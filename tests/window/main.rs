@@ -6,13 +6,6 @@ mod commands;
 mod common;
 mod crop;
 mod device;
-// Keys have other names on macOS.
-#[cfg(not(target_os = "macos"))]
-mod drawings;
-#[cfg(not(target_os = "macos"))]
-mod drawings_views;
-#[cfg(not(target_os = "macos"))]
-mod drawn;
 mod edits;
 mod extreme;
 mod faults;
@@ -21,8 +14,6 @@ mod first_steps;
 mod flights;
 mod frame;
 mod framing;
-#[path = "../golden/kept.rs"]
-mod golden;
 mod help;
 mod kept;
 mod menus;

@@ -86,19 +86,9 @@ fn section(ui: &mut Ui, group: Option<Group>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use egui_kittest::kittest::Queryable;
     use std::cell::Cell;
-
-    #[test]
-    fn keys_and_mouse_are_listed_in_columns_where_there_is_room() {
-        let mut drawings = Drawings::default();
-        for [width, height] in [[716.0, 1200.0], [716.0, 300.0], [655.0, 1200.0], [500.0, 300.0]] {
-            let dialog = part([width, height + 60.0], |ui| _ = super::ui(ui, height));
-            drawings.add(&format!("{width} points wide, {height} high"), &dialog);
-        }
-        drawings.keep("help_sizes");
-    }
 
     #[test]
     fn it_stays_until_it_is_closed() {

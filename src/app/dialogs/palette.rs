@@ -190,7 +190,7 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 mod tests {
     use super::*;
     use crate::app::model::remembered::Bookmark;
-    use crate::app::tests::{Drawings, alone, dressed, facts_of, rest_at};
+    use crate::app::tests::{dressed, facts_of, rest_at};
     use crate::stages::Stage;
     use eframe::egui::pos2;
     use egui_kittest::Harness;
@@ -246,101 +246,6 @@ mod tests {
         facts: Facts,
         commands: Vec<Command>,
         is_open: bool,
-    }
-
-    fn dialog() -> Harness<'static, Dialog> {
-        let facts = facts_of("--stage glass-schlick --size 32x18 --samples 4");
-        let (palette, commands) = (Palette::default(), Vec::new());
-        let draw = |ui: &mut Ui, Dialog { palette, facts, commands, is_open }: &mut Dialog| {
-            *is_open &= matches!(palette.ui(ui, 200.0, facts, commands), Outcome::Stay);
-        };
-        dressed([500.0, 300.0]).build_ui_state(draw, Dialog { palette, facts, commands, is_open: true })
-    }
-
-    fn press(dialog: &mut Harness<'_, Dialog>, key: Key, times: usize) {
-        for _ in 0..times {
-            dialog.key_press(key);
-        }
-        dialog.run_steps(3);
-    }
-
-    #[test]
-    fn the_palette_shows_what_was_typed_and_what_is_found() {
-        alone("dialogs::palette::tests::the_palette_shows_what_was_typed_and_what_is_found", || {
-            let mut drawings = Drawings::default();
-            let mut dialog = dialog();
-            drawings.add("all commands", &dialog);
-            for (text, down) in
-                [("zoom", 1), ("undo", 0), ("panel", 2), ("wipe", 0), ("light theme", 0), ("xyzzy", 0)]
-            {
-                dialog.state_mut().palette = Palette { text: text.to_owned(), chosen: 0 };
-                dialog.run_steps(3);
-                press(&mut dialog, Key::ArrowDown, down);
-                drawings.add(text, &dialog);
-            }
-            dialog.state_mut().palette = Palette::default();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 30);
-            drawings.add("thirty further", &dialog);
-            press(&mut dialog, Key::ArrowUp, 28);
-            drawings.add("twenty-eight back", &dialog);
-            rest_at(&mut dialog, pos2(100.0, 150.0));
-            drawings.add("the pointer is at another command", &dialog);
-            drawings.keep("palette_parts");
-        });
-    }
-
-    #[test]
-    fn enter_and_a_click_give_the_command() {
-        alone("dialogs::palette::tests::enter_and_a_click_give_the_command", || {
-            let mut dialog = dialog();
-            dialog.state_mut().palette.text = "zoom".to_owned();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 5);
-            press(&mut dialog, Key::ArrowUp, 1);
-            let facts = &dialog.state().facts;
-            let is_enabled = |command| facts.disabled_reason(command).is_none();
-            let found = matching("zoom", listed(facts), is_enabled);
-            let expected = found[5.min(found.len() - 1) - 1].0;
-            press(&mut dialog, Key::Enter, 1);
-            assert_eq!(std::mem::take(&mut dialog.state_mut().commands), [expected]);
-            assert!(!dialog.state().is_open);
-            dialog.state_mut().is_open = true;
-            let name = Command::ZoomOut.name();
-            dialog.get_all_by_label_contains(&name).next().unwrap().click();
-            dialog.run_steps(3);
-            assert_eq!(std::mem::take(&mut dialog.state_mut().commands), [Command::ZoomOut]);
-            assert!(!dialog.state().is_open);
-            dialog.state_mut().is_open = true;
-            press(&mut dialog, Key::ArrowDown, 1);
-            dialog.get_by_label("Command").type_text("in");
-            dialog.run_steps(3);
-            assert_ne!(dialog.state().palette.text, "zoom");
-            assert_eq!(dialog.state().palette.chosen, 0, "another text begins at its first command");
-            dialog.state_mut().palette.text = "xyzzy".to_owned();
-            press(&mut dialog, Key::Enter, 1);
-            assert!(dialog.state().is_open && dialog.state().commands.is_empty(), "nothing is found");
-        });
-    }
-
-    #[test]
-    fn after_typing_enter_runs_the_best_match() {
-        alone("dialogs::palette::tests::after_typing_enter_runs_the_best_match", || {
-            let mut dialog = dialog();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 3);
-            assert_eq!(dialog.state().palette.chosen, 3);
-            dialog.get_by_label("Command").type_text("o");
-            dialog.run_steps(3);
-            assert_eq!(dialog.state().palette.text, "o");
-            let facts = &dialog.state().facts;
-            let is_enabled = |command| facts.disabled_reason(command).is_none();
-            let found = matching("o", listed(facts), is_enabled);
-            assert!(found.len() > 4, "the place chosen before is there, too");
-            let best = found[0].0;
-            press(&mut dialog, Key::Enter, 1);
-            assert_eq!(dialog.state().commands, [best]);
-        });
     }
 
     #[test]

@@ -1,7 +1,6 @@
 //! Tests of what is told about commands.
 
 use super::*;
-use crate::app::drawn::change;
 use crate::app::model::checked::CheckedScene;
 use crate::app::model::crop::Crop;
 use crate::app::model::device::DeviceOptions;
@@ -11,9 +10,8 @@ use crate::app::model::presentation::Presentation;
 use crate::app::model::remembered::{Bookmark, Remembered};
 use crate::app::model::slots::{Coming, Slot};
 use crate::app::model::view::{ViewState, With};
-use crate::app::tests::Case;
 use crate::film::Film;
-use crate::kept;
+
 use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
 use crate::recipe::Recipe;
 use crate::scene::Camera;
@@ -130,100 +128,6 @@ fn done(facts: &mut Facts) {
     };
     facts.status = Arc::new(status);
     facts.model.document.stop = Stop::at_samples(100);
-}
-
-/// Says what each state of the window disables, and why.
-#[test]
-fn every_disabled_command_says_why() {
-    let early = || early(stage("metal"), ViewState::default());
-    let before = told(&early());
-    let mut text = format!("nothing has happened\n{}\n", before.join("\n"));
-    let states: [Case<Facts>; 38] = [
-        ("something to undo", |facts| facts.can_undo = true),
-        ("something to redo", |facts| facts.can_redo = true),
-        ("a pixel", |facts| facts.has_pixel = true),
-        ("paths", |facts| facts.has_paths = true),
-        ("a sphere", |facts| facts.model.selected = Some(0)),
-        ("the end", done),
-        ("the end, but paused", |facts| {
-            done(facts);
-            facts.model.is_paused = true;
-        }),
-        ("tracing", |facts| {
-            facts.status = Arc::new(Status { phase: Phase::Tracing, ..Status::default() });
-        }),
-        ("another camera", |facts| facts.model.document.camera.vfov_degrees = 33.0),
-        ("other spheres", |facts| {
-            let scene = Arc::clone(facts.document().checked.scene());
-            let rules = *facts.document().rules();
-            facts.model.document.checked = Arc::new(CheckedScene::new(scene, rules));
-        }),
-        ("a bookmark", |facts| facts.model.remembered.bookmarks = bookmarks(1)),
-        ("two bookmarks", |facts| facts.model.remembered.bookmarks = bookmarks(2)),
-        ("brighter", |facts| facts.model.view.tone.exposure = 0.5),
-        ("normals", |facts| facts.model.view.choose(Show::Normals)),
-        ("a wipe", |facts| facts.model.view.toggle(Mode::Wipe, With::Stage)),
-        ("a difference", |facts| facts.model.view.toggle(Mode::Difference, With::Stage)),
-        ("a presentation", |facts| {
-            facts.model.presentation =
-                Some(Presentation { was_full_screen: false, has_captions: true, is_blank: false });
-        }),
-        ("a crop begins", |facts| facts.model.view.crop = Some(None)),
-        ("a crop", |facts| facts.model.view.crop = Some(Some(Crop { first: [0, 0], size: [1, 1] }))),
-        ("one half", |facts| facts.model.document.settings.estimate_error = false),
-        ("a reference", |facts| facts.model.view.reference = reference([4, 2])),
-        ("a higher reference", |facts| facts.model.view.reference = reference([4, 3])),
-        ("a wider reference", |facts| facts.model.view.reference = reference([5, 2])),
-        ("the reference device", |facts| facts.model.remembered.device = Device::Reference),
-        ("the graphics adapter", |facts| facts.model.remembered.device = Device::Gpu),
-        ("both devices", |facts| facts.model.remembered.device = Device::Both),
-        ("the first stage", |facts| facts.model.document = stage("ppm-tiny")),
-        ("the last stage", |facts| facts.model.document = stage("book")),
-        ("a stage without spheres", |facts| facts.model.document = stage("sky")),
-        ("a stage of first hits", |facts| facts.model.document = stage("normals")),
-        ("an extreme scene", |facts| {
-            facts.model.document = Document::new(Origin::of_case(&shown_cases()[0]))
-        }),
-        ("a built-in scene", |facts| {
-            let recipe = Recipe::builtin("field:20").unwrap();
-            facts.model.document = Document::new(Origin::new(recipe, Source::Builtin));
-        }),
-        ("a slot", |facts| facts.model.view.slots.put(ONE, slot([4, 2], "mine"))),
-        ("slots of other sizes", |facts| {
-            facts.model.view.slots.put(ONE, slot([4, 3], "a name of more than 22 characters"));
-            facts.model.view.slots.put(TWO, slot([5, 2], "22 characters, no more"));
-            facts.model.view.look(Some(ONE));
-            facts.model.view.slots.choose(TWO);
-        }),
-        ("a slot that is looked at", |facts| {
-            done(facts);
-            facts.model.view.slots.put(ONE, slot([4, 2], "mine"));
-            facts.model.view.look(Some(ONE));
-        }),
-        ("a slot that is compared", |facts| {
-            done(facts);
-            facts.model.view.slots.put(ONE, slot([4, 2], "mine"));
-            facts.model.view.toggle(Mode::Wipe, With::Slot(ONE));
-        }),
-        ("a slot that comes and one that is gone", |facts| {
-            let (name, id) = ("mine".to_owned(), "1".to_owned());
-            let coming = Coming { name, id, size: [4, 2], samples: 1, has_own_size: true };
-            facts.model.view.slots.expect(ONE, coming);
-            facts.model.view.slots.put(TWO, slot([4, 2], "mine"));
-            facts.model.view.slots.delete(TWO);
-        }),
-        ("nine slots", |facts| {
-            SlotNumber::ALL
-                .into_iter()
-                .for_each(|number| facts.model.view.slots.put(number, slot([4, 2], "mine")));
-        }),
-    ];
-    for (name, set) in states {
-        let mut facts = early();
-        set(&mut facts);
-        text.push_str(&format!("\n{name}\n{}", change(&before, &told(&facts))));
-    }
-    kept::check("reasons", &text);
 }
 
 #[test]

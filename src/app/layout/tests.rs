@@ -118,43 +118,6 @@ fn a_card_leaves_free_that_the_camera_is_inside_a_sphere() {
     assert_eq!(below(&mut window), Rect { min: egui::pos2(10.0, 130.0 + TITLES), ..room });
 }
 
-/// How often a text is drawn, over the picture or in a panel.
-fn count_drawn(harness: &Harness<'_, Window>, text: &str) -> usize {
-    fn count(shape: &egui::Shape, text: &str) -> usize {
-        match shape {
-            egui::Shape::Text(drawn) => usize::from(drawn.galley.text() == text),
-            egui::Shape::Vec(shapes) => shapes.iter().map(|shape| count(shape, text)).sum(),
-            _ => 0,
-        }
-    }
-    harness.output().shapes.iter().map(|clipped| count(&clipped.shape, text)).sum()
-}
-
-#[test]
-fn the_caption_of_a_sight_is_over_the_picture_where_nothing_else_shows_it() {
-    let window = window("weekender --stage metal --size 16x9 --samples 1 --device cpu");
-    let caption = Stage::find("metal").unwrap().sight.caption;
-    let draw = |ui: &mut egui::Ui, window: &mut Window| window.ui_in(ui);
-    let mut harness = Harness::builder().with_size([1280.0, 1400.0]).build_ui_state(draw, window);
-    harness.run_steps(2);
-    assert_eq!(count_drawn(&harness, caption), 0);
-    harness.state_mut().send(Command::ShowMe);
-    let presentation = Presentation { was_full_screen: false, has_captions: true, is_blank: false };
-    for (name, has_panels, has_info, presentation, is_labelled) in [
-        ("all panels", true, true, None, true),
-        ("no right panel", true, false, None, false),
-        ("no panels", false, true, None, false),
-        ("a presentation", true, false, Some(presentation), true),
-    ] {
-        let model = &mut harness.state_mut().model;
-        (model.remembered.has_panels, model.remembered.has_info) = (has_panels, has_info);
-        model.presentation = presentation;
-        harness.run_steps(4);
-        let found = (count_drawn(&harness, caption), harness.query_by_label(caption).is_some());
-        assert_eq!(found, (1, is_labelled), "{name}");
-    }
-}
-
 #[test]
 fn a_panel_about_another_picture_begins_at_its_top() {
     let draw = |ui: &mut egui::Ui, name: &mut &str| {

@@ -8,7 +8,7 @@ use crate::app::model::remembered::Bookmark;
 use crate::app::model::sizing::Sizing;
 use crate::app::model::viewpoint::Viewpoint;
 use crate::app::spheres::Spheres;
-use crate::app::tests::{Case, Drawings, alone, dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of, leave};
 use crate::output::OutputFormat;
 use crate::progressive::Stop;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SIZE_LIMIT};
@@ -53,132 +53,6 @@ fn control<'h>(harness: &'h Harness<'_, Panel>, name: &'h str) -> Node<'h> {
 fn press(harness: &mut Harness<'_, Panel>, name: &str) {
     control(harness, name).click();
     harness.run_steps(3);
-}
-
-fn draw(drawings: &mut Drawings, harness: &mut Harness<'_, Panel>, name: &str) {
-    leave(harness);
-    drawings.add(name, harness);
-}
-
-#[test]
-fn stages_have_the_controls_that_they_need() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage glass-schlick --size 32x18");
-    for id in
-        ["glass-schlick", "ppm-tiny", "red-sphere", "normals", "antialiased", "gamut", "defocus", "book"]
-    {
-        let document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-        harness.state_mut().facts.model.document = document;
-        draw(&mut drawings, &mut harness, id);
-    }
-    harness.state_mut().facts.invalid = Some("look_from is look_at".to_owned());
-    draw(&mut drawings, &mut harness, "invalid");
-    drawings.add("of a new user", &panel_of("--stage defocus --size 32x18", true));
-    drawings.keep("panel_stages");
-}
-
-#[test]
-fn a_selected_sphere_has_the_controls_of_its_material() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage metal-fuzzy --size 32x18");
-    for id in ["metal-fuzzy", "glass-schlick", "gamut", "normals-world", "red-sphere"] {
-        let document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-        let count = document.scene().spheres.len();
-        harness.state_mut().facts.model.document = document;
-        for sphere in 0..count {
-            harness.state_mut().facts.model.selected = Some(sphere);
-            draw(&mut drawings, &mut harness, &format!("{id} {sphere}"));
-        }
-    }
-    drawings.keep("panel_spheres");
-}
-
-#[test]
-fn settings_are_shown_and_can_be_reset_where_they_were_changed() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage defocus --size 32x18");
-    harness.state_mut().facts.model.remembered.sizing = Sizing::Book;
-    draw(&mut drawings, &mut harness, "as it was");
-    let changes: [Case<Model>; 11] = [
-        ("three limits", |model| {
-            model.document.stop = Stop { samples: Some(100), seconds: Some(2.5), noise: Some(0.001) };
-        }),
-        ("one half", |model| model.document.settings.estimate_error = false),
-        ("no limit", |model| model.document.stop = Stop::default()),
-        ("another camera", |model| model.document.camera.vfov_degrees = 77.0),
-        ("a pinhole", |model| model.document.camera.defocus_angle_degrees = 0.0),
-        ("the size of the book", |model| model.document.has_own_size = false),
-        ("the size of the viewport", |model| model.remembered.sizing = Sizing::Viewport),
-        ("GPU", |model| model.remembered.device = Device::Gpu),
-        ("both", |model| model.remembered.device = Device::Both),
-        ("reference", |model| model.remembered.device = Device::Reference),
-        ("lanes and threads", |model| {
-            let remembered = &mut model.remembered;
-            (remembered.lanes, remembered.threads, remembered.device) = (Some(8), Some(3), Device::Cpu);
-        }),
-    ];
-    for (name, change) in changes {
-        change(&mut harness.state_mut().facts.model);
-        draw(&mut drawings, &mut harness, name);
-    }
-    drawings.keep("panel_settings");
-}
-
-#[test]
-fn bookmarks_are_listed_with_what_can_be_done_to_them() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage defocus --size 32x18");
-    let camera = harness.state().facts.document().camera;
-    for side in Viewpoint::ALL {
-        let bookmark = Bookmark::new(format!("the {side:?}"), &side.camera(&camera, camera.vup));
-        harness.state_mut().facts.model.remembered.bookmarks.push(bookmark);
-    }
-    harness.state_mut().facts.model.document.camera = Viewpoint::Top.camera(&camera, camera.vup);
-    draw(&mut drawings, &mut harness, "six, of which the second is here");
-    for name in ["Right", "Top", "Back"] {
-        let menu = format!("Change the {name}");
-        harness.get_by_label(&menu).click_accesskit();
-        harness.run_steps(3);
-        draw(&mut drawings, &mut harness, &menu);
-        harness.key_press(egui::Key::Escape);
-        harness.run_steps(3);
-    }
-    drawings.keep("panel_bookmarks");
-}
-
-#[test]
-fn lists_show_what_can_be_chosen() {
-    alone("panels::tests::lists_show_what_can_be_chosen", || {
-        let mut drawings = Drawings::default();
-        let mut harness = panel("--stage metal-fuzzy --size 32x18");
-        harness.state_mut().facts.model.selected = Some(2);
-        draw(&mut drawings, &mut harness, "closed");
-        for name in ["Material", "Device", "Sampler"] {
-            press(&mut harness, name);
-            draw(&mut drawings, &mut harness, name);
-            drawings.add_tips_of(&mut harness, &["CPU", "GPU", "Both", "f64"]);
-            harness.key_press(egui::Key::Escape);
-            harness.run_steps(3);
-        }
-        drawings.keep("panel_lists");
-    });
-}
-
-#[test]
-fn every_control_has_its_tip() {
-    let mut drawings = Drawings::default();
-    for (words, selected) in [
-        ("--stage defocus --size 32x18", None),
-        ("--stage ppm-tiny", None),
-        ("--stage metal-fuzzy --size 32x18", Some(2)),
-        ("--stage normals --size 32x18", Some(0)),
-    ] {
-        let mut harness = panel(words);
-        harness.state_mut().facts.model.selected = selected;
-        draw(&mut drawings, &mut harness, words);
-        drawings.add_tips(&mut harness);
-    }
-    drawings.keep("panel_tips");
 }
 
 #[test]

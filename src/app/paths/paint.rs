@@ -170,7 +170,7 @@ mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
     use crate::app::paths::tests::listed;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use crate::explain::steps;
     use crate::render_cpu::record_path;
     use crate::stages::Stage;
@@ -182,87 +182,6 @@ mod tests {
         Camera { look_from: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, ..Camera::BOOK };
     const RECT: Rect = Rect { min: Pos2::ZERO, max: pos2(400.0, 400.0) };
     const MIDDLE: Pos2 = pos2(200.0, 200.0);
-
-    /// What is drawn for a ray that ends in the middle of the picture and is scattered from there.
-    fn drawn(lobe: Lobe) -> Vec<Shape> {
-        let document = Document::new(Origin::of_stage(Stage::find("glass-schlick").unwrap()));
-        let (job, pixel) = (document.job(1).unwrap(), document.size().map(|length| length / 2));
-        let path = record_path(&job, pixel, 0, None);
-        let mut step = steps(&job, pixel, 0, &path).swap_remove(0);
-        step.event = Event::Scattered(lobe);
-        let hit = step.hit.as_mut().unwrap();
-        (hit.point, hit.normal) = (DVec3::ZERO, DVec3::Y);
-        let harness = Harness::builder().with_size(RECT.size()).build_ui(|ui| {
-            let view = View { camera: &CAMERA, aspect: 1.0, rect: RECT, is_from_eye: true };
-            view.paint_step(&step, &ui.painter().with_clip_rect(RECT));
-        });
-        harness.output().shapes.iter().map(|clipped| clipped.shape.clone()).collect()
-    }
-
-    /// Whether there are arrows from the middle to these points, and to no others.
-    fn has_arrows_to(shapes: &[Shape], heads: &[Pos2]) -> bool {
-        let arrows: Vec<Pos2> = shapes
-            .iter()
-            .filter_map(|shape| match shape {
-                Shape::LineSegment { points: [from, to], stroke } => {
-                    (stroke.color == LOBE && from.distance(MIDDLE) < 0.1).then_some(*to)
-                }
-                _ => None,
-            })
-            .collect();
-        arrows.len() == heads.len() && arrows.iter().zip(heads).all(|(at, head)| at.distance(*head) < 0.1)
-    }
-
-    #[test]
-    fn metal_shows_the_mirrored_direction_and_the_ball_of_its_fuzz() {
-        let shapes = drawn(Lobe::Metal { mirrored: DVec3::X, fuzz: 0.5 });
-        let head = pos2(220.0, 200.0);
-        assert!(has_arrows_to(&shapes, &[head]), "{shapes:?}");
-        let ball = shapes.iter().find_map(|shape| match shape {
-            Shape::Path(path) if path.closed => Some(Rect::from_points(&path.points)),
-            _ => None,
-        });
-        let ball = ball.unwrap();
-        assert!(ball.center().distance(head) < 1.0 && (ball.width() - 20.0).abs() < 1.0, "{ball}");
-    }
-
-    #[test]
-    fn glass_shows_both_directions_as_far_as_there_are_two() {
-        let lobe = |refracted: Option<DVec3>| Lobe::Glass {
-            mirrored: DVec3::X,
-            refracted,
-            reflectance: 0.5,
-            coin: 0.25,
-            refracts: false,
-        };
-        let [right, down] = [pos2(220.0, 200.0), pos2(200.0, 220.0)];
-        assert!(has_arrows_to(&drawn(lobe(Some(DVec3::NEG_Y))), &[right, down]));
-        assert!(has_arrows_to(&drawn(lobe(None)), &[right]));
-    }
-
-    #[test]
-    fn paths_are_drawn_with_their_numbers_and_what_the_next_ray_was_chosen_from() {
-        let rect = Rect::from_min_size(pos2(20.0, 10.0), vec2(640.0, 360.0));
-        let mut drawings = Drawings::default();
-        for id in ["diffuse", "lambertian-gamma", "metal-fuzzy", "glass-schlick"] {
-            let (document, mut paths) = listed(id, [16, 9]);
-            let mut draw = |name: &str, paths: &Paths, document: &Document| {
-                let picture = part([700.0, 400.0], |ui| paths.paint(document, ui, ui.painter(), rect));
-                drawings.add(&format!("{id}, {name}"), &picture);
-            };
-            draw("the first ray", &paths, &document);
-            paths.step(true);
-            draw("the second ray", &paths, &document);
-            let mut beside = document.clone();
-            beside.camera.look_from.x += 1.0;
-            draw("from beside", &paths, &beside);
-            paths.select(None);
-            draw("no path is chosen", &paths, &document);
-            paths.forget();
-            draw("none", &paths, &document);
-        }
-        drawings.keep("paths_in_the_picture");
-    }
 
     #[test]
     fn lines_end_where_the_camera_is() {

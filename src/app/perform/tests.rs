@@ -5,7 +5,7 @@ use crate::app::model::crop::Crop;
 use crate::app::model::kept_view::ShownSlots;
 use crate::app::model::view::Other;
 use crate::app::tests::{until, window};
-use crate::kept;
+
 use crate::progressive::Stop;
 use crate::stages::Stage;
 use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, ViewportId, vec2};
@@ -45,102 +45,6 @@ fn seen(window: &Window) -> BTreeMap<String, String> {
         seen.insert(name.to_owned(), value);
     }
     seen
-}
-
-/// What a command changes, says, and asks of the system.
-fn done(context: &Context, window: &mut Window, command: Command) -> String {
-    let (before, told) = (seen(window), window.messages());
-    let output = context.run_ui(RawInput::default(), |ui| window.perform(ui.ctx(), command));
-    let after = seen(window);
-    let mut text = format!("{}\n", command.name());
-    let mut paths: Vec<&String> = before.keys().chain(after.keys()).collect();
-    paths.sort();
-    paths.dedup();
-    for path in paths {
-        let [old, new] = [&before, &after].map(|seen| seen.get(path).map_or("nothing", String::as_str));
-        if old != new {
-            text.push_str(&format!("  {path}: {old} -> {new}\n"));
-        }
-    }
-    for words in window.messages().iter().filter(|words| !told.contains(words)) {
-        text.push_str(&format!("  says {words}\n"));
-    }
-    for command in &output.platform_output.commands {
-        text.push_str(&format!("  asks for {command:?}\n"));
-    }
-    for command in output.viewport_output.get(&ViewportId::ROOT).into_iter().flat_map(|root| &root.commands) {
-        text.push_str(&format!("  asks for {command:?}\n"));
-    }
-    text
-}
-
-/// Commands for slots, devices and the companion depend on more than this.
-#[test]
-fn every_command_does_what_it_says() {
-    let context = Context::default();
-    let is_told = |command: &Command| {
-        !matches!(
-            command,
-            Command::Slot(_)
-                | Command::Device(_)
-                | Command::SwitchDevice
-                | Command::Companion
-                | Command::Extreme(_)
-                | Command::Stage(_)
-        )
-    };
-    let mut commands: Vec<Command> = Command::all().into_iter().filter(is_told).collect();
-    commands.extend([Command::Bookmark(1), Command::Bookmark(9), Command::Recent(0), Command::Recent(1)]);
-    commands.push(Command::Stage(&Stage::ALL[3]));
-    let mut text = String::new();
-    for command in commands {
-        text.push_str(&done(&context, &mut prepared(), command));
-    }
-    text.push_str("\nOne after the other\n");
-    let mut window = prepared();
-    for command in [
-        Command::AddBookmark,
-        Command::AddBookmark,
-        Command::Crop,
-        Command::Crop,
-        Command::Darker,
-        Command::NoExposure,
-        Command::Wipe,
-        Command::WipeDifference,
-        Command::BookArithmetic,
-        Command::WipeDifference,
-        Command::WipeDifference,
-        Command::Show(Show::Normals),
-        Command::Brighter,
-        Command::Panels,
-        Command::Plot,
-        Command::Plot,
-        Command::Controls,
-        Command::Gizmo,
-        Command::Panels,
-        Command::Gizmo,
-        Command::Flights,
-        Command::Bookmark(0),
-        Command::FirstSteps,
-        Command::FirstSteps,
-        Command::FullScreen,
-        Command::Present,
-        Command::Panels,
-        Command::Blank,
-        Command::Blank,
-        Command::Blank,
-        Command::Fit,
-        Command::Controls,
-        Command::Present,
-        Command::FullScreen,
-        Command::ShowMe,
-        Command::ShowMe,
-        Command::ResetAll,
-        Command::Fresh,
-    ] {
-        text.push_str(&done(&context, &mut window, command));
-    }
-    kept::check("commands_done", &text);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests of the plot.
 
 use super::*;
-use crate::app::tests::{Drawings, dressed, facts_of, leave, rest_at};
+use crate::app::tests::{dressed, facts_of, leave, rest_at};
 use crate::film::ErrorEstimate;
 use crate::progressive::{EndReason, Phase};
 use crate::render::BackendInfo;
@@ -195,37 +195,6 @@ fn dots(harness: &Harness<'_, Plotted>) -> Vec<Pos2> {
     found
 }
 
-#[test]
-fn the_plot_in_all_its_states() {
-    let mut drawings = Drawings::default();
-    let cpu = [point("cpu", 4, 0.5), point("cpu", 16, 2.0), point("cpu", 64, 8.0)];
-    let gpu = [point("gpu", 256, 9.0), point("gpu", 1024, 12.0)];
-    let both = [point("cpu,gpu", 4096, 20.0), point("reference", 16_384, 60.0)];
-    let several = [&cpu[..], &gpu[..], &both[..]].concat();
-    let over = Status { phase: Phase::Done(EndReason::Samples), ..status(&cpu, 10.0, 0.011) };
-    let short = [point("cpu", 4, 1.0), point("cpu", 8, 2.0)];
-    for (name, status, target) in [
-        ("without a target", status(&cpu, 10.0, 0.011), None),
-        ("before its target", status(&cpu, 10.0, 0.011), Some(0.002)),
-        ("far from its target", status(&cpu, 10.0, 0.011), Some(2e-5)),
-        ("at its end", over, Some(0.002)),
-        ("several backends", status(&several, 90.0, 0.0007), Some(0.0005)),
-        ("a short curve", status(&short, 2.1, 0.034), None),
-        ("a single estimate", status(&[], 2.0, 0.05), Some(0.01)),
-        ("a target of nothing", status(&cpu, 10.0, 0.011), Some(0.0)),
-    ] {
-        drawings.add(name, &plotted(status, target));
-    }
-    let mut harness = plotted(status(&cpu, 10.0, 0.011), None);
-    drawings.add("without the pointer", &harness);
-    let dot = dots(&harness)[1];
-    rest_at(&mut harness, dot);
-    drawings.add("at a dot", &harness);
-    rest_at(&mut harness, dot + vec2(60.0, -50.0));
-    drawings.add("beside it", &harness);
-    drawings.keep("plot");
-}
-
 /// The place of the target's line.
 fn line(harness: &Harness<'_, Plotted>) -> Rect {
     harness.get_by_label("Target error, as a line").rect()
@@ -289,24 +258,6 @@ fn panel(status: Status, target: Option<f64>) -> Harness<'static, Panel> {
     let mut harness = dressed([900.0, 500.0]).build_ui_state(draw, panel);
     harness.run_steps(3);
     harness
-}
-
-#[test]
-fn the_panel_of_the_plot_in_all_its_states() {
-    let mut drawings = Drawings::default();
-    let history = [point("cpu", 4, 0.5), point("cpu", 16, 2.0)];
-    let mut empty = panel(Status::default(), None);
-    leave(&mut empty);
-    drawings.add("nothing", &empty);
-    drawings.add_tips(&mut empty);
-    let mut resumed = status(&[], 0.0, 0.02);
-    resumed.backend = None;
-    drawings.add("a film that goes on", &panel(resumed, None));
-    let mut harness = panel(status(&history, 3.0, 0.02), Some(0.004));
-    leave(&mut harness);
-    drawings.add("a curve", &harness);
-    drawings.add_tips(&mut harness);
-    drawings.keep("plot_panel");
 }
 
 #[test]

@@ -138,32 +138,11 @@ fn beside(context: &Context, room: Rect, picture: Rect, pointer: Pos2, size: Vec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
 
     #[test]
     fn numbers_have_three_decimals() {
         assert_eq!([0.6666, 0.0005, 0.1234, 12.3456].map(rounded), [0.667, 0.001, 0.123, 12.346]);
-    }
-
-    #[test]
-    fn the_lens_is_beside_the_picture_or_on_the_other_side() {
-        let mut drawings = Drawings::default();
-        let room = Rect::from_min_size(pos2(10.0, 60.0), vec2(1000.0, 500.0));
-        let colour = |[x, y]: [u32; 2]| (x < 32 && y < 18).then_some([7 * x as u8, 11 * y as u8, 130]);
-        for (name, left, width, at, pointer) in [
-            ("much room", 10.0, 600.0, [10, 5], 200.0),
-            ("some room", 10.0, 830.0, [0, 17], 200.0),
-            ("too little room", 10.0, 850.0, [31, 0], 200.0),
-            ("on the right", 60.0, 930.0, [3, 3], 500.0),
-            ("on the left", 60.0, 930.0, [3, 3], 530.0),
-            ("enlarged", -500.0, 2500.0, [3, 3], 300.0),
-        ] {
-            let picture = Rect::from_min_size(pos2(left, 80.0), vec2(width, 450.0));
-            let seen = Seen::around(at, Some([0.25, 1.0 / 3.0, 0.0]), colour);
-            let lens = Lens { room, picture, pointer: pos2(pointer, 300.0), seen: &seen };
-            drawings.add(name, &part([1020.0, 720.0], |ui| lens.paint(ui)));
-        }
-        drawings.keep("present_lens");
     }
 
     #[test]

@@ -95,7 +95,7 @@ mod tests {
     use crate::app::model::slots::SlotNumber;
     use crate::app::recovery::{RecoveryFiles, write_film};
     use crate::app::slot_files::Entry;
-    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::app::tests::{dressed, leave, rest_at};
     use crate::film::Film;
     use crate::progressive::Status;
     use crate::stages::Stage;
@@ -160,26 +160,6 @@ mod tests {
         let mut harness = dressed([800.0, 900.0]).build_ui_state(draw, state);
         harness.run_steps(2);
         harness
-    }
-
-    #[test]
-    fn the_card_in_all_its_states() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut drawings = Drawings::default();
-        let mut harness = offered(left_in(directory.path()));
-        drawings.add("offered", &harness);
-        harness.get_by_label_contains("Discard: 2 kept").click();
-        harness.run_steps(2);
-        leave(&mut harness);
-        drawings.add("doubted", &harness);
-        harness.state_mut().is_busy = true;
-        harness.run_steps(2);
-        drawings.add("busy", &harness);
-        harness.state_mut().is_busy = false;
-        harness.state_mut().over = Rect::from_min_max(egui::pos2(20.0, 30.0), egui::pos2(220.0, 330.0));
-        harness.run_steps(3);
-        drawings.add("in a small viewport", &harness);
-        drawings.keep("recovered");
     }
 
     #[test]

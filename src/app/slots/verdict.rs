@@ -182,7 +182,7 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::tests::{Drawings, dressed};
+    use crate::app::tests::dressed;
     use crate::film::PixelSum;
     use crate::stages::Stage;
     use egui_kittest::Harness;
@@ -257,33 +257,6 @@ mod tests {
         let verdict = Verdict { names, found: Some(found), ..Verdict::default() };
         let draw = |ui: &mut egui::Ui, verdict: &mut Verdict| verdict.ui(ui.ctx());
         Harness::builder().with_size([800.0, 600.0]).build_ui_state(draw, verdict)
-    }
-
-    #[test]
-    fn the_finding_in_all_its_states() {
-        let mut drawings = Drawings::default();
-        let long = "label words that are longer than a line and need another one, which begins below them ";
-        let text =
-            format!("first       slot 1\nsecond      the live picture\n{}\n\nverdict\n", long.repeat(3));
-        let found =
-            |headline, is_equal, times| Some(Ok(Found { headline, is_equal, text: text.repeat(times) }));
-        for (name, size, found) in [
-            ("awaited", [800.0, 600.0], None),
-            ("not compared", [800.0, 600.0], Some(Err("the films have different sizes".to_owned()))),
-            ("equal", [800.0, 600.0], found("Only noise", true, 1)),
-            ("not equal", [800.0, 600.0], found("More than noise", false, 1)),
-            ("long", [800.0, 600.0], found("More than noise", false, 9)),
-            ("in a small window", [420.0, 240.0], found("Only noise", true, 9)),
-        ] {
-            let names =
-                Some(["slot 1: 11.4 The complete rule, 4 samples", "the live picture"].map(str::to_owned));
-            let verdict = Verdict { names, found, ..Verdict::default() };
-            let draw = |ui: &mut egui::Ui, verdict: &mut Verdict| verdict.ui(ui.ctx());
-            let mut harness = dressed(size).build_ui_state(draw, verdict);
-            harness.run_steps(5);
-            drawings.add(name, &harness);
-        }
-        drawings.keep("only_noise");
     }
 
     #[test]

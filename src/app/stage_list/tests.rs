@@ -1,7 +1,7 @@
 //! Tests of the list of stages.
 
 use super::*;
-use crate::app::tests::{Drawings, dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of, leave};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -26,44 +26,6 @@ fn list(words: &str, height: f32) -> Harness<'static, List> {
         *room = ui.min_rect();
     };
     dressed([400.0, height]).build_ui_state(draw, list)
-}
-
-fn show(harness: &mut Harness<'_, List>, words: &str) {
-    harness.state_mut().facts = facts_of(words);
-    harness.run_steps(4);
-}
-
-#[test]
-fn the_list_opens_at_the_stage_that_is_shown_and_follows_it() {
-    let mut drawings = Drawings::default();
-    for height in [250.0, 500.0, 1000.0] {
-        let mut harness = list("--stage glass-schlick --size 32x18", height);
-        harness.run_steps(4);
-        drawings.add(&format!("{height} points high"), &harness);
-        show(&mut harness, "--stage ppm-tiny");
-        drawings.add("the first stage", &harness);
-        show(&mut harness, "--stage book");
-        drawings.add("the last stage", &harness);
-        show(&mut harness, "--scene field:20");
-        drawings.add("no stage", &harness);
-    }
-    drawings.keep("stage_list");
-}
-
-#[test]
-fn a_row_shows_that_it_can_be_clicked_and_has_a_tip() {
-    let mut drawings = Drawings::default();
-    let mut harness = list("--stage glass-schlick --size 32x18", 500.0);
-    harness.run_steps(4);
-    leave(&mut harness);
-    drawings.add("the pointer is elsewhere", &harness);
-    let names = ["metal", "glass-schlick"].map(|id| Command::Stage(Stage::find(id).unwrap()).name());
-    drawings.add_tips_of(&mut harness, &names.each_ref().map(String::as_str));
-    drawings.keep("stage_list_tips");
-    let other = Command::Stage(Stage::find("hollow-glass").unwrap());
-    harness.get_by_label(&other.name()).click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().commands, [other]);
 }
 
 /// Types letter by letter.

@@ -1,7 +1,7 @@
 //! Tests of the status bar.
 
 use super::*;
-use crate::app::tests::{Drawings, facts_of, part as dressed, rest_at};
+use crate::app::tests::{facts_of, part as dressed, rest_at};
 use crate::film::ErrorEstimate;
 use crate::render::Stats;
 use egui::Rect;
@@ -118,23 +118,6 @@ fn nothing_in_the_bar_covers_anything_else() {
             }
         }
     }
-}
-
-#[test]
-fn the_bar_gives_each_figure_its_place_and_its_tip() {
-    let mut status = status_of(parts().to_vec());
-    (status.rejected_samples, status.doubt) = (12345, Some("few pixels".to_owned()));
-    let mut drawings = Drawings::default();
-    for (width, next) in [(1296.0, None), (1600.0, Some(Device::Gpu)), (640.0, None)] {
-        let mut harness = dressed([width, 140.0], |ui| bar(ui, &Bar { next, ..of(&status) }));
-        drawings.add(&format!("{width} points"), &harness);
-        let figures = harness.get_all_by_role(egui::Role::Label).map(|node| node.rect().center());
-        for (index, at) in figures.collect::<Vec<_>>().into_iter().enumerate() {
-            rest_at(&mut harness, at);
-            drawings.add(&format!("figure {index}"), &harness);
-        }
-    }
-    drawings.keep("status_bar");
 }
 
 #[test]

@@ -42,29 +42,9 @@ pub(super) fn badge_below(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use eframe::egui::{TextStyle, pos2};
     use std::cell::Cell;
-
-    #[test]
-    fn words_stay_within_the_picture() {
-        let clip = Rect::from_min_max(pos2(50.0, 20.0), pos2(350.0, 180.0));
-        let mut drawings = Drawings::default();
-        for (x, anchor) in [
-            (200.0, Align2::CENTER_TOP),
-            (70.0, Align2::RIGHT_TOP),
-            (330.0, Align2::LEFT_TOP),
-            (52.0, Align2::CENTER_CENTER),
-            (349.0, Align2::LEFT_BOTTOM),
-        ] {
-            let picture = part([400.0, 200.0], |ui| {
-                let font = TextStyle::Body.resolve(ui.style());
-                badge(ui, &ui.painter().with_clip_rect(clip), pos2(x, 100.0), anchor, "sphere 1", &font);
-            });
-            drawings.add(&format!("{anchor:?} at {x}"), &picture);
-        }
-        drawings.keep("badges");
-    }
 
     #[test]
     fn words_stand_below_those_that_they_would_cover() {

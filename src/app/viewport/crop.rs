@@ -184,7 +184,7 @@ pub(super) fn paint(ui: &Ui, painter: &Painter, rect: Rect, size: [u32; 2], crop
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed};
+    use crate::app::tests::dressed;
     use eframe::egui::{Event, Modifiers, Sense, Shape};
     use egui_kittest::Harness;
 
@@ -296,31 +296,6 @@ mod tests {
     }
 
     #[test]
-    fn a_drag_marks_a_part_from_where_the_button_was_pressed() {
-        let mut harness = picture(None);
-        let mut drawings = Drawings::default();
-        drawings.add("no part", &harness);
-        drag(&mut harness, at(4, 3), at(13, 8), Modifiers::SHIFT);
-        assert_eq!(harness.state().crop, None, "Shift moves the picture");
-        harness = picture(None);
-        drag(&mut harness, at(4, 3), at(13, 8), Modifiers::NONE);
-        let marked = Crop { first: [4, 3], size: [10, 6] };
-        assert_eq!(harness.state().crop, Some(marked));
-        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Crosshair);
-        drawings.add("while it is marked", &harness);
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        harness.event(Event::PointerButton { pos: at(13, 8), button, pressed: false, modifiers });
-        harness.event(Event::PointerMoved(at(8, 5)));
-        harness.run_steps(1);
-        assert_eq!(harness.state().crop, Some(marked));
-        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
-        drag(&mut harness, at(8, 5), at(9, 5), Modifiers::NONE);
-        assert_eq!(harness.state().crop.map(|crop| crop.first), Some([5, 3]));
-        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grabbing);
-        drawings.keep("crop_drag");
-    }
-
-    #[test]
     fn a_part_is_what_is_left_of_it_in_a_smaller_picture() {
         let mut harness = picture(Some(Crop { first: [30, 3], size: [10, 6] }));
         harness.run_steps(1);
@@ -328,19 +303,5 @@ mod tests {
         harness.state_mut().crop = Some(Crop { first: [32, 3], size: [10, 6] });
         harness.run_steps(1);
         assert_eq!(harness.state().crop, None);
-    }
-
-    #[test]
-    fn what_is_not_marked_is_darker() {
-        let mut drawings = Drawings::default();
-        for (name, first, size) in [
-            ("in the middle", [4, 5], [10, 6]),
-            ("at the top", [4, 0], [10, 6]),
-            ("all of it", [0, 0], SIZE),
-            ("the last pixel", [31, 17], [1, 1]),
-        ] {
-            drawings.add(name, &picture(Some(Crop { first, size })));
-        }
-        drawings.keep("crop_parts");
     }
 }

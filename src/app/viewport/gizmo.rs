@@ -152,7 +152,7 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::surfaces::Surfaces;
-    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::app::tests::{dressed, leave, rest_at};
     use crate::stages::Stage;
     use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
     use egui_kittest::Harness;
@@ -214,54 +214,6 @@ mod tests {
 
     /// The middle of the axes in that room.
     const MIDDLE: Pos2 = pos2(390.0 - MARGIN - LENGTH - END - 3.0, 290.0 - MARGIN - LENGTH - END - 3.0);
-
-    #[test]
-    fn the_axes_are_drawn_in_their_corner_and_turn_with_the_camera() {
-        let mut drawings = Drawings::default();
-        let behind = Camera { look_from: -ABOVE.look_from, ..ABOVE };
-        for (name, camera) in
-            [("from above", ABOVE), ("from behind", behind), ("along an axis", Camera::BOOK)]
-        {
-            drawings.add(name, &axes(camera, ROOM));
-        }
-        for (name, room) in [
-            ("just enough room", Rect::from_min_size(ROOM.min, LEAST_ROOM)),
-            ("too narrow", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.5, 0.0))),
-            ("too low", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.0, 0.5))),
-        ] {
-            drawings.add(name, &axes(ABOVE, room));
-        }
-        drawings.keep("axes");
-    }
-
-    #[test]
-    fn what_is_under_the_pointer_is_named_and_can_be_clicked() {
-        let mut harness = axes(ABOVE, ROOM);
-        let mut drawings = Drawings::default();
-        drawings.add("the pointer is elsewhere", &harness);
-        for end in ends(&ABOVE, MIDDLE) {
-            rest_at(&mut harness, end.at);
-            drawings.add(end.side.name(), &harness);
-            assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::PointingHand);
-            for pressed in [true, false] {
-                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-                harness.event(Event::PointerButton { pos: end.at, button, pressed, modifiers });
-            }
-            harness.run_steps(2);
-            assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::ViewFrom(end.side)]);
-        }
-        rest_at(&mut harness, MIDDLE + vec2(20.0, 14.0));
-        drawings.add("between the ends", &harness);
-        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
-        rest_at(&mut harness, MIDDLE - vec2(0.0, LENGTH + END + 15.0));
-        drawings.add("beside the disc", &harness);
-        assert_ne!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
-        leave(&mut harness);
-        harness.key_press(Key::Tab);
-        harness.run_steps(3);
-        drawings.add("the keyboard is at the first end", &harness);
-        drawings.keep("axes_pointer");
-    }
 
     #[test]
     fn a_drag_orbits_about_what_is_looked_at() {

@@ -39,7 +39,7 @@ impl Mark {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+    use crate::app::tests::part;
     use eframe::egui::{self, pos2};
     use egui_kittest::Harness;
 
@@ -58,20 +58,5 @@ mod tests {
         let words = words.unwrap();
         assert!(words.left() > click.x && words.left() < click.x + 40.0, "{words}");
         assert!(words.y_range().contains(click.y), "{words}");
-    }
-
-    #[test]
-    fn a_marker_is_drawn_for_a_moment() {
-        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
-        let mut drawings = Drawings::default();
-        for (place, milliseconds) in [([0.25, 0.5], 0), ([0.95, 0.1], 0), ([0.25, 0.5], 1900)] {
-            let since = Instant::now().checked_sub(Duration::from_millis(milliseconds)).unwrap();
-            let mark = Mark { place, text: "focus 1.500".to_owned(), since };
-            let picture = part([600.0, 300.0], |ui| {
-                assert_eq!(mark.paint(ui, rect, rect), milliseconds == 0);
-            });
-            drawings.add(&format!("{place:?} after {milliseconds} ms"), &picture);
-        }
-        drawings.keep("marks");
     }
 }

@@ -203,7 +203,7 @@ fn paint_wipe(
 mod tests {
     use super::*;
     use crate::app::model::view::With;
-    use crate::app::tests::{Drawings, facts_of, part};
+    use crate::app::tests::{facts_of, part};
     use crate::progressive::Status;
     use egui_kittest::Harness;
     use std::sync::Arc;
@@ -235,47 +235,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_wipe_shows_the_other_picture_where_it_lies() {
-        let rect = Rect::from_min_size(pos2(50.0, 20.0), vec2(400.0, 200.0));
-        let titles = ["11.4 mine", "11.5 theirs, scaled"].map(str::to_owned);
-        let mut drawings = Drawings::default();
-        for (name, share, is_left, theirs) in [
-            ("at the right", 0.25, false, [40, 20]),
-            ("at the left", 0.25, true, [40, 20]),
-            ("a square", 0.5, false, [20, 20]),
-            ("a square behind its bars", 0.1, true, [20, 20]),
-            ("a column", 0.75, true, [10, 80]),
-            ("at the edge", 0.0, false, [40, 20]),
-            ("at the other edge", 1.0, true, [40, 20]),
-        ] {
-            let other = (egui::TextureId::User(1), is_left, Fitted::new(theirs, [40, 20]));
-            let picture = part([500.0, 240.0], |ui| {
-                let painter = ui.painter().with_clip_rect(rect.expand(10.0));
-                paint_wipe(ui, &painter, rect, share, other, &titles);
-            });
-            drawings.add(name, &picture);
-        }
-        drawings.keep("wipes");
-    }
-
-    #[test]
-    fn all_around_the_picture_is_filled() {
-        let room = Rect::from_min_max(pos2(10.0, 10.0), pos2(210.0, 110.0));
-        let mut drawings = Drawings::default();
-        for hole in [
-            Rect::from_min_max(pos2(50.0, 30.0), pos2(150.0, 90.0)),
-            room,
-            Rect::from_min_max(pos2(10.0, 30.0), pos2(210.0, 90.0)),
-            Rect::NOTHING,
-        ] {
-            let picture =
-                part([220.0, 120.0], |ui| fill_around(ui.painter(), room, hole, Color32::from_rgb(1, 2, 3)));
-            drawings.add(&format!("{hole}"), &picture);
-        }
-        drawings.keep("around_the_picture");
-    }
-
     /// Draws a picture of 8x5 pixels, of which there may be only a preview or nothing, with all that lies over it.
     fn with_picture(
         facts: &Facts,
@@ -292,40 +251,6 @@ mod tests {
             let pictures = Pictures { main, has_film, second: None, paths: None, values: &values, notices };
             paint(ui, [room, rect], placement, 0.5, pictures, facts.document(), facts);
         }));
-    }
-
-    #[test]
-    fn what_lies_over_the_picture_tells_its_state() {
-        let mut drawings = Drawings::default();
-        let mut facts = facts_of("--stage normals --size 8x5");
-        let mut placement = Placement::default();
-        let mut draw = |name: &str, facts: &Facts, placement: &mut Placement, of: (u32, bool)| {
-            with_picture(facts, placement, of, |picture| drawings.add(name, picture));
-        };
-        draw("a picture", &facts, &mut placement, (1, true));
-        draw("a preview", &facts, &mut placement, (4, true));
-        draw("nothing yet", &facts, &mut placement, (1, false));
-        facts.status = Arc::new(Status { phase: Phase::Failed("no device".to_owned()), ..Status::default() });
-        draw("a failure", &facts, &mut placement, (1, false));
-        facts.invalid = Some("no picture has no pixels".to_owned());
-        draw("an invalid picture", &facts, &mut placement, (1, false));
-        for show in [Show::Error, Show::Luminance, Show::Normals] {
-            facts.model.view.choose(show);
-            draw(show.name(), &facts, &mut placement, (1, true));
-        }
-        facts.model.view.tone.expose(1.5);
-        draw("normals have no exposure", &facts, &mut placement, (1, true));
-        facts.model.view.choose(Show::Picture);
-        draw("a brighter picture", &facts, &mut placement, (1, true));
-        facts.model.view.toggle(Mode::Wipe, With::Stage);
-        draw("a wipe without its other side", &facts, &mut placement, (1, true));
-        facts.model.view.toggle(Mode::Difference, With::Stage);
-        draw("a difference", &facts, &mut placement, (1, true));
-        placement.zoom_by(0.3);
-        draw("a smaller picture", &facts, &mut placement, (1, true));
-        placement.zoom_by(10.0);
-        draw("a larger picture", &facts, &mut placement, (1, true));
-        drawings.keep("over_the_picture");
     }
 
     #[test]

@@ -270,19 +270,6 @@ mod tests {
     }
 
     #[test]
-    fn pixels_are_found_where_they_are_drawn() {
-        let mut placement = placed();
-        assert_eq!(placement.rect(), Rect::from_min_size(pos2(100.0, 125.0), vec2(800.0, 450.0)));
-        assert_eq!(placement.pixel_at(pos2(101.0, 126.0), [320, 180]), Some([0, 0]));
-        assert_eq!(placement.pixel_at(pos2(899.0, 126.0), [320, 180]), Some([319, 0]));
-        assert_eq!(placement.pixel_at(pos2(101.0, 574.0), [320, 180]), Some([0, 179]));
-        assert_eq!(placement.pixel_at(pos2(101.0, 580.0), [320, 180]), None);
-        placement.actual_size();
-        let rect = placement.place(ROOM, SIZE, 2.0);
-        assert_eq!((rect.center(), rect.size()), (ROOM.center(), vec2(160.0, 90.0)));
-    }
-
-    #[test]
     fn a_zoom_has_its_limits() {
         let mut placement = placed();
         placement.zoom_by(1e6);

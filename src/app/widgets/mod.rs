@@ -148,7 +148,7 @@ pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed, leave};
+    use crate::app::tests::{dressed, leave};
     use egui_kittest::kittest::Queryable;
 
     struct Controls {
@@ -181,42 +181,5 @@ mod tests {
         assert!(harness.query_by_label("take 3").is_none(), "the list is still open");
         drop(harness);
         assert_eq!(chosen, 3);
-    }
-
-    #[test]
-    fn controls_are_drawn_under_their_names_and_tell_why_they_are_disabled() {
-        let draw = |ui: &mut Ui, controls: &mut Controls| {
-            let Controls { numbers: [first, second], vector: vector_of, count, is_on, reason } = controls;
-            let about = |name| About::new(name, "What it is").disabled_if(*reason);
-            let ranges = (0.0..=10.0, -100.0..=100.0);
-            slider(ui, about("Slider"), first, ranges, "°", |slider| slider.max_decimals(1));
-            vector(ui, about("Vector"), vector_of, -5.0..=5.0, 0.01);
-            whole(ui, about("Whole"), count, 1..=9, 1.0);
-            check(ui, about("Check"), is_on);
-            control(ui, about("Control"), |ui| ui.button("press"));
-            number(ui, ("Number", vec2(60.0, 22.0)), second, 0.0..=1.0, |drag| drag);
-        };
-        let vector = DVec3::new(1.5, -2.25, 0.0);
-        let controls = Controls { numbers: [2.5, 0.125], vector, count: 7, is_on: true, reason: None };
-        let mut harness = dressed([240.0, 330.0]).build_ui_state(draw, controls);
-        let mut drawings = Drawings::default();
-        drawings.add("enabled", &harness);
-        drawings.add_tips(&mut harness);
-        for name in ["Slider", "Check", "Control", "Number"] {
-            let pos = harness.get_all_by_label(name).last().unwrap().rect().center();
-            for pressed in [true, false] {
-                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
-                harness.event(egui::Event::PointerMoved(pos));
-                harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-                harness.run_steps(1);
-                drawings.add(&format!("{name}, pressed: {pressed}"), &harness);
-            }
-        }
-        leave(&mut harness);
-        harness.state_mut().reason = Some("Why it is disabled");
-        harness.run_steps(2);
-        drawings.add("disabled", &harness);
-        drawings.add_tips(&mut harness);
-        drawings.keep("widgets");
     }
 }

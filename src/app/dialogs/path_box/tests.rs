@@ -1,7 +1,7 @@
 //! Tests of the box for a file's name.
 
 use super::*;
-use crate::app::tests::{Drawings, dressed, part};
+use crate::app::tests::{dressed, part};
 use crate::output::OutputFormat;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -125,29 +125,6 @@ fn the_name_is_selected_without_its_folder_and_ending() {
         let [from, to] = ends.map(|end: usize| egui::text::CCursor::new(end));
         assert_eq!(selected, Some(egui::text::CCursorRange::two(from, to)), "{text}");
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn the_box_tells_what_will_happen_to_a_file() {
-    let mut drawings = Drawings::default();
-    for (name, purpose, text, about) in [
-        ("no such folder", Purpose::Save(OutputFormat::Png), "/not there/a.png", "4 samples per pixel"),
-        ("no name", Purpose::Save(OutputFormat::Exr), "", ""),
-        ("a file to open", Purpose::Open, "", ""),
-        ("a film that is not there", Purpose::ReferenceFilm, "/not there/a.exr", ""),
-        ("a new file", Purpose::SaveScene, "/not there.toml", ""),
-        ("a file", Purpose::Open, "/dev/null", ""),
-        ("a folder", Purpose::Open, "/", ""),
-    ] {
-        let mut path_box = PathBox::of(purpose, Path::new(text));
-        path_box.say(about.to_owned());
-        let browsed = Answers::default();
-        let mut dialog = part([500.0, 240.0], |ui| _ = path_box.ui(ui, &browsed));
-        drawings.add(name, &dialog);
-        drawings.add_tips(&mut dialog);
-    }
-    drawings.keep("path_box");
 }
 
 struct Asked {

@@ -4,7 +4,7 @@ use super::*;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::{Mode, With};
-use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, rest_at};
+use crate::app::tests::{dressed, facts_of, leave, rest_at};
 use crate::film::{Film, PixelSum};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -78,69 +78,6 @@ fn a_long_name_gets_more_room_and_an_ellipsis_where_it_is_cut() {
         let has_it = harness.output().shapes.iter().any(|clipped| is_ellipsis(&clipped.shape));
         assert_eq!(has_it, is_cut, "{name}");
     }
-}
-
-#[test]
-fn the_strip_in_all_its_states() {
-    let mut drawings = Drawings::default();
-    let mut harness = strip();
-    drawings.add("three pictures and one to come", &harness);
-    let changes: [Case<Shown>; 6] = [
-        ("a long wait", |shown| {
-            let (name, id) =
-                ("a name that is much too long for the card of a slot".to_owned(), "6".to_owned());
-            let coming = Coming { name, id, size: [3, 900], samples: 7, has_own_size: true };
-            shown.slots().expect(SlotNumber::ALL[5], coming);
-        }),
-        ("one is looked at", |shown| shown.facts.model.view.look(Some(ONE))),
-        ("another is meant", |shown| shown.slots().choose(TWO)),
-        ("one is compared", |shown| {
-            shown.facts.model.view.look(None);
-            shown.facts.model.view.toggle(Mode::Wipe, With::Slot(ONE));
-        }),
-        ("one is subtracted", |shown| {
-            shown.facts.model.view.toggle(Mode::Difference, With::Slot(ONE));
-        }),
-        ("one could not be written", |shown| {
-            let id = shown.slots().get(TWO).unwrap().kept.id.clone();
-            shown.slots().note_lasting(&id, false);
-        }),
-    ];
-    for (name, change) in changes {
-        change(harness.state_mut());
-        harness.run_steps(2);
-        drawings.add(name, &harness);
-    }
-    let replacement = slot(&harness.state().facts.model.document.clone(), [60, 6], "another");
-    harness.state_mut().slots().put(ONE, replacement);
-    harness.run_steps(2);
-    drawings.add("another picture in a slot", &harness);
-    drawings.keep("strip");
-}
-
-#[test]
-fn everything_in_the_strip_is_explained() {
-    let mut drawings = Drawings::default();
-    let mut harness = strip();
-    let id = harness.state_mut().slots().get(TWO).unwrap().kept.id.clone();
-    harness.state_mut().slots().note_lasting(&id, false);
-    harness.run_steps(2);
-    leave(&mut harness);
-    drawings.add("the strip", &harness);
-    drawings.add_tips(&mut harness);
-    for label in ["8x6, 8 samples", "this window only"] {
-        let at = harness.get_by_label(label).rect().center();
-        rest_at(&mut harness, at);
-        drawings.add(label, &harness);
-    }
-    let at = harness.get_by_label("Name of slot 1").rect().center();
-    rest_at(&mut harness, at);
-    drawings.add("a name", &harness);
-    harness.get_by_label("More about slot 2").click();
-    harness.run_steps(4);
-    leave(&mut harness);
-    drawings.add("the menu of a slot", &harness);
-    drawings.keep("strip_tips");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::*;
 use crate::app::model::checked::CheckedScene;
 use crate::app::model::origin::Origin;
-use crate::app::tests::{Case, Drawings, dressed, leave};
+use crate::app::tests::{dressed, leave};
 use crate::scene::Material;
 use crate::stages::Stage;
 use eframe::egui::{Event, Modifiers, Sense, Shape};
@@ -87,85 +87,6 @@ fn the_name_covers_no_other_words() {
 }
 
 #[test]
-fn spheres_are_outlined_and_named() {
-    let mut drawings = Drawings::default();
-    for stage in ["metal", "hollow-glass", "view-close"] {
-        let count = picture(stage, 0).state().selected.as_ref().map_or(0, |selected| selected.count);
-        for sphere in 0..count {
-            drawings.add(&format!("{stage} {sphere}"), &picture(stage, sphere));
-        }
-    }
-    let mut harness = picture("metal", 1);
-    for (name, center, radius) in [
-        ("behind another", DVec3::new(0.0, 0.0, -4.0), 1.5),
-        ("behind the eye", DVec3::new(0.0, 0.0, 3.0), 0.5),
-        ("tiny", DVec3::new(0.5, 0.5, -1.0), 0.01),
-        ("all around the eye", DVec3::ZERO, 2.0),
-        ("far to the left", DVec3::new(-3.5, 0.0, -1.0), 0.5),
-        ("above", DVec3::new(0.0, 1.2, -1.0), 0.4),
-    ] {
-        let picture = harness.state_mut();
-        let material = Material::Lambertian { albedo: DVec3::splat(0.5) };
-        picture.selected.as_mut().unwrap().body = Body { center, radius, material };
-        harness.run_steps(2);
-        drawings.add(name, &harness);
-    }
-    harness.state_mut().selected = None;
-    harness.run_steps(2);
-    drawings.add("none", &harness);
-    assert!(harness.state().selection.drawn.is_none());
-    drawings.keep("selections");
-}
-
-#[test]
-fn the_pointer_shows_what_a_drag_would_do() {
-    let mut harness = picture("metal", 1);
-    let mut drawings = Drawings::default();
-    drawings.add("the pointer is elsewhere", &harness);
-    let (middle, handle) = (RECT.center(), handle(&harness));
-    at(&mut harness, middle);
-    assert_eq!(harness.state().cursor, CursorIcon::Grab);
-    at(&mut harness, handle + vec2(GRIP - 0.5, 0.0));
-    assert_eq!(harness.state().cursor, CursorIcon::ResizeHorizontal);
-    drawings.add("at the handle", &harness);
-    at(&mut harness, RECT.left_top() + vec2(5.0, 5.0));
-    assert_eq!(harness.state().cursor, CursorIcon::Default, "the sky");
-    assert!(!harness.state().is_held && harness.state().edits.is_empty());
-    drawings.keep("selection_pointer");
-}
-
-#[test]
-fn drags_move_and_resize_the_sphere() {
-    let mut drawings = Drawings::default();
-    for (name, from_handle, modifiers, cursor) in [
-        ("its centre", false, Modifiers::NONE, CursorIcon::Grabbing),
-        ("level", false, Modifiers::COMMAND, CursorIcon::Move),
-        ("its radius", true, Modifiers::NONE, CursorIcon::ResizeHorizontal),
-    ] {
-        let mut harness = picture("metal", 1);
-        let before = harness.state().selected.clone().unwrap().body;
-        // From above, where a level drag leads somewhere.
-        harness.state_mut().document.camera.look_from.y = 0.5;
-        harness.run_steps(1);
-        let from = if from_handle { handle(&harness) } else { RECT.center() };
-        let to = from + vec2(16.0, 0.0);
-        button(&mut harness, from, true, modifiers);
-        harness.event_modifiers(Event::PointerMoved(to), modifiers);
-        harness.run_steps(1);
-        assert!(harness.state().is_held && harness.state().cursor == cursor, "{name}");
-        drawings.add(name, &harness);
-        let Some(Edit::Change(1, body)) = harness.state().edits.last().copied() else { panic!("{name}") };
-        assert_eq!(body.radius > before.radius, from_handle, "{name}: {body:?}");
-        // The picture is 400 pixels wide for 320 points, and a unit at the sphere's distance takes 90 points.
-        assert_eq!(body.center.x > before.center.x + 0.05, !from_handle, "{name}: {body:?}");
-        button(&mut harness, to, false, modifiers);
-        leave(&mut harness);
-        assert!(!harness.state().is_held && harness.state().selection.held.is_none());
-    }
-    drawings.keep("selection_drags");
-}
-
-#[test]
 fn drags_beside_the_sphere_or_with_shift_hold_nothing() {
     for (at, modifiers) in
         [(RECT.left_top() + vec2(5.0, 5.0), Modifiers::NONE), (RECT.center(), Modifiers::SHIFT)]
@@ -218,31 +139,6 @@ fn what_is_seen_before_the_selected_sphere_hides_it_from_drags() {
     // Among very many spheres, it would take too long to find out.
     assert_eq!(held_before_another(middle, LARGE - 4), None);
     assert_eq!(held_before_another(middle, LARGE - 3), Some(middle));
-}
-
-#[test]
-fn the_outline_is_made_anew_for_what_changes_it() {
-    let mut harness = picture("metal", 1);
-    let drawn = |harness: &Harness<'_, Picture>| {
-        harness.state().selection.drawn.as_ref().map(|drawn| drawn.outline.points.clone())
-    };
-    let changes: [Case<Picture>; 4] = [
-        ("camera", |picture| picture.document.camera.look_from.x = 0.3),
-        ("aspect ratio", |picture| picture.document.settings.width /= 2),
-        ("a sphere before it", |picture| add(picture, DVec3::new(0.3, 0.0, -0.4), 0.2, 1)),
-        ("itself", |picture| picture.selected.as_mut().unwrap().body.radius = 0.4),
-    ];
-    for (name, change) in changes {
-        let before = drawn(&harness);
-        change(harness.state_mut());
-        harness.run_steps(1);
-        let Picture { document, selected, .. } = harness.state();
-        let Body { center, radius, .. } = selected.as_ref().unwrap().body;
-        let outline =
-            Outline::new(&document.camera, document.aspect(), center, radius, Some(document.scene()));
-        assert!(before.is_some_and(|before| before != outline.points), "{name}");
-        assert!(drawn(&harness) == Some(outline.points), "{name}");
-    }
 }
 
 #[test]
