@@ -163,48 +163,6 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    /// A finding about a picture of this size.
-    fn finding(size: [u32; 2]) -> Shown {
-        let rgb8 = vec![100; (3 * size[0] * size[1]) as usize];
-        Shown {
-            path: "/of/mine.ppm".into(),
-            words: "The picture is that of stage sky.\n\nIts rows are upside down.\n\n".to_owned(),
-            size,
-            textures: [(); 3].map(|()| Texture::new(size, &rgb8, None)),
-        }
-    }
-
-    #[test]
-    fn a_file_of_another_kind_is_told_what_can_be_opened() {
-        let directory = tempfile::tempdir().unwrap();
-        for (name, is_other) in
-            [("notes.txt", true), ("notes", true), ("mine.PPM", false), ("mine.png", false)]
-        {
-            let path = directory.path().join(name);
-            std::fs::write(&path, "no picture").unwrap();
-            let told = unreadable(&path, "it is damaged".to_owned());
-            assert_eq!(told != "it is damaged", is_other, "{name}");
-            assert_eq!(told.ends_with("scene files end in .toml and films in .exr"), is_other, "{told}");
-        }
-        assert_eq!(unreadable(directory.path(), "a folder".to_owned()), "a folder");
-    }
-
-    #[test]
-    fn what_is_closed_before_it_is_found_is_not_shown() {
-        let (context, path) = (egui::Context::default(), PathBuf::from("mine.ppm"));
-        let mut check = Check { number: 1, waiting: Some(path.clone()), ..Check::default() };
-        assert!(check.is_open());
-        check.close();
-        assert!(!check.is_open());
-        let found = Found { words: "mine".to_owned(), size: [1, 1], views: [(); 3].map(|()| vec![0; 3]) };
-        check.answers.answer(&context).give(Checked { number: 1, path, outcome: Ok(found) });
-        assert!(check.follow().is_none() && !check.is_open());
-        check.shown = Some(finding([32, 18]));
-        assert!(check.is_open());
-        check.close();
-        assert!(!check.is_open() && check.words().is_none());
-    }
-
     #[test]
     fn only_the_last_picture_that_was_asked_about_is_told_of() {
         let context = egui::Context::default();

@@ -72,15 +72,6 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
-    #[test]
-    fn an_excerpt_tells_where_it_is() {
-        let (file, text) = ("src/a.rs".to_owned(), "fn a() {}\n".to_owned());
-        let excerpt = Excerpt { file, first: 12, last: 12, text };
-        let harness = Harness::new_ui(|ui| excerpt_ui(ui, &excerpt));
-        assert!(harness.query_by_label("src/a.rs, line 12").is_some());
-        assert!(harness.query_by_label("fn a() {}").is_some());
-    }
-
     struct Panel {
         code: Code,
         facts: Facts,

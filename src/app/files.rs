@@ -224,24 +224,6 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_of_changed_spheres_does_not_say_that_it_is_the_stage() {
-        let document = || Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let told = |document: Document| {
-            let film = small_film(1, 0.5);
-            let screen = OnScreen::of(document, film.clone());
-            let subject = screen.subject();
-            let description = describer(&subject)(&film);
-            let recipe = file::parse(description.recipe(), "told").unwrap();
-            assert_eq!(recipe.samples_per_pixel, 1, "as many as the film has");
-            description.get(key::STAGE).map(str::to_owned)
-        };
-        assert_eq!(told(document()).as_deref(), Some("metal"));
-        let mut changed = document();
-        changed.checked = Document::new(Origin::of_stage(&Stage::ALL[0])).checked;
-        assert_eq!(told(changed), None);
-    }
-
-    #[test]
     fn what_is_copied_or_cut_out_is_a_part_of_the_picture() {
         let directory = tempfile::tempdir().unwrap();
         let (files, context) = (Files::default(), Context::default());
@@ -281,19 +263,6 @@ mod tests {
         let reason = "nothing has been traced yet; try again in a moment";
         assert_eq!(files.saved.take(), Some(Err(reason.to_owned())));
         assert!(!path.exists());
-    }
-
-    #[test]
-    fn a_scene_is_in_its_file_once_that_is_written() {
-        let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        for (name, is_written) in [("none/a.toml", false), ("a.toml", true)] {
-            let path = directory.path().join(name);
-            files.save_scene(&context, path.clone(), &document);
-            assert_eq!(files.saved.wait().unwrap().is_ok(), is_written, "{name}");
-            assert_eq!(document.checked.file(), is_written.then_some(path));
-        }
     }
 
     #[test]

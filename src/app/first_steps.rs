@@ -155,35 +155,4 @@ mod tests {
         let harness = shown(&format!("--stage {}", first.id), ROOM);
         assert!(harness.query_by_label_contains("Start the book").is_none(), "it is shown already");
     }
-
-    #[test]
-    fn a_card_on_which_everything_is_done_closes_itself() {
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-        }
-        harness.state_mut().card.all_done = Instant::now().checked_sub(FAREWELL);
-        harness.step();
-        assert_eq!(harness.state().commands.last(), Some(&Command::FirstSteps));
-        harness.state_mut().facts.model.has_first_steps = false;
-        harness.step();
-        assert!(harness.state().card.all_done.is_none(), "the next time it stays as long");
-    }
-
-    #[test]
-    fn the_window_wakes_when_the_card_is_to_close() {
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        let sleep = |harness: &Harness<'_, Shown>| {
-            harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay
-        };
-        assert_eq!(sleep(&harness), Duration::MAX, "there is something left to do");
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-        }
-        // Of a moment in the future, no time has passed yet.
-        harness.state_mut().card.all_done = Some(Instant::now() + Duration::from_secs(600));
-        harness.run_steps(8);
-        assert_eq!(sleep(&harness), FAREWELL);
-        assert!(harness.state().commands.is_empty());
-    }
 }

@@ -224,30 +224,6 @@ mod tests {
     }
 
     #[test]
-    fn the_panel_names_what_is_compared() {
-        let mut harness = panel("--stage glass-schlick --size 32x18");
-        let stage = Stage::find("glass-schlick").unwrap();
-        let other = ViewState::default().other_of(stage).unwrap();
-        let of_stage = format!("with {} {}, same camera", other.section, other.title);
-        let of_book = "with the book's arithmetic, same camera";
-        let changes: [(Case<Facts>, &str); 5] = [
-            (("nothing", |_| {}), of_stage.as_str()),
-            (("the book", |facts| facts.model.view.toggle(Mode::Wipe, With::Book)), of_book),
-            (("the book", |facts| facts.model.view.toggle(Mode::Difference, With::Book)), of_book),
-            (("nothing", |facts| facts.model.view.choose(Show::Picture)), of_stage.as_str()),
-            (
-                ("the stage", |facts| facts.model.view.toggle(Mode::Difference, With::Stage)),
-                of_stage.as_str(),
-            ),
-        ];
-        for ((name, change), words) in changes {
-            change(&mut harness.state_mut().facts);
-            harness.run_steps(3);
-            assert!(harness.query_by_label(words).is_some(), "{name}: {words}");
-        }
-    }
-
-    #[test]
     fn spheres_and_materials_are_counted_as_edited() {
         let mut harness = panel("--scene field:20 --size 32x18");
         let told = |harness: &Harness<'_, Panel>| {

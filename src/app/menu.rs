@@ -207,25 +207,4 @@ mod tests {
         press(&mut harness, "Open b.exr");
         assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::Recent(1)]);
     }
-
-    #[test]
-    fn an_entry_tells_whether_it_is_on_and_which_file_it_opens() {
-        let mut harness = opened([1280.0, 800.0]);
-        press(&mut harness, "View");
-        let toggled = |harness: &Harness<'_, Menus>, command: Command| {
-            harness.get_by_label(&command.name()).accesskit_node().toggled()
-        };
-        assert_eq!(toggled(&harness, Command::Gizmo), Some(Toggled::True));
-        assert_ne!(toggled(&harness, Command::Plot), Some(Toggled::True));
-        harness.state_mut().facts.model.remembered.has_plot = true;
-        harness.run_steps(2);
-        assert_eq!(toggled(&harness, Command::Plot), Some(Toggled::True));
-        harness.key_press(egui::Key::Escape);
-        harness.run_steps(4);
-        press(&mut harness, "File");
-        press(&mut harness, "Open recent");
-        let entry = harness.get_by_label("Open b.exr").rect().center();
-        rest_at(&mut harness, entry);
-        assert!(harness.query_by_label("/of/b.exr").is_some(), "its tip is the whole path");
-    }
 }

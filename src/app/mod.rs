@@ -288,22 +288,4 @@ mod tests {
         let expected = if has_gpu { [Wgpu, Glow] } else { [Glow, Wgpu] };
         assert_eq!(renderers(DrawWith::Auto), expected);
     }
-
-    #[test]
-    fn the_first_frame_has_the_style_of_those_that_follow() {
-        let context = egui::Context::default();
-        let own = context.global_style();
-        let options = options("weekender --stage normals --size 16x9 --samples 1");
-        let mut window = create(options, &context).unwrap();
-        let mut styles = Vec::new();
-        for _ in 0..3 {
-            let _ = context.run_ui(input(), |ui| {
-                styles.push(ui.style().as_ref().clone());
-                window.ui_in(ui);
-            });
-        }
-        let [first, .., last] = &styles[..] else { panic!("{} frames", styles.len()) };
-        assert!(first == last, "the first frame has another style");
-        assert!(*first != *own, "the style is egui's own");
-    }
 }

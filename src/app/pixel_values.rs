@@ -115,41 +115,6 @@ mod tests {
     use egui::pos2;
 
     #[test]
-    fn numbers_are_drawn_only_in_large_pixels_that_are_seen() {
-        let area = Rect::from_min_max(pos2(0.0, 0.0), pos2(200.0, 100.0));
-        let rect = Rect::from_min_size(pos2(-120.0, -30.0), vec2(3200.0, 1800.0));
-        assert_eq!(visible(rect, area, [64, 36]), Some([[2, 0], [7, 3]]));
-        assert_eq!(visible(rect, area, [80, 45]), None, "40 points are too few");
-        assert_eq!(visible(rect.translate(vec2(5000.0, 0.0)), area, [64, 36]), None, "out of sight");
-        let right = rect.translate(vec2(-3000.0, 0.0));
-        assert_eq!(visible(right, area, [64, 36]), Some([[62, 0], [64, 3]]), "no pixel beyond the last");
-    }
-
-    #[test]
-    fn numbers_are_asked_for_again_when_others_are_seen() {
-        let context = egui::Context::default();
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        document.set_size([4, 2]);
-        let screens = [16.0, 4.0].map(|sum| OnScreen::of(document.clone(), small_film(8, sum)));
-        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 200.0));
-        let mut values = PixelValues::default();
-        // What is answered, if the film is asked: the first pixel, and the last channel of the last one.
-        let mut ask = |screen: &OnScreen, area: Rect| {
-            screen.before_answers(|subject| {
-                values.follow(subject, rect, Some(area), &context);
-                values.follow(subject, rect, Some(area), &context);
-            });
-            let answers = [values.answers.take(), values.answers.take()];
-            answers.map(|part| part.map(|part| (part.first, part.means.last().unwrap()[2])))
-        };
-        let (whole, right) = (rect, Rect { min: pos2(250.0, 0.0), ..rect });
-        assert_eq!(ask(&screens[0], whole), [Some(([0, 0], 2.0)), None]);
-        assert_eq!(ask(&screens[0], whole), [None, None], "they are known");
-        assert_eq!(ask(&screens[0], right), [Some(([2, 0], 2.0)), None], "other pixels");
-        assert_eq!(ask(&screens[1], right), [Some(([2, 0], 0.5)), None], "another film");
-    }
-
-    #[test]
     fn the_numbers_of_visible_pixels_are_asked_for_once() {
         let mut window = window("weekender --stage normals --size 8x5 --samples 1 --device cpu --threads 1");
         let context = egui::Context::default();

@@ -222,20 +222,4 @@ mod tests {
             assert!(contrast(palette.on_accent, palette.accent) >= LEAST);
         }
     }
-
-    #[test]
-    fn the_chosen_theme_is_used() {
-        let context = Context::default();
-        for (theme, preference) in [
-            (Theme::Light, egui::ThemePreference::Light),
-            (Theme::Dark, egui::ThemePreference::Dark),
-            (Theme::System, egui::ThemePreference::System),
-        ] {
-            choose(&context, theme);
-            assert_eq!(context.options(|options| options.theme_preference), preference);
-        }
-        let icon = icon();
-        assert_eq!((icon.width, icon.height, icon.rgba.len()), (64, 64, 64 * 64 * 4));
-        assert_eq!(panel(Margin::symmetric(3, 4)), Frame::new().inner_margin(Margin::symmetric(3, 4)));
-    }
 }

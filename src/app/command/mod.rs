@@ -281,14 +281,6 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_named_as_on_a_keyboard() {
-        let context = Context::default();
-        assert_eq!(Command::ZoomIn.keys(&context).as_deref(), Some("]"));
-        assert_eq!(Command::NextStage.keys(&context).as_deref(), Some("Page Down"));
-        assert_eq!(Command::Book.keys(&context), None);
-    }
-
-    #[test]
     fn help_says_more_than_the_name() {
         let words = |text: &str| -> HashSet<String> {
             text.split(|c: char| !c.is_alphanumeric())

@@ -82,29 +82,3 @@ fn section(ui: &mut Ui, group: Option<Group>) {
     });
     ui.add_space(6.0);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::part;
-    use egui_kittest::kittest::Queryable;
-    use std::cell::Cell;
-
-    #[test]
-    fn it_stays_until_it_is_closed() {
-        let is_closed = Cell::new(false);
-        let mut dialog = part([716.0, 400.0], |ui| {
-            is_closed.set(matches!(super::ui(ui, 300.0), Outcome::Close));
-        });
-        dialog.run_steps(2);
-        assert!(!is_closed.get());
-        dialog.get_by_label("Close").click();
-        dialog.step();
-        let mut seen = is_closed.get();
-        for _ in 0..2 {
-            dialog.step();
-            seen |= is_closed.get();
-        }
-        assert!(seen);
-    }
-}

@@ -216,31 +216,6 @@ mod tests {
         assert_eq!(found("11.4").first(), Some(&Command::Stage(stage)));
     }
 
-    #[test]
-    fn beginnings_count_more_than_what_is_within_words() {
-        let help = "What it does with light";
-        // From the best to the worst.
-        let names = ["Light", "Light theme", "The light theme", "Zoom", "Flights"];
-        let ranks = names.map(|name| rank("light", name, help));
-        assert_eq!(ranks, [Some(0), Some(1), Some(2), Some(6), Some(5)]);
-        assert_eq!(rank("theme li", "The light theme", help), Some(3), "in any order");
-        assert_eq!(rank("tlt", "The light theme", help), Some(4), "initials");
-        assert_eq!(rank("oes", "Zoom", help), Some(7), "within a word of the help");
-        assert_eq!(rank("lightning", "The light theme", help), None);
-        assert_eq!(rank("LIGHT  ", "Light theme", help), Some(1), "neither case nor spaces matter");
-        assert_eq!(rank("", "Zoom", help), Some(1));
-    }
-
-    #[test]
-    fn what_is_enabled_comes_first_among_equals() {
-        let all = || [Command::ZoomOut, Command::ZoomIn].into_iter().map(|command| (command, command.name()));
-        let first = |is_enabled: fn(Command) -> bool| matching("zoom", all(), is_enabled)[0].0;
-        assert_eq!(
-            (first(|_| true), first(|command| command == Command::ZoomIn)),
-            (Command::ZoomOut, Command::ZoomIn)
-        );
-    }
-
     struct Dialog {
         palette: Palette,
         facts: Facts,
@@ -258,26 +233,5 @@ mod tests {
             opened = Palette::typed(ui.ctx());
         });
         assert_eq!((opened.text.as_str(), opened.chosen), ("zoom", 0));
-    }
-
-    #[test]
-    fn bookmarks_and_recent_files_are_found_by_their_own_names() {
-        let mut facts = facts_of("--stage glass-schlick --size 32x18");
-        facts.model.remembered.recent = ["/of/a.png", "/of/b.exr"].map(std::path::PathBuf::from).to_vec();
-        let camera = facts.document().camera;
-        facts.model.remembered.bookmarks =
-            ["my first view", "my second view"].map(|name| Bookmark::new(name.to_owned(), &camera)).to_vec();
-        for (text, command) in [
-            ("b.exr", Command::Recent(1)),
-            ("go to my second view", Command::Bookmark(1)),
-            ("my first", Command::Bookmark(0)),
-        ] {
-            let found = matching(text, listed(&facts), |_| true);
-            assert_eq!(found.first().map(|(command, _)| *command), Some(command), "{text}");
-        }
-        assert!(listed(&facts).any(|(command, _)| command == Command::Palette));
-        assert!(
-            matching("", listed(&facts), |_| true).iter().all(|(command, _)| *command != Command::Palette)
-        );
     }
 }

@@ -46,27 +46,6 @@ fn early(document: Document, view: ViewState) -> Facts {
     }
 }
 
-#[test]
-fn two_kept_pictures_are_compared_before_anything_is_traced() {
-    let [one, two] = [SlotNumber::ALL[0], SlotNumber::ALL[1]];
-    let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-    document.give_size([4, 2]);
-    let mut view = ViewState::default();
-    for number in [one, two] {
-        let mut film = Film::new(4, 2, 1);
-        film.record(0..1, 0).unwrap();
-        let kept = Kept::new(document.clone(), film, Arc::default(), None);
-        view.slots.put(number, Slot { name: String::new(), kept: Arc::new(kept) });
-    }
-    let mut facts = early(document, view);
-    let reason = |facts: &Facts| facts.disabled_reason(Command::Slot(SlotCommand::OnlyNoise));
-    assert!(reason(&facts).unwrap().starts_with("Nothing has been traced yet"));
-    facts.model.view.slots.look(Some(one));
-    assert!(reason(&facts).unwrap().starts_with("Nothing has been traced yet"), "it is the live one again");
-    facts.model.view.slots.choose(two);
-    assert_eq!(reason(&facts), None);
-}
-
 const ONE: SlotNumber = SlotNumber::ALL[0];
 const TWO: SlotNumber = SlotNumber::ALL[1];
 
@@ -74,13 +53,6 @@ fn stage(id: &str) -> Document {
     let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
     document.give_size([4, 2]);
     document
-}
-
-fn slot([width, height]: [u32; 2], name: &str) -> Slot {
-    let mut film = Film::new(width, height, 1);
-    film.record(0..1, 0).unwrap();
-    let kept = Kept::new(stage("metal"), film, Arc::default(), None);
-    Slot { name: name.to_owned(), kept: Arc::new(kept) }
 }
 
 fn reference([width, height]: [u32; 2]) -> Option<Arc<ReferenceMeans>> {
@@ -130,52 +102,6 @@ fn done(facts: &mut Facts) {
     facts.model.document.stop = Stop::at_samples(100);
 }
 
-#[test]
-fn a_slot_is_not_brought_back_while_there_is_no_place_for_it() {
-    let mut facts = early(stage("metal"), ViewState::default());
-    let reason = |facts: &Facts| facts.disabled_reason(Command::Slot(SlotCommand::BringBack));
-    for number in SlotNumber::ALL {
-        facts.model.view.slots.put(number, slot([4, 2], "mine"));
-    }
-    facts.model.view.slots.delete(ONE);
-    assert_eq!(reason(&facts), None);
-    let (name, id) = ("mine".to_owned(), "1".to_owned());
-    let coming = Coming { name, id, size: [4, 2], samples: 1, has_own_size: true };
-    facts.model.view.slots.expect(ONE, coming);
-    let told = "Slot 1 is still being read from disk, and no other slot is free; try again in a moment";
-    assert_eq!(reason(&facts).as_deref(), Some(told));
-    facts.model.view.slots.arrive("1", None);
-    assert_eq!(reason(&facts), None);
-}
-
-fn bookmarks(count: usize) -> Vec<Bookmark> {
-    (0..count).map(|number| Bookmark::new(format!("place {number}"), &Camera::BOOK)).collect()
-}
-
-#[test]
-fn files_and_bookmarks_have_names() {
-    let mut facts = early(stage("metal"), ViewState::default());
-    facts.model.remembered.bookmarks = bookmarks(2);
-    let names: Vec<String> = facts.bookmarks().map(|command| facts.name(command)).collect();
-    assert_eq!(names, ["Go to place 0", "Go to place 1"]);
-    facts.model.remembered.recent =
-        ["/of/a.png", "/of/b.exr", "/in/a.png", "c.toml"].map(PathBuf::from).to_vec();
-    let names: Vec<String> = facts.recent().map(|command| facts.name(command)).collect();
-    assert_eq!(names, ["Open a.png in /of", "Open b.exr", "Open a.png in /in", "Open c.toml"]);
-    let paths = [Command::Recent(1), Command::Recent(4), Command::Open].map(|command| facts.path(command));
-    assert_eq!(paths, [Some(Path::new("/of/b.exr")), None, None]);
-}
-
-#[test]
-fn the_neighbours_of_a_stage_are_those_of_the_book() {
-    let id = |document: &Document, is_next| neighbour(document, is_next).map(|stage| stage.id);
-    let (first, middle) = (stage("ppm-tiny"), stage("metal"));
-    assert_eq!((id(&first, false), id(&first, true)), (None, Some("ppm-gradient")));
-    assert_eq!((id(&middle, false), id(&middle, true)), (Some("gamut"), Some("metal-fuzzy")));
-    let other = Document::new(Origin::of_case(&shown_cases()[0]));
-    assert_eq!((id(&other, false), id(&other, true)), (None, Some("ppm-tiny")));
-}
-
 const THREE: SlotNumber = SlotNumber::ALL[2];
 
 /// A slot with the picture of a document.
@@ -195,37 +121,6 @@ fn with_slots(live: Document, documents: &[Document]) -> Facts {
     }
     done(&mut facts);
     facts
-}
-
-#[test]
-fn slots_are_compared_by_the_sizes_of_the_two_pictures() {
-    let sized = |size| {
-        let mut document = stage("metal");
-        document.give_size(size);
-        document
-    };
-    let mut facts = with_slots(sized([4, 2]), &[sized([5, 2]), sized([5, 2]), sized([4, 2])]);
-    // What is looked at, which slot is meant, and the sizes that are told.
-    for (looked, chosen, told) in [
-        (None, ONE, Some("Slot 1 is 5x2 and the picture is 4x2, so ")),
-        (None, THREE, None),
-        (Some(ONE), ONE, Some("Slot 1 is 5x2 and the picture is 4x2, so ")),
-        (Some(ONE), TWO, None),
-        (Some(ONE), THREE, Some("Slot 3 is 4x2 and slot 1 is 5x2, so ")),
-        (Some(THREE), THREE, None),
-        (Some(THREE), TWO, Some("Slot 2 is 5x2 and slot 3 is 4x2, so ")),
-    ] {
-        facts.model.view.look(looked);
-        facts.model.view.slots.choose(chosen);
-        for command in [SlotCommand::Difference, SlotCommand::OnlyNoise] {
-            let reason = facts.disabled_reason(Command::Slot(command));
-            assert_eq!(reason.is_some(), told.is_some(), "{looked:?} {chosen}: {reason:?}");
-            assert!(reason.unwrap_or_default().starts_with(told.unwrap_or_default()), "{looked:?} {chosen}");
-        }
-        // It is the live picture that gets the size of a slot.
-        let has_size = facts.disabled_reason(Command::Slot(SlotCommand::TakeSize)).is_some();
-        assert_eq!(has_size, chosen == THREE, "{looked:?} {chosen}");
-    }
 }
 
 #[test]

@@ -210,35 +210,4 @@ mod tests {
         press("Clear paths");
         assert_eq!(harness.state().len(), 0);
     }
-
-    #[test]
-    fn another_number_of_paths_is_listed() {
-        let (document, paths) = listed("metal", [16, 9]);
-        let mut harness = panel(&document, paths);
-        for (typed, count) in [(5.0, 5), (1e6, 64), (0.0, 1)] {
-            leave(&mut harness);
-            harness.get_by_label("Paths listed").set_value_accesskit(typed);
-            harness.run_steps(3);
-            assert!(harness.state().is_waiting, "{typed}");
-            take(harness.state_mut());
-            assert_eq!(harness.state().len(), count);
-            assert_eq!(harness.state().listed.as_ref().map(|listed| listed.pixel), Some([16, 9]));
-        }
-    }
-
-    #[test]
-    fn another_number_of_paths_is_listed_with_the_camera_of_the_list() {
-        let (document, paths) = listed("metal", [16, 9]);
-        let mut moved = document.clone();
-        moved.camera.vfov_degrees += 1.0;
-        let mut harness = panel(&moved, paths);
-        leave(&mut harness);
-        harness.get_by_label("Paths listed").set_value_accesskit(5.0);
-        harness.run_steps(3);
-        assert!(harness.state().is_waiting);
-        take(harness.state_mut());
-        assert_eq!(harness.state().len(), 5);
-        let camera = harness.state().listed.as_ref().map(|listed| listed.document.camera);
-        assert_eq!(camera, Some(document.camera), "the camera has moved, but the paths stay where they are");
-    }
 }

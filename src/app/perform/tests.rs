@@ -48,30 +48,6 @@ fn seen(window: &Window) -> BTreeMap<String, String> {
 }
 
 #[test]
-fn a_difference_is_from_the_stage_once_the_books_arithmetic_was_left() {
-    let context = Context::default();
-    for leave in [Command::Show(Show::Picture), Command::BookArithmetic, Command::WipeDifference] {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
-        let is_by_book = |window: &Window| match window.model.view.compared(window.document()) {
-            Some(Other::ByTheBook(..)) => Some(true),
-            Some(_) => Some(false),
-            None => None,
-        };
-        window.perform(&context, Command::BookArithmetic);
-        if leave == Command::WipeDifference {
-            window.perform(&context, Command::WipeDifference);
-        }
-        assert_eq!(is_by_book(&window), Some(true), "{leave:?}");
-        window.perform(&context, leave);
-        assert_eq!(is_by_book(&window), None, "{leave:?}");
-        window.perform(&context, Command::WipeDifference);
-        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
-        window.perform(&context, Command::NextStage);
-        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
-    }
-}
-
-#[test]
 fn the_picture_is_zoomed_in_steps() {
     let mut window = window("weekender --stage normals --size 160x90 --samples 1 --device cpu");
     let (context, screen) = (Context::default(), Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0)));
@@ -121,18 +97,6 @@ fn the_companion_opens_at_the_stage_once_it_is_written() {
 }
 
 #[test]
-fn a_command_ends_the_wait_for_slots_that_were_shown() {
-    let mut window = prepared();
-    for (command, is_enabled) in [(Command::Redo, false), (Command::Darker, true)] {
-        assert_eq!(window.disabled_reason(command).is_none(), is_enabled);
-        window.recovery.shown_slots = Some(ShownSlots::default());
-        window.perform(&Context::default(), command);
-        assert_eq!(window.recovery.shown_slots.is_none(), is_enabled, "{command:?}");
-        assert_eq!(window.performed(), Some(command));
-    }
-}
-
-#[test]
 fn a_view_that_a_picture_has_not_is_left() {
     let mut window = prepared();
     for (show, is_left) in [(Show::Picture, false), (Show::Normals, false), (Show::Difference, true)] {
@@ -146,30 +110,6 @@ fn a_view_that_a_picture_has_not_is_left() {
 }
 
 #[test]
-fn a_command_is_no_part_of_a_move_of_the_camera() {
-    let mut window = prepared();
-    window.changes.note_move();
-    window.perform(&Context::default(), Command::Darker);
-    assert!(!window.changes.is_moving());
-}
-
-#[test]
-fn what_is_asked_for_while_all_panels_are_hidden_is_shown() {
-    let (mut window, context) = (prepared(), Context::default());
-    let panels = |window: &Window| {
-        let remembered = &window.model.remembered;
-        [remembered.has_panels, remembered.has_controls]
-    };
-    for command in [Command::Controls, Command::Stages] {
-        window.model.remembered.has_panels = false;
-        window.perform(&context, command);
-        assert_eq!(panels(&window), [true; 2], "{command:?}");
-    }
-    window.perform(&context, Command::Controls);
-    assert_eq!(panels(&window), [true, false], "it was to be seen");
-}
-
-#[test]
 fn a_bookmark_is_named_after_its_picture() {
     for (words, name) in
         [("--stage glass-schlick", "11.4 view 1"), ("--scene touching-spheres", "touching-spheres view 1")]
@@ -177,22 +117,6 @@ fn a_bookmark_is_named_after_its_picture() {
         let mut window = window(&format!("weekender {words} --size 16x9 --device cpu"));
         window.perform(&Context::default(), Command::AddBookmark);
         assert_eq!(window.model.remembered.bookmarks[0].name, name);
-    }
-}
-
-#[test]
-fn going_from_stage_to_stage_is_a_first_step_while_the_card_is_shown() {
-    for (command, has_card, is_noted) in [
-        (Command::NextStage, true, true),
-        (Command::PreviousStage, true, true),
-        (Command::NextStage, false, false),
-        (Command::Stage(&Stage::ALL[3]), true, false),
-    ] {
-        let mut window = prepared();
-        window.model.has_first_steps = has_card;
-        window.perform(&Context::default(), command);
-        let steps = &window.model.remembered.first_steps;
-        assert_eq!(steps.has(Step::Leaf), is_noted, "{command:?} {has_card}");
     }
 }
 

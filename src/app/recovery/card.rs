@@ -189,19 +189,4 @@ mod tests {
             assert!(harness.get_by_label(name).accesskit_node().is_disabled(), "{name}");
         }
     }
-
-    #[test]
-    fn the_files_are_named_in_the_tips() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut harness = offered(left_in(directory.path()));
-        let path = harness.state().left[1].path(Part::Picture).display().to_string();
-        for (button, tip) in [
-            ("Open my picture", format!("Show it in this window: {path}")),
-            ("Discard: my picture", format!("Delete {path}; asks once more")),
-        ] {
-            let at = harness.get_by_label(button).rect().center();
-            rest_at(&mut harness, at);
-            assert!(harness.query_by_label(&tip).is_some(), "{tip}");
-        }
-    }
 }

@@ -38,33 +38,3 @@ pub(super) fn badge_below(
     painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
     rect
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::part;
-    use eframe::egui::{TextStyle, pos2};
-    use std::cell::Cell;
-
-    #[test]
-    fn words_stand_below_those_that_they_would_cover() {
-        let clip = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 200.0));
-        let places = Cell::new([Rect::NOTHING; 4]);
-        part([400.0, 200.0], |ui| {
-            let (painter, font) = (ui.painter().with_clip_rect(clip), TextStyle::Body.resolve(ui.style()));
-            let first = badge(ui, &painter, pos2(20.0, 8.0), Align2::LEFT_TOP, "a title", &font);
-            let below = |x: f32, others: &[Rect]| {
-                badge_below(ui, &painter, (pos2(x, 8.0), Align2::LEFT_TOP), "sphere 1", &font, others)
-            };
-            let second = below(20.0, &[first]);
-            // The order does not matter.
-            let third = below(20.0, &[second, first]);
-            places.set([first, second, third, below(300.0, &[first, second, third])]);
-        });
-        let [first, second, third, aside] = places.get();
-        assert_eq!([first.top(), aside.top()], [8.0, 8.0], "nothing is covered");
-        for (upper, lower) in [(first, second), (second, third)] {
-            assert!((lower.top() - upper.bottom() - GAP).abs() < 0.01, "{upper} {lower}");
-        }
-    }
-}

@@ -35,28 +35,3 @@ impl Mark {
         true
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::part;
-    use eframe::egui::{self, pos2};
-    use egui_kittest::Harness;
-
-    #[test]
-    fn the_words_of_a_click_are_beside_it() {
-        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
-        let click = pos2(200.0, 150.0);
-        let mark = Mark { place: [0.25, 0.5], text: "sky".to_owned(), since: Instant::now() };
-        let harness = Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| {
-            mark.paint(ui, rect, rect);
-        });
-        let words = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
-            egui::Shape::Text(text) if text.galley.text() == "sky" => Some(text.visual_bounding_rect()),
-            _ => None,
-        });
-        let words = words.unwrap();
-        assert!(words.left() > click.x && words.left() < click.x + 40.0, "{words}");
-        assert!(words.y_range().contains(click.y), "{words}");
-    }
-}
