@@ -53,35 +53,3 @@ fn a_picture_without_rays_offers_nothing_of_what_is_there() {
     }
     assert!(!entry(&harness, "Crop…").accesskit_node().is_disabled());
 }
-
-#[test]
-fn the_selected_sphere_is_copied_and_deleted() {
-    let mut harness = opened();
-    let before = spheres(&harness).len();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    choose(&mut harness, Command::DuplicateSphere);
-    assert_eq!(spheres(&harness).len(), before + 1);
-    choose(&mut harness, Command::DeleteSphere);
-    assert_eq!(spheres(&harness).len(), before);
-}
-
-#[test]
-fn a_slot_that_is_shown_and_a_crop_have_menus_of_their_own() {
-    let mut harness = open(&format!("{SMALL} --samples 4"));
-    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
-    let one = SlotNumber::ALL[0];
-    send(&mut harness, Command::Slot(SlotCommand::KeepIn(one)));
-    until(&mut harness, "a kept picture", |window| window.slot(one).is_some());
-    send(&mut harness, Command::Slot(SlotCommand::Look(one)));
-    choose(&mut harness, Command::Slot(SlotCommand::LookLive));
-    assert_eq!(harness.state().looked(), None);
-
-    send(&mut harness, Command::Crop);
-    let from = middle(&harness);
-    drag_from(&mut harness, from, egui::vec2(60.0, 40.0));
-    assert!(harness.state().crop().is_some());
-    choose(&mut harness, Command::CopyCrop);
-    choose(&mut harness, Command::Crop);
-    assert!(harness.state().crop().is_none());
-}

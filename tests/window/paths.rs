@@ -60,37 +60,6 @@ fn buttons_and_the_list_go_through_the_rays_of_a_path() {
 }
 
 #[test]
-fn a_ray_is_explained_in_numbers() {
-    let harness = listed();
-    for name in ["throughput", "position", "normal", "distance", "attenuation"] {
-        assert!(harness.query_all_by_label(name).next().is_some(), "{name}");
-    }
-}
-
-#[test]
-fn the_next_ray_is_that_of_the_first_path_if_none_is_open() {
-    let mut harness = listed();
-    press(&mut harness, "Path of sample 0");
-    assert_eq!(harness.state().explained_ray(), None);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(30);
-    assert_eq!(harness.state().explained_ray().map(|[ray, _]| ray), Some(1));
-    assert!(is_open(&harness, 0));
-}
-
-#[test]
-fn paths_of_an_earlier_camera_are_told_to_be_so() {
-    let mut harness = listed();
-    let is_told = |harness: &Harness<'_, Window>| {
-        harness.query_all_by_label_contains("Listed with an earlier camera").next().is_some()
-    };
-    assert!(!is_told(&harness));
-    harness.state_mut().document_mut().camera.vfov_degrees += 1.0;
-    harness.run_steps(3);
-    assert!(is_told(&harness));
-}
-
-#[test]
 fn escape_clears_the_paths_and_t_lists_them_again() {
     let mut harness = listed();
     for _ in 0..2 {
