@@ -159,9 +159,6 @@ fn unreadable(path: &Path, reason: String) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::dressed;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn only_the_last_picture_that_was_asked_about_is_told_of() {

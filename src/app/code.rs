@@ -68,15 +68,6 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{dressed, facts_of};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    struct Panel {
-        code: Code,
-        facts: Facts,
-        commands: Vec<Command>,
-    }
 
     #[test]
     fn the_code_of_a_stage_is_what_is_new_since_the_section_before() {

@@ -187,8 +187,6 @@ fn read<T: Send + 'static>(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::origin::Origin;
-    use crate::stages::Stage;
 
     #[test]
     fn a_text_is_written_or_it_is_said_why_not() {

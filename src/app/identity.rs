@@ -48,16 +48,10 @@ impl Identity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::KeptThread;
+
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
-    use crate::app::model::view::ViewState;
-    use crate::app::tracer::{Tracer, Want};
-    use crate::backends::BackendChoice;
-    use crate::progressive::{FilmIdentity, Stop, View};
-    use crate::render_cpu::CpuOptions;
-    use std::time::{Duration, Instant};
+
+    use crate::progressive::FilmIdentity;
 
     #[test]
     fn films_are_the_same_if_all_their_sums_are() {

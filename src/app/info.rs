@@ -200,10 +200,10 @@ mod tests {
     use crate::animation::Keyframe;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::model::view::{Mode, ViewState};
-    use crate::app::tests::{Case, dressed, facts_of, leave};
+
+    use crate::app::tests::{dressed, facts_of};
     use crate::recipe::Recipe;
-    use crate::stress::shown_cases;
+
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;

@@ -215,9 +215,9 @@ fn pixel_ui(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::checked::CheckedScene;
+
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::tests::part;
+
     use crate::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;

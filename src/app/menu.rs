@@ -157,11 +157,11 @@ pub fn line(ui: &Ui, command: Command, name: String, is_chosen: bool) -> Button<
 mod tests {
     use super::*;
     use crate::app::model::remembered::Bookmark;
-    use crate::app::tests::{dressed, facts_of, leave, rest_at};
-    use eframe::egui::accesskit::Toggled;
+    use crate::app::tests::{dressed, facts_of};
+
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
-    use std::collections::BTreeSet;
+    use egui_kittest::kittest::Queryable;
+
     use std::path::PathBuf;
 
     struct Menus {

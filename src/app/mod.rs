@@ -197,8 +197,8 @@ mod tests {
     use super::facts::Facts;
     use super::*;
     use crate::cli::{Request, parse};
-    use eframe::egui::{Event, Pos2, Rect, Role, Ui};
-    use egui_kittest::kittest::NodeT;
+    use eframe::egui::{Event, Pos2, Ui};
+
     use egui_kittest::{Harness, HarnessBuilder};
     use std::time::{Duration, Instant};
 

@@ -101,12 +101,11 @@ fn is_input(event: &Event) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Bookmark;
+
     use crate::app::model::viewpoint::Viewpoint;
-    use crate::app::tests::{sleep_after, window};
-    use eframe::egui::{Context, Key, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
+    use crate::app::tests::window;
+    use eframe::egui::Context;
     use glam::DVec3;
-    use std::time::Duration;
 
     /// A window with a camera that can look elsewhere.
     fn distant() -> Window {

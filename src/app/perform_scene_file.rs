@@ -114,14 +114,13 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
+
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::tests::{until, window};
     use crate::recipe::file;
     use crate::stages::Stage;
     use std::path::PathBuf;
-    use std::time::{Duration, Instant};
 
     const SPHERE: &str = "radius = 0.5";
 

@@ -168,7 +168,7 @@ impl Window {
 mod tests {
     use super::*;
     use crate::app::model::kept::Kept;
-    use crate::app::model::slots::Coming;
+
     use crate::app::tests::{until, window};
     use crate::film::PixelSum;
     use std::sync::Arc;

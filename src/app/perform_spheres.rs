@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::document::Document;
-    use crate::app::model::edit::Body;
+
     use crate::app::model::origin::Origin;
     use crate::app::tests::window;
     use crate::scene::Scene;

@@ -106,12 +106,10 @@ mod tests {
     use super::*;
     use crate::app::Window;
     use crate::app::kept::KeptThread;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
+
     use crate::app::model::view::ViewState;
     use crate::app::tests::{until, window};
-    use crate::stages::Stage;
+
     use egui::pos2;
 
     #[test]

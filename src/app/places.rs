@@ -92,7 +92,7 @@ pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Pla
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::slots::{Coming, SlotNumber};
+
     use crate::app::tests::{facts_of, part};
 
     /// The places that the keyboard goes through, from the first one to the picture.

@@ -139,9 +139,8 @@ fn coarsest(document: &Document) -> u32 {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::render::Stats;
+
     use crate::stages::Stage;
-    use std::time::Duration;
 
     fn document(id: &str, size: [u32; 2]) -> Document {
         let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));

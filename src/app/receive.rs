@@ -184,7 +184,7 @@ fn device_after(chosen: Device, known: usize, status: &Status) -> (Device, usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::Keyframe;
+
     use crate::app::tests::window;
     use crate::film::Film;
     use crate::recipe::Recipe;

@@ -229,10 +229,6 @@ mod tests {
         names.iter().map(|name| Bookmark::new((*name).to_owned(), &Camera::default())).collect()
     }
 
-    fn names(settings: &Remembered) -> Vec<&str> {
-        settings.bookmarks.iter().map(|bookmark| bookmark.name.as_str()).collect()
-    }
-
     fn stored(path: &Path) -> Remembered {
         SettingsFile::read(path).settings.unwrap()
     }

@@ -95,7 +95,6 @@ mod tests {
     use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::model::tone::Tone;
     use crate::film::Film;
-    use crate::progressive::ReferenceMeans;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();

@@ -163,12 +163,10 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::corner_card::corner_card;
+
     use crate::app::model::origin::Origin;
-    use crate::app::places::Place;
-    use crate::app::tests::{dressed, leave};
+
     use crate::stages::Stage;
-    use egui_kittest::kittest::Queryable;
 
     const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
     const LONG: Duration = Duration::from_secs(1);

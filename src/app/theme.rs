@@ -187,7 +187,6 @@ pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::dressed;
 
     /// The contrast of two colours by WCAG 2, 1 to 21.
     fn contrast(a: Color32, b: Color32) -> f64 {

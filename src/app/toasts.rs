@@ -159,10 +159,8 @@ impl Toasts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::part;
+
     use eframe::egui::{Rect, pos2, vec2};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn a_message_is_told_once_and_the_newest_is_the_last() {

@@ -170,35 +170,8 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::view::With;
-    use crate::app::tests::{dressed, facts_of, leave, part, rest_at, sleep_after};
-    use crate::film::Film;
-    use crate::progressive::{Phase, Status};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
-    /// Channels with counts at both ends, in the middle and between.
-    fn histogram() -> Histogram {
-        let mut film = Film::new(2, 1, 1);
-        film.record(0..1, 0).unwrap();
-        let mut histogram = Histogram::of(&film, 1.0);
-        for (channel, bins) in histogram.bins.iter_mut().enumerate() {
-            bins.fill(0);
-            let last = bins.len() - 1;
-            for (bin, count) in
-                [(0, 500), (last / 4, 9), (last / 2 + channel, 100), (last - 9, 36), (last, 7)]
-            {
-                bins[bin] = count;
-            }
-        }
-        Histogram { pixels: 652, clipped: 43, largest: 123.456, ..histogram }
-    }
-
-    struct Panel {
-        tone: ToneUi,
-        view: ViewState,
-        facts: Facts,
-    }
+    use crate::app::tests::sleep_after;
 
     #[test]
     fn a_picture_that_refines_is_counted_again_after_a_while_and_another_one_at_once() {

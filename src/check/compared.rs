@@ -76,9 +76,7 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &Expected, width: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-
     use crate::stages::{Stage, Transfer};
-    use std::fmt::Write;
 
     fn right(transfer: Transfer) -> Hypothesis {
         let mut recipe = Stage::find("sky").unwrap().recipe();

@@ -16,7 +16,8 @@ fn rooms() -> BTreeMap<String, String> {
     let mut places: Vec<PathBuf> = vec![root.clone()];
     while let Some(place) = places.pop() {
         if place.is_dir() {
-            places.extend(fs::read_dir(place).expect("readable").map(|entry| entry.expect("readable").path()));
+            places
+                .extend(fs::read_dir(place).expect("readable").map(|entry| entry.expect("readable").path()));
         } else if place.extension().is_some_and(|ending| ending == "rs") && !place.ends_with("tests.rs") {
             let name = place.strip_prefix(&root).expect("below src").with_extension("");
             let room = name.iter().next().expect("a name").to_string_lossy();

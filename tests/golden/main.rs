@@ -87,7 +87,8 @@ fn check(name: &str, actual: &str) {
     }
     let kept = std::fs::read_to_string(&path).unwrap();
     assert_eq!(kept.lines().count(), actual.lines().count(), "{name} has other films");
-    let differences: Vec<_> = kept.lines().zip(actual.lines()).filter(|(kept, actual)| kept != actual).collect();
+    let differences: Vec<_> =
+        kept.lines().zip(actual.lines()).filter(|(kept, actual)| kept != actual).collect();
     assert!(differences.is_empty(), "{} films differ from {name}: {differences:#?}", differences.len());
 }
 

@@ -12,7 +12,7 @@ use weekender::render_cpu::sphere::{
     surface_point,
 };
 use weekender::scene::Camera;
-use weekender::stages::{DielectricLaws, Rules};
+use weekender::stages::DielectricLaws;
 
 pub const FUSED: Scalar<true> = Scalar;
 pub const UNFUSED: Scalar<false> = Scalar;

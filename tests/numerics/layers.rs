@@ -5,7 +5,7 @@ use crate::stiff::*;
 use glam::DVec3;
 use weekender::prepared::PreparedScene;
 use weekender::render::RenderSettings;
-use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::scene::{Camera, Scene, Sky};
 
 /// Details close to the eye are resolved, even where a small ball lies near the far side of the same planet.
 #[test]

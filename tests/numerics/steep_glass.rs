@@ -5,10 +5,9 @@
 use crate::common::*;
 use crate::stiff::{Ball, under_white_sky};
 use glam::DVec3;
-use weekender::prepared::PreparedScene;
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::{DielectricLaws, Rules, SurfaceRule};
+use weekender::stages::{DielectricLaws, Rules};
 
 /// Every ray has one way only.
 const WITHOUT_CHANCE: Rules =

@@ -4,7 +4,6 @@ use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::film::Film;
-use weekender::kernel::Roots;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
 use weekender::render::{RenderJob, RenderSettings};

@@ -1,11 +1,10 @@
 //! Every command, by menu, key and palette.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
-use eframe::egui::{self, Key, Modifiers};
+use crate::common::{SMALL, control, open, send};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, Device, SlotCommand, Window};
-use weekender::stages::Stage;
+use weekender::app::{Command, SlotCommand, Window};
 
 /// Gives a command. Returns whether it was enabled or says why not.
 fn is_done_or_refused(harness: &mut Harness<'_, Window>, command: Command) -> bool {
@@ -83,81 +82,6 @@ fn every_menu_lists_its_commands() {
         }
         harness.key_press(Key::Escape);
         harness.run_steps(3);
-    }
-}
-
-/// What a command must have changed, compared with the window before.
-fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Harness<'_, Window>) -> bool {
-    let copied =
-        harness.output().platform_output.commands.iter().any(
-            |output| matches!(output, egui::OutputCommand::CopyText(text) if text.starts_with("weekender")),
-        );
-    let window = harness.state_mut();
-    let remembered = window.remembered_mut().clone();
-    let document = window.document();
-    match command {
-        Command::Fresh => document.name() == "three-spheres",
-        Command::Open
-        | Command::Save(_)
-        | Command::SaveScene
-        | Command::LoadReference
-        | Command::SavePlot
-        | Command::SaveFlight
-        | Command::Palette
-        | Command::Help => window.has_dialog(),
-        Command::CopyPlot => window.messages().iter().any(|text| text.starts_with("Copied")),
-        Command::CopyCommand => copied || window.messages().iter().any(|text| text.starts_with("Copied")),
-        Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
-            document.camera != before.camera || document.settings != before.settings
-        }
-        Command::AddSphere | Command::DuplicateSphere | Command::DeleteSphere | Command::ResetSpheres => {
-            document.scene() != before.scene()
-        }
-        Command::NextSphere | Command::PreviousSphere => window.selected().is_some(),
-        Command::Deselect => window.selected().is_none(),
-        Command::FocusSphere | Command::LookAtSphere => document.camera != before.camera,
-        Command::AddBookmark => remembered.bookmarks.len() == 1,
-        Command::Flights => !remembered.has_flights,
-        Command::Gizmo => !remembered.has_gizmo,
-        // See moving.rs and flights.rs.
-        Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => true,
-        Command::Show(show) => window.show() == show,
-        Command::Wipe | Command::WipeDifference | Command::BookArithmetic => window.is_comparing(),
-        Command::Extreme(case) => document.case() == Some(case),
-        Command::Panels => !remembered.has_panels,
-        Command::Controls => !remembered.has_controls,
-        Command::Info => !remembered.has_info,
-        Command::Plot => remembered.has_plot,
-        Command::Packet => remembered.has_packet,
-        Command::Code => remembered.has_code,
-        Command::Companion => window.messages().iter().any(|text| text.contains("companion")),
-        Command::Theme(theme) => remembered.theme == theme,
-        Command::Pause => window.is_paused(),
-        Command::Restart => window.status().run > 1,
-        Command::SwitchDevice => remembered.device == Device::Gpu,
-        Command::Device(device) => remembered.device == device,
-        Command::Size(sizing) => remembered.sizing == sizing && document.settings != before.settings,
-        Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
-        Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
-        Command::Stage(stage) => document.stage() == Some(stage),
-        Command::ShowMe => window.has_sight(),
-        Command::Present => window.is_presenting(),
-        // See thumbnails.rs and present.rs.
-        Command::Stages | Command::Blank => true,
-        // The next two belong to the window system; the others belong to the viewport and are tested there.
-        Command::Quit | Command::Book | Command::FullScreen => true,
-        Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
-        Command::NextRay | Command::PreviousRay | Command::ListPaths => true,
-        // See paths.rs, and perform_scene_file.rs of the window.
-        Command::ClearPaths | Command::Reload => true,
-        Command::NextPanel | Command::GoOn => true,
-        // See recent.rs and first_steps.rs.
-        Command::CopyPicture | Command::Recent(_) | Command::FirstSteps => true,
-        // See slots.rs, sizes.rs and crop.rs.
-        Command::Slot(_) | Command::ReferenceSize => true,
-        Command::Crop | Command::CopyCrop | Command::SaveCrop => true,
-        // See tone.rs.
-        Command::Brighter | Command::Darker | Command::NoExposure => true,
     }
 }
 

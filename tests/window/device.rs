@@ -1,11 +1,9 @@
 //! Choosing the device, and pausing.
 
-use crate::common::{drag, has_samples, open, send, until, until_seen};
-use eframe::egui::{Key, Modifiers, PointerButton};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use crate::common::{has_samples, open, send, until};
+use eframe::egui::Key;
 use std::time::Duration;
-use weekender::app::{Command, Device, Window};
+use weekender::app::{Command, Device};
 
 #[test]
 fn another_device_goes_on_with_the_same_film() {

@@ -1,13 +1,10 @@
 //! The spheres of the scene: editing them, and what becomes of a changed scene.
 
-use crate::common::{choose_from_menu, control, drag_from, has_samples, open, save, send, until};
-use crate::objects::{
-    click, has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres,
-};
+use crate::common::{control, drag_from, has_samples, open, save, send, until};
+use crate::objects::{has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use glam::DVec3;
+use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Document, Window};
 use weekender::cli::{self, Request};
 use weekender::scene::Material;

@@ -1,6 +1,6 @@
 //! Extreme scenes, and the switch to the book's arithmetic.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
+use crate::common::{has_samples, open, send, until};
 use egui_kittest::kittest::Queryable;
 use weekender::app::Command;
 use weekender::stress::shown_cases;

@@ -1,9 +1,6 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{
-    SMALL, copied_command, has_samples, name_file, open, painted, save, send, until, until_painted,
-    until_seen,
-};
+use crate::common::{SMALL, copied_command, has_samples, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,7 @@
 //! The card that a new user sees.
 
-use crate::common::{
-    control, drag_from, hold, middle, open, open_sized, opened, send, until, until_seen, window,
-};
-use crate::remembered::remembering;
-use eframe::egui::{Key, Rect, vec2};
+use crate::common::{drag_from, hold, middle, open, opened, until, until_seen, window};
+use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};

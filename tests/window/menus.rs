@@ -1,11 +1,10 @@
 //! The menus of a right click on the picture.
 
-use crate::common::{SMALL, drag_from, has_samples, middle, open, send, until};
-use crate::objects::{metal_sphere, opened, select, spheres};
+use crate::common::{has_samples, middle, open, until};
 use eframe::egui::{self, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use weekender::app::{Command, SlotCommand, SlotNumber, Window};
+use weekender::app::Window;
 
 /// Opens the menu in the middle of the picture.
 fn open_menu(harness: &mut Harness<'_, Window>) {
@@ -27,13 +26,6 @@ fn entry<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
         node.accesskit_node().role() == egui::Role::Button && picture.contains(node.rect().center())
     });
     entry.unwrap_or_else(|| panic!("no {name} in the menu"))
-}
-
-fn choose(harness: &mut Harness<'_, Window>, command: Command) {
-    open_menu(harness);
-    entry(harness, &command.name()).click();
-    harness.run_steps(5);
-    assert_eq!(harness.state().performed(), Some(command));
 }
 
 #[test]

@@ -1,12 +1,11 @@
 //! Moving about: orbits and the wheel at what is under the pointer, and the axes in the corner.
 
-use crate::common::{control, drag_from, has_samples, hold, middle, open, send, until};
+use crate::common::{control, has_samples, hold, open, send, until};
 use crate::objects::on_screen;
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
+use eframe::egui::{self, Modifiers, Pos2, Shape, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
-use weekender::app::{Command, Viewpoint, Window};
+use weekender::app::{Command, Window};
 use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 
@@ -34,12 +33,6 @@ fn under(harness: &Harness<'_, Window>, at: Pos2) -> Option<DVec3> {
 /// A point of the screen on the edge of a sphere that is not in the middle of the picture.
 fn aside(harness: &Harness<'_, Window>) -> Pos2 {
     on_screen(harness, DVec3::new(-1.0, 0.2, -1.0))
-}
-
-fn sky(harness: &Harness<'_, Window>) -> Pos2 {
-    let rect = harness.state().picture_rect();
-    let points = (0..20).map(|step| rect.lerp_inside(vec2(0.3 + 0.02 * step as f32, 0.02)));
-    points.into_iter().find(|at| under(harness, *at).is_none()).unwrap()
 }
 
 /// Whether the pivot is marked at this point of the screen.
@@ -154,8 +147,4 @@ fn a_click_on_the_axes_flies_to_that_side_in_one_undo_step() {
         send(&mut harness, Command::Redo);
         harness.run_steps(90);
     }
-}
-
-fn sky_or_corner(harness: &Harness<'_, Window>) -> Pos2 {
-    harness.state().picture_rect().lerp_inside(vec2(0.1, 0.1))
 }

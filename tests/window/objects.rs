@@ -1,7 +1,7 @@
 //! The spheres of the scene: selecting and dragging them.
 
-use crate::common::{drag_from, has_samples, open, painted, send, until};
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
+use crate::common::{drag_from, has_samples, open, send, until};
+use eframe::egui::{self, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;

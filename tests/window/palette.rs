@@ -1,13 +1,11 @@
 //! The palette: what it finds first, and what it says about switches.
 
-use crate::common::{SMALL, has_samples, hold, open, open_sized, send, until};
+use crate::common::{SMALL, has_samples, open, send, until};
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{Event, Key, Modifiers, Rect, Role};
+use eframe::egui::{Key, Modifiers, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use weekender::app::{Command, Show, SlotCommand, Theme, Window};
-use weekender::output::OutputFormat;
-use weekender::stages::Stage;
+use weekender::app::{Command, Window};
 
 fn opened() -> Harness<'static, Window> {
     let mut harness = open(SMALL);
@@ -69,15 +67,6 @@ fn the_palette_says_whether_a_switch_is_on() {
         assert_eq!(is_on(&mut harness, &name), Some(!before), "{name}");
         send(&mut harness, command);
     }
-}
-
-/// The rows of the open palette from the top, each with its text.
-fn rows(harness: &Harness<'_, Window>) -> Vec<(String, Rect)> {
-    let wide = harness.get_all_by_role(Role::Button).filter(|node| node.rect().width() > 300.0);
-    let mut rows: Vec<(String, Rect)> =
-        wide.filter_map(|node| Some((node.accesskit_node().label()?, node.rect()))).collect();
-    rows.sort_by(|(_, a), (_, b)| a.top().total_cmp(&b.top()));
-    rows
 }
 
 #[test]

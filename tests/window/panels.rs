@@ -1,6 +1,6 @@
 //! Every control of the panels.
 
-use crate::common::{SMALL, control, has_samples, open, painted, send, until};
+use crate::common::{SMALL, control, has_samples, open, send, until};
 use eframe::egui::{self, Key};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};

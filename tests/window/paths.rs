@@ -3,7 +3,6 @@
 use crate::common::{SMALL, control, has_samples, middle, open, send, until};
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
 
 /// A window with the paths of the pixel in the middle of the picture.

@@ -1,16 +1,13 @@
 //! While something moves, coarse previews are shown; they are never saved or reported.
 
-use crate::common::{copied_command, has_samples, hold, open, send, until};
-use eframe::egui::{self, Key, Modifiers};
+use crate::common::{has_samples, hold, open, send, until};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
-use weekender::film::to_byte;
 use weekender::output::{OutputFormat, read_description};
-use weekender::progressive::Stop;
 use weekender::recipe::file;
-use weekender::stages::Transfer;
 
 /// Large enough for previews to be coarser.
 const LARGE: &str = "--size 1600x900 --device cpu --samples 4";

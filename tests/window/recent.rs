@@ -1,7 +1,7 @@
 //! The files that were opened or saved last, and the picture on the clipboard.
 
 use crate::common::{SMALL, control, copied, has_samples, open, save, send, until};
-use eframe::egui::{self, Key, Modifiers};
+use eframe::egui::{self};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;

@@ -1,20 +1,13 @@
 //! What a window does with what others have left: several offers, and what it closes over.
 
-use crate::common::{has_samples, opened, save, send, until};
-use crate::session::{
-    ENDLESS, SOON, close, files, held, kept_in, options, until_film, until_offered, window,
-};
-use eframe::egui::Key;
+use crate::common::{has_samples, opened, until};
+use crate::session::{ENDLESS, SOON, files, kept_in, options, until_film, until_offered, window};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
-use weekender::app::{Command, Window};
-use weekender::film::{checkpoint, key};
-use weekender::output::OutputFormat;
-use weekender::recipe::file;
-use weekender::stages::Stage;
+use weekender::app::Window;
 
 const LONG: Duration = Duration::from_secs(3600);
 
@@ -45,13 +38,6 @@ fn a_changed_picture_is_offered_once_with_its_film() {
     until(&mut next, "its samples", has_samples(1));
     next.run_steps(3);
     assert!(!next.state().has_offer(), "its note is not a second offer");
-}
-
-/// The only film that was left, and its samples per pixel.
-fn left_film(state: &Path) -> (PathBuf, u64) {
-    let [film] = files(state, "exr").try_into().unwrap();
-    let samples = checkpoint::load(&film).unwrap().film.sample_count();
-    (film, samples)
 }
 
 #[test]

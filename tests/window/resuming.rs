@@ -1,14 +1,11 @@
 //! Films that the window resumes.
 
-use crate::common::{has_samples, open, opened, save, send, until};
-use egui_kittest::Harness;
+use crate::common::{has_samples, open, save, until};
 use std::path::Path;
-use weekender::app::{Command, SlotCommand, SlotNumber, Window};
-use weekender::cli;
-use weekender::film::{checkpoint, key};
+use weekender::app::Command;
+use weekender::film::checkpoint;
 use weekender::output::OutputFormat;
 use weekender::progressive::Stop;
-use weekender::stages::Stage;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
 
@@ -55,17 +52,4 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
     // Without a stop condition of its own, it continues as the picture usually would.
     let harness = open(&resume);
     assert_eq!(harness.state().document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
-}
-
-/// Says of a film that it took a million seconds.
-fn make_old(path: &Path) {
-    let mut file = checkpoint::load(path).unwrap();
-    file.description.set(key::SECONDS, 1e6);
-    checkpoint::save(path, &file.film, &file.description).unwrap();
-}
-
-/// Saves what is shown, and returns the seconds of tracing that its film tells.
-fn seconds(harness: &mut Harness<'_, Window>, path: &Path) -> f64 {
-    save(harness, Command::Save(OutputFormat::Exr), path);
-    checkpoint::load(path).unwrap().description.get(key::SECONDS).unwrap().parse().unwrap()
 }

@@ -1,13 +1,13 @@
 //! What a window keeps for the next one: the film of a long render, and what it shows.
 
-use crate::common::{drag_from, has_samples, middle, opened, save, send, until};
+use crate::common::{has_samples, opened, save, send, until};
 use eframe::App;
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-use weekender::app::{Command, Show, Window};
+use std::time::Duration;
+use weekender::app::{Command, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::{Film, checkpoint};
 use weekender::output::OutputFormat;

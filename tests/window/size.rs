@@ -1,14 +1,11 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use crate::common::{
-    SMALL, control, copied_command, has_samples, name_file, open, opened, save, send, until, until_seen,
-    window, window_of_new_user,
-};
+use crate::common::{has_samples, name_file, save, until, until_seen, window_of_new_user};
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::time::{Duration, Instant};
-use weekender::app::{Command, Show, Sizing, Window};
+use weekender::app::{Command, Show, Window};
 use weekender::output::OutputFormat;
 
 /// A cheap picture that follows the viewport.
@@ -40,13 +37,6 @@ fn settle(harness: &mut Harness<'_, Window>) {
         std::thread::sleep(Duration::from_millis(10));
         harness.step();
     }
-}
-
-/// Draws frames until the picture has another size than this one.
-fn until_other_size(harness: &mut Harness<'_, Window>, before: [u32; 2]) -> [u32; 2] {
-    until(harness, "another size", |window| window.document().size() != before);
-    until(harness, "its picture", has_samples(1));
-    size(harness)
 }
 
 /// Whether the picture fills the viewport in one direction, and each of its pixels is one of the screen.

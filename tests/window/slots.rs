@@ -1,17 +1,14 @@
 //! Pictures that are kept in slots.
 
-use crate::common::{
-    SMALL, control, copied, has_samples, open, open_sized, painted, save, send, until, until_painted,
-};
+use crate::common::{SMALL, control, has_samples, open, painted, save, send, until, until_painted};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::time::Duration;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::compare::{Side, compare_sides, told};
-use weekender::film::{key, to_byte};
+use weekender::film::to_byte;
 use weekender::heat::HeatScale;
-use weekender::output::{Encoding, OutputFormat, read_description};
+use weekender::output::{Encoding, OutputFormat};
 use weekender::progressive::{Phase, luminance};
 use weekender::stages::Transfer;
 

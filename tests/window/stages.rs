@@ -1,10 +1,9 @@
 //! Every stage of the book.
 
-use crate::common::{has_samples, open, open_sized, send, until};
-use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Role, Shape, TouchPhase, vec2};
-use egui_kittest::Harness;
+use crate::common::{has_samples, open, send, until};
+use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, Window};
+use weekender::app::Command;
 use weekender::stages::Stage;
 
 #[test]

@@ -1,11 +1,10 @@
 //! The list of stages with small pictures.
 
-use crate::common::{has_samples, open, open_sized, opened, send, until, window};
+use crate::common::open_sized;
 use eframe::egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use std::path::Path;
-use weekender::app::{Command, Window};
+use weekender::app::Window;
 use weekender::stages::Stage;
 
 fn rows(harness: &Harness<'_, Window>) -> usize {
@@ -15,10 +14,6 @@ fn rows(harness: &Harness<'_, Window>) -> usize {
 
 fn name(stage: &Stage) -> String {
     format!("{} {}", stage.section, stage.title)
-}
-
-fn files(directory: &Path) -> usize {
-    std::fs::read_dir(directory.join("thumbnails")).map_or(0, Iterator::count)
 }
 
 #[test]

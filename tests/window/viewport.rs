@@ -1,9 +1,7 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::common::{SMALL, choose_from_menu, control, drag, has_samples, middle, open, send, until};
+use crate::common::{SMALL, drag, has_samples, open, send, until};
 use eframe::egui::{self, Key, Modifiers, PointerButton};
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;
 
@@ -35,12 +33,6 @@ fn drags_move_the_camera_and_undo_brings_it_back() {
     let camera = harness.state().document().camera;
     drag(&mut harness, PointerButton::Primary, Modifiers::SHIFT);
     assert_eq!(harness.state().document().camera, camera, "the picture moves, not the camera");
-}
-
-/// Where a point of the scene is seen, from 0 to 1 from the upper left.
-fn seen(harness: &Harness<'_, Window>, point: glam::DVec3) -> [f64; 2] {
-    let document = harness.state().document();
-    document.camera.place_of(point, document.aspect()).unwrap()
 }
 
 #[test]

@@ -258,7 +258,7 @@ impl Command {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::{Context, Key, Modifiers};
+    use eframe::egui::{Key, Modifiers};
     use std::collections::HashSet;
 
     #[test]

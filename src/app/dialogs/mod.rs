@@ -116,7 +116,6 @@ mod tests {
     use crate::app::tests::{facts_of, part, rest_at};
     use crate::output::OutputFormat;
     use eframe::egui;
-    use std::path::Path;
 
     const PNG: Purpose = Purpose::Save(OutputFormat::Png);
 

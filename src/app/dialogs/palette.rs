@@ -189,12 +189,8 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Bookmark;
-    use crate::app::tests::{dressed, facts_of, rest_at};
+
     use crate::stages::Stage;
-    use eframe::egui::pos2;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn found(text: &str) -> Vec<Command> {
         let all = Command::all().into_iter().map(|command| (command, command.name()));
@@ -214,13 +210,6 @@ mod tests {
         assert_eq!(found("undo").first(), Some(&Command::Undo));
         let stage = Stage::find("glass-schlick").unwrap();
         assert_eq!(found("11.4").first(), Some(&Command::Stage(stage)));
-    }
-
-    struct Dialog {
-        palette: Palette,
-        facts: Facts,
-        commands: Vec<Command>,
-        is_open: bool,
     }
 
     #[test]

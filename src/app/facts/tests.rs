@@ -1,22 +1,17 @@
 //! Tests of what is told about commands.
 
 use super::*;
-use crate::app::model::checked::CheckedScene;
-use crate::app::model::crop::Crop;
 use crate::app::model::device::DeviceOptions;
 use crate::app::model::kept::Kept;
 use crate::app::model::origin::{Origin, Source};
-use crate::app::model::presentation::Presentation;
-use crate::app::model::remembered::{Bookmark, Remembered};
-use crate::app::model::slots::{Coming, Slot};
-use crate::app::model::view::{ViewState, With};
+use crate::app::model::remembered::Remembered;
+use crate::app::model::slots::Slot;
+use crate::app::model::view::ViewState;
 use crate::film::Film;
 
 use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
 use crate::recipe::Recipe;
-use crate::scene::Camera;
 use crate::stages::{Rules, SurfaceRule};
-use crate::stress::shown_cases;
 
 /// A window with this view in which nothing has been traced yet.
 fn early(document: Document, view: ViewState) -> Facts {
@@ -47,7 +42,6 @@ fn early(document: Document, view: ViewState) -> Facts {
 }
 
 const ONE: SlotNumber = SlotNumber::ALL[0];
-const TWO: SlotNumber = SlotNumber::ALL[1];
 
 fn stage(id: &str) -> Document {
     let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
@@ -58,31 +52,6 @@ fn stage(id: &str) -> Document {
 fn reference([width, height]: [u32; 2]) -> Option<Arc<ReferenceMeans>> {
     let means = vec![[0.5; 3]; (width * height) as usize];
     Some(Arc::new(ReferenceMeans { width, height, means, identity: None }))
-}
-
-/// What is told, one a line. Devices depend on the machine, and stages and extreme scenes are always enabled.
-fn told(facts: &Facts) -> Vec<String> {
-    let mut lines = vec![
-        format!("title: {}", facts.title()),
-        format!("further: {:?}", facts.further().map(|further| further.words)),
-        format!("working: {}", facts.is_working()),
-        format!("rays: {:?}", facts.no_rays()),
-    ];
-    for command in Command::all() {
-        if matches!(command, Command::Device(_) | Command::SwitchDevice) {
-            continue;
-        }
-        if let Some(reason) = facts.disabled_reason(command) {
-            lines.push(format!("{}: {reason}", command.name()));
-        }
-        if !facts.is_listed(command) {
-            lines.push(format!("{} is not listed", command.name()));
-        }
-        if facts.name(command) != command.name() {
-            lines.push(format!("{} is called {}", command.name(), facts.name(command)));
-        }
-    }
-    lines
 }
 
 fn done(facts: &mut Facts) {
@@ -101,8 +70,6 @@ fn done(facts: &mut Facts) {
     facts.status = Arc::new(status);
     facts.model.document.stop = Stop::at_samples(100);
 }
-
-const THREE: SlotNumber = SlotNumber::ALL[2];
 
 /// A slot with the picture of a document.
 fn slot_of(document: &Document) -> Slot {

@@ -2,21 +2,12 @@
 
 use super::*;
 use crate::app::answers::caught;
-use crate::app::command::{Command, SlotCommand};
-use crate::app::dialogs::Purpose;
-use crate::app::kept::on_screen::small_film;
-use crate::app::model::crop::Crop;
-use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::kept_view::ShownSlots;
-use crate::app::model::sizing::Sizing;
 use crate::app::model::slots::{Slot, SlotNumber};
-use crate::app::model::view::{Mode, With};
-use crate::app::tests::{sleep_after, until, window};
+use crate::app::tests::{until, window};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
-use crate::progressive::ReferenceMeans;
-use egui::vec2;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 

@@ -1,7 +1,6 @@
 //! Tests of the keyboard.
 
 use super::*;
-use crate::app::model::slots::SlotNumber;
 
 const KEYBOARD: Keyboard = Keyboard {
     had_focus: false,
@@ -16,17 +15,6 @@ const KEYBOARD: Keyboard = Keyboard {
     has_sight: false,
     is_presenting: false,
 };
-
-/// The commands of a key that types `key` and is at the place of `physical_key` on the keyboard.
-fn commands(key: Key, physical_key: Option<Key>, modifiers: Modifiers) -> Vec<Command> {
-    let pressed = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
-    let input = egui::RawInput { events: vec![pressed], ..egui::RawInput::default() };
-    let mut commands = Vec::new();
-    let _ = egui::Context::default().run_ui(input, |ui| {
-        take_keys(ui.ctx(), &KEYBOARD, &mut commands);
-    });
-    commands
-}
 
 fn key(key: Key, modifiers: Modifiers) -> egui::Event {
     egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }

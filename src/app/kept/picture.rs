@@ -94,7 +94,7 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::film::{Film, PixelSum};
     use crate::stages::Stage;
-    use std::sync::mpsc::channel;
+
     use std::time::{Duration, Instant};
 
     /// A kept picture of this grey.

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::app::model::origin::Origin;
-use crate::recipe::Recipe;
 use std::time::{Duration, Instant};
 
 #[test]

@@ -63,7 +63,6 @@ mod tests {
     use eframe::egui::Role;
     use egui_kittest::Harness;
     use egui_kittest::kittest::{NodeT, Queryable};
-    use glam::DVec3;
 
     /// The controls of a lens of 10 degrees that is focused at 3.4, and their camera.
     fn controls() -> Harness<'static, Camera> {

@@ -214,7 +214,7 @@ fn picked(albedo: DVec3, before: [f32; 3], after: [f32; 3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{dressed, facts_of, part};
+    use crate::app::tests::{dressed, part};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 

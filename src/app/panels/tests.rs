@@ -1,21 +1,14 @@
 //! Tests of the left panel.
 
 use super::*;
-use crate::app::model::Model;
-use crate::app::model::device::Device;
-use crate::app::model::origin::Origin;
 use crate::app::model::remembered::Bookmark;
 use crate::app::model::sizing::Sizing;
-use crate::app::model::viewpoint::Viewpoint;
 use crate::app::spheres::Spheres;
-use crate::app::tests::{dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of};
 use crate::output::OutputFormat;
 use crate::progressive::Stop;
-use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SIZE_LIMIT};
-use crate::stages::Stage;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use glam::DVec3;
 
 struct Panel {
     facts: Facts,

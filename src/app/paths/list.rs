@@ -175,7 +175,7 @@ fn triple(v: [f64; 3]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::paths::tests::{listed, take};
+    use crate::app::paths::tests::listed;
     use crate::app::tests::{dressed, leave};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

@@ -2,15 +2,11 @@
 
 use super::*;
 use crate::app::model::crop::Crop;
-use crate::app::model::kept_view::ShownSlots;
-use crate::app::model::view::Other;
 use crate::app::tests::{until, window};
 
 use crate::progressive::Stop;
-use crate::stages::Stage;
-use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, ViewportId, vec2};
+use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, vec2};
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 /// A window in which most commands have something to do.
 pub(super) fn prepared() -> Window {
@@ -25,26 +21,6 @@ pub(super) fn prepared() -> Window {
     view.crop = Some(Some(Crop { first: [1, 2], size: [3, 4] }));
     window.seconds_before = Some(5.0);
     window
-}
-
-/// What can be seen of a window, by name. Scenes are told by the title.
-fn seen(window: &Window) -> BTreeMap<String, String> {
-    let mut seen: BTreeMap<String, String> = kept::fields(&window.model)
-        .into_iter()
-        .filter(|(path, _)| !path.contains("document.origin") && !path.contains("document.checked"))
-        .collect();
-    for (name, value) in [
-        ("title", window.document().title()),
-        ("dialog", window.dialogs.is_open().to_string()),
-        ("copy", window.pending_copy.to_string()),
-        ("seconds", format!("{:?}", window.seconds_before)),
-        ("flight", window.flight.is_some().to_string()),
-        ("sight", window.sight.is_some().to_string()),
-        ("panel", format!("{:?}", window.panel)),
-    ] {
-        seen.insert(name.to_owned(), value);
-    }
-    seen
 }
 
 #[test]

@@ -1,11 +1,8 @@
 //! Tests of what a window leaves and goes on with.
 
 use super::*;
-use crate::app::model::kept::Kept;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::tests::{until, window};
 use crate::film::Film;
-use crate::progressive::ReferenceMeans;
 use std::time::Duration;
 
 fn film(samples: u64) -> SavedFilm {

@@ -1,14 +1,13 @@
 //! Tests of the plot.
 
 use super::*;
-use crate::app::tests::{dressed, facts_of, leave, rest_at};
+use crate::app::tests::{dressed, rest_at};
 use crate::film::ErrorEstimate;
-use crate::progressive::{EndReason, Phase};
+use crate::progressive::Phase;
 use crate::render::BackendInfo;
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 use std::time::Duration;
 
 fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
@@ -124,10 +123,4 @@ fn the_target_follows_the_pointer_that_holds_its_line() {
     harness.event(Event::PointerButton { pos: from, button, pressed: false, modifiers });
     harness.run_steps(3);
     assert_ne!(dots(&harness), [high, low], "the axes show the target again");
-}
-
-struct Panel {
-    facts: Facts,
-    target: Option<f64>,
-    commands: Vec<Command>,
 }

@@ -193,16 +193,11 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
+
     use crate::app::model::presentation::Presentation;
-    use crate::app::tests::{dressed, facts_of, part};
-    use crate::progressive::{EndReason, Phase, Status, Stop};
-    use crate::stress::shown_cases;
+    use crate::app::tests::{dressed, facts_of};
+
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
 
     #[derive(Default)]
     struct Screen {

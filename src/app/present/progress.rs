@@ -75,7 +75,7 @@ impl Progress {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-    use crate::progressive::EndReason;
+
     use std::time::Duration;
 
     fn status(samples: u64, rmse: f64) -> Status {

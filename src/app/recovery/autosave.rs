@@ -232,8 +232,6 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::app::tests::{sleep_after, until, window};
     use crate::app::window::Window;
-    use crate::film::key;
-    use crate::recipe::file;
 
     #[test]
     fn slow_writing_takes_a_small_share_of_the_time() {

@@ -95,7 +95,7 @@ mod tests {
     use crate::app::model::slots::SlotNumber;
     use crate::app::recovery::{RecoveryFiles, write_film};
     use crate::app::slot_files::Entry;
-    use crate::app::tests::{dressed, leave, rest_at};
+    use crate::app::tests::dressed;
     use crate::film::Film;
     use crate::progressive::Status;
     use crate::stages::Stage;

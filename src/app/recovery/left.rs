@@ -223,12 +223,6 @@ fn ago(age: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::{Origin, Source};
-    use crate::app::recovery::write_film;
-    use crate::film::Film;
-    use crate::progressive::Status;
-    use crate::recipe::Recipe;
 
     #[test]
     fn what_nothing_is_lost_with_is_not_offered() {

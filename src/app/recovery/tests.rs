@@ -2,9 +2,7 @@
 
 use super::*;
 use crate::app::model::origin::Origin;
-use crate::app::tests::sleep_after;
 use crate::stages::Stage;
-use std::path::Path;
 
 fn metal() -> Document {
     Document::new(Origin::of_stage(Stage::find("metal").unwrap()))

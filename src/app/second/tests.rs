@@ -1,15 +1,9 @@
 //! Tests of the second picture.
 
 use super::*;
-use crate::app::command::Command;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::model::view::With;
-use crate::app::tests::{until, window};
-use crate::app::window::Window;
 use crate::backends::BackendChoice;
-use crate::film::{Film, PixelSum};
 use crate::progressive::{Phase, Stop, View};
-use crate::render::RenderSettings;
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
 use crate::stress::shown_cases;

@@ -182,11 +182,6 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::tests::dressed;
-    use crate::film::PixelSum;
-    use crate::stages::Stage;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn the_answer_to_an_earlier_question_is_not_shown() {
@@ -218,16 +213,5 @@ mod tests {
         assert_eq!(verdict.words(), Some(Err("nothing has done it; try again")));
         verdict.ask(&context, &kept, &screen.subject(), Default::default());
         assert_eq!(verdict.answers.wait().map(|(number, _)| number), Some(2));
-    }
-
-    /// A film of 80x48 pixels, one sample each: a quarter of white, and by so much less where `is_other`.
-    fn film(is_other: impl Fn(usize, usize) -> bool, by: f64) -> Arc<Film> {
-        let mut film = Film::new(80, 48, 1);
-        for (pixel, sum) in film.halves_mut()[0].iter_mut().enumerate() {
-            let value = if is_other(pixel % 80, pixel / 80) { 0.25 - by } else { 0.25 };
-            *sum = PixelSum([(value * f64::from(1 << 24)) as u64; 3]);
-        }
-        film.record(0..1, 0).unwrap();
-        Arc::new(film)
     }
 }

@@ -102,7 +102,7 @@ fn is_hidden(hiding: &Scene, eye: DVec3, at: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+
     use proptest::prelude::*;
 
     proptest! {

@@ -1,7 +1,7 @@
 //! Tests of the list of stages.
 
 use super::*;
-use crate::app::tests::{dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 

@@ -1,12 +1,9 @@
 //! Tests of the status bar.
 
 use super::*;
-use crate::app::tests::{facts_of, part as dressed, rest_at};
 use crate::film::ErrorEstimate;
 use crate::render::Stats;
-use egui::Rect;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::time::Duration;
 
 fn part(name: &'static str, device: &str, samples_per_pixel: u64) -> Contribution {

@@ -133,10 +133,9 @@ fn is_orbit(before: &Camera, after: &Camera, pivot: DVec3) -> bool {
 mod tests {
     use super::*;
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::navigation;
+
     use crate::recipe::Recipe;
-    use crate::scene::{Material, Sphere};
-    use crate::stages::Stage;
+
     use std::time::{Duration, Instant};
 
     fn opened(name: &str) -> (Document, Surfaces) {

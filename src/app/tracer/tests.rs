@@ -3,7 +3,6 @@
 use super::*;
 use crate::app::model::origin::Origin;
 use crate::render_cpu::CpuOptions;
-use crate::render_gpu::GpuOptions;
 use crate::stages::Stage;
 
 #[test]

@@ -152,11 +152,10 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::surfaces::Surfaces;
-    use crate::app::tests::{dressed, leave, rest_at};
+    use crate::app::tests::dressed;
     use crate::stages::Stage;
-    use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
+    use eframe::egui::{Event, Modifiers, PointerButton, pos2};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
 
     struct Axes {
         document: Document,

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
     use crate::app::tests::dressed;
-    use crate::app::viewport::placement::Zoom;
+
     use crate::stages::Stage;
     use eframe::egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, Sense, TouchPhase, pos2, vec2};
     use egui_kittest::Harness;

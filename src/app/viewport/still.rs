@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::app::tests::dressed;
     use eframe::egui::{
-        Event, Modifiers, MouseWheelSource, MouseWheelUnit, Rect, Sense, TouchPhase, Vec2, pos2, vec2,
+        Event, Modifiers, MouseWheelSource, MouseWheelUnit, Rect, Sense, TouchPhase, pos2, vec2,
     };
     use egui_kittest::Harness;
 

@@ -1,24 +1,14 @@
 //! Tests of the viewport: clicks and the menu of a right click, the divider, and pictures whose scene stays as it is.
 
 use super::*;
-use crate::app::model::edit::Body;
-use crate::app::model::kept::Kept;
-use crate::app::model::presentation::Presentation;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::model::view::With;
 use crate::app::pixel_values::PixelValues;
-use crate::app::tests::{Case, dressed, facts_of, leave};
-use crate::film::Film;
+use crate::app::tests::{dressed, facts_of};
 use crate::scene::Pick;
 use eframe::egui::{Event, Modifiers, Shape, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 const PRIMARY: PointerButton = PointerButton::Primary;
-
-const PRESENTATION: Presentation =
-    Presentation { was_full_screen: false, has_captions: true, is_blank: false };
 
 /// A place on the ball in the middle, and one in the sky.
 const BALL: [f32; 2] = [0.55, 0.47];

@@ -1,7 +1,7 @@
 //! Tests of what a window begins with, and of other pictures in it.
 
 use super::*;
-use crate::app::tests::{until, window};
+use crate::app::tests::window;
 use crate::cli::{Request, parse};
 use crate::progressive::Stop;
 use crate::recipe::file;

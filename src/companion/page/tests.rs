@@ -3,18 +3,6 @@
 use super::*;
 use crate::companion::directive::{GLOSSARY_MARK, REFERENCES_MARK};
 
-use std::fmt::Write;
-
-/// The made-up site with more chapters: one of the book with the book's own title, and one beyond the book.
-fn longer() -> Site {
-    let mut site = Site::made_up();
-    let [first, second] = [0, 1].map(|place| site.chapters[place].clone());
-    let title = "Surface Normals and Multiple Objects".to_owned();
-    site.chapters.push(Chapter { id: "same".to_owned(), title, ..first });
-    site.chapters.push(Chapter { id: "beyond".to_owned(), number: 20, ..second });
-    site
-}
-
 #[test]
 fn the_glossary_and_the_references_are_on_the_page_once() {
     let site = Site::made_up();

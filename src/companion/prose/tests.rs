@@ -1,9 +1,7 @@
 //! Made-up texts as HTML, and what is wrong with them.
 
 use super::*;
-
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// The HTML of a text of the first chapter.
 fn converted(site: &Site, text: &str, uses: &mut Uses, faults: &mut Vec<Fault>) -> String {

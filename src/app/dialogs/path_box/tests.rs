@@ -1,10 +1,10 @@
 //! Tests of the box for a file's name.
 
 use super::*;
-use crate::app::tests::{dressed, part};
+use crate::app::tests::dressed;
 use crate::output::OutputFormat;
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 
 fn typed(purpose: Purpose, text: &str) -> Option<PathBuf> {
     PathBox::of(purpose, Path::new(text)).path()

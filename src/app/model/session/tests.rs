@@ -104,7 +104,3 @@ fn what_another_version_wrote_costs_as_little_as_possible() {
     let found: Session = serde_json::from_value(value).unwrap();
     assert_eq!(found, Session { is_paused: false, ..session });
 }
-
-fn metal() -> Document {
-    Document::new(Origin::of_stage(Stage::find("metal").unwrap()))
-}

@@ -3,7 +3,6 @@
 use super::*;
 use crate::app::model::document::Document;
 use crate::app::model::origin::Origin;
-use crate::app::model::sizing::Sizing;
 use crate::film::PixelSum;
 use crate::stages::Stage;
 

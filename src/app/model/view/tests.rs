@@ -1,10 +1,8 @@
 //! Tests of what the viewport shows.
 
 use super::*;
-use crate::app::model::origin::Source;
 use crate::app::model::slots::Slot;
 use crate::film::Film;
-use crate::stress::shown_cases;
 
 #[test]
 fn every_stage_has_something_to_be_compared_with() {

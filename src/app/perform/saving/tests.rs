@@ -3,15 +3,9 @@
 use super::tests::prepared;
 use super::*;
 use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::tests::{until, window};
-use crate::film::Film;
 use crate::progressive::Stop;
-use crate::recipe::file;
-use crate::stages::Stage;
 use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, vec2};
-use std::sync::Arc;
 
 /// The command line that is copied.
 fn copied(context: &Context, window: &mut Window) -> String {

@@ -3,8 +3,7 @@
 use super::*;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
-use crate::app::model::view::{Mode, With};
-use crate::app::tests::{dressed, facts_of, leave, rest_at};
+use crate::app::tests::{dressed, facts_of};
 use crate::film::{Film, PixelSum};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -1,9 +1,6 @@
 //! Tests of drags of spheres and of places for new ones.
 
 use super::*;
-use crate::app::model::document::Document;
-use crate::app::model::origin::Origin;
-use crate::stages::Stage;
 use proptest::prelude::*;
 
 const BODY: Body = Body {

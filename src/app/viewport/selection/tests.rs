@@ -1,15 +1,11 @@
 //! Tests of the selected sphere in the picture.
 
 use super::*;
-use crate::app::model::checked::CheckedScene;
 use crate::app::model::origin::Origin;
-use crate::app::tests::{dressed, leave};
-use crate::scene::Material;
+use crate::app::tests::dressed;
 use crate::stages::Stage;
-use eframe::egui::{Event, Modifiers, Sense, Shape};
+use eframe::egui::{Event, Modifiers, Sense};
 use egui_kittest::Harness;
-use glam::DVec3;
-use std::sync::Arc;
 
 const RECT: Rect = Rect { min: pos2(20.0, 10.0), max: pos2(340.0, 190.0) };
 
@@ -62,11 +58,6 @@ fn button(harness: &mut Harness<'_, Picture>, pos: Pos2, pressed: bool, modifier
     harness.event(Event::PointerMoved(pos));
     harness.event_modifiers(Event::PointerButton { pos, button, pressed, modifiers }, modifiers);
     harness.run_steps(1);
-}
-
-/// Where the handle of the selected sphere is on the screen.
-fn handle(harness: &Harness<'_, Picture>) -> Pos2 {
-    harness.state().selection.handle_at(RECT).unwrap().0
 }
 
 #[test]

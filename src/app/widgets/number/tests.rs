@@ -105,13 +105,6 @@ fn a_typed_number_counts_however_its_control_is_left() {
     assert_eq!(left_by(&["7", "8"], tab), ([7.0, 8.0], None), "Tab leads to the next number");
 }
 
-/// A number, whether its control is enabled, and how often the control has said that it was changed.
-struct Beyond {
-    number: f64,
-    is_enabled: bool,
-    changes: usize,
-}
-
 /// What becomes of a number of 1 that moves by 0.1 for each point of a drag to the right.
 fn dragged(limits: RangeInclusive<f64>, points: f32) -> f64 {
     let draw = move |ui: &mut Ui, number: &mut f64| {
