@@ -29,9 +29,6 @@ pub mod heat;
 pub mod info;
 pub mod interrupt;
 pub mod journal;
-#[cfg(test)]
-#[path = "../tests/golden/kept.rs"]
-mod kept;
 pub mod kernel;
 pub mod layers;
 pub mod memory;

@@ -14,7 +14,7 @@ fn recipe(id: &str) -> Recipe {
     stage(id).recipe()
 }
 
-/// `tests/golden/stages.txt` holds their ids, which are stable, because files and command lines contain them.
+/// `tests/golden/films.txt` holds their ids, which are stable, because files and command lines contain them.
 #[test]
 fn the_stages_are_in_the_books_order() {
     let number = |stage: &Stage| -> Vec<u32> {

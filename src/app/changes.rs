@@ -227,36 +227,6 @@ mod tests {
         assert_eq!(document.camera, first, "it goes on from the change before");
     }
 
-    #[test]
-    fn a_move_lasts_for_a_moment_unless_it_is_ended() {
-        let mut changes = Changes::new(Document::new(Origin::usual()));
-        assert!(!changes.is_moving());
-        changes.note_move();
-        assert!(changes.is_moving() && changes.has_moved);
-        changes.is_in_gesture = true;
-        changes.end_move();
-        assert!(!changes.is_moving() && !changes.has_moved && !changes.is_in_gesture);
-        changes.moved = Instant::now().checked_sub(Duration::from_millis(190));
-        assert!(!changes.is_moving());
-    }
-
-    #[test]
-    fn a_size_that_follows_the_viewport_stays_when_a_change_is_taken_back() {
-        let mut document = Document::new(Origin::usual());
-        let mut state = document.clone();
-        document.set_size([64, 36]);
-        state.camera.vfov_degrees = 33.0;
-        restore(&mut document, &state);
-        assert_eq!((document.size(), document.camera.vfov_degrees), ([64, 36], 33.0));
-        state.give_size([7, 5]);
-        restore(&mut document, &state);
-        assert_eq!(document.size(), [7, 5], "a size of its own comes back");
-        document.has_own_size = false;
-        let other = Document::new(Origin::usual());
-        restore(&mut document, &other);
-        assert_eq!(document.size(), other.size(), "so does that of another picture");
-    }
-
     /// Presses or releases the button of the pointer.
     fn press(context: &Context, pressed: bool) {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
@@ -285,18 +255,5 @@ mod tests {
             assert_eq!(document.stop.seconds, expected);
         }
         assert!(!changes.can_undo(&document));
-    }
-
-    #[test]
-    fn another_film_is_previewed_while_the_button_is_held() {
-        for is_held in [true, false] {
-            let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
-            let mut changes = Changes::new(document.clone());
-            press(&context, is_held);
-            assert!(!changes.follow(&context, &document, false) && changes.moved.is_none());
-            change(&mut document);
-            assert!(changes.follow(&context, &document, false));
-            assert_eq!(changes.moved.is_some(), is_held);
-        }
     }
 }

@@ -68,50 +68,6 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed, facts_of};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    #[test]
-    fn an_excerpt_tells_where_it_is() {
-        let (file, text) = ("src/a.rs".to_owned(), "fn a() {}\n".to_owned());
-        let excerpt = Excerpt { file, first: 12, last: 12, text };
-        let harness = Harness::new_ui(|ui| excerpt_ui(ui, &excerpt));
-        assert!(harness.query_by_label("src/a.rs, line 12").is_some());
-        assert!(harness.query_by_label("fn a() {}").is_some());
-    }
-
-    struct Panel {
-        code: Code,
-        facts: Facts,
-        commands: Vec<Command>,
-    }
-
-    #[test]
-    fn the_window_follows_the_stage_and_can_be_closed() {
-        let panel =
-            Panel { code: Code::default(), facts: facts_of("--scene field:20"), commands: Vec::new() };
-        let draw = |ui: &mut Ui, Panel { code, facts, commands }: &mut Panel| code.ui(ui, facts, commands);
-        let mut harness = dressed([1000.0, 700.0]).build_ui_state(draw, panel);
-        let mut drawings = Drawings::default();
-        drawings.add("no stage", &harness);
-        let mut stages = Stage::ALL.iter().map(|stage| (stage, excerpts_of(stage)));
-        let (without, _) = stages.find(|(_, excerpts)| excerpts.is_empty()).unwrap();
-        harness.state_mut().facts = facts_of(&format!("--stage {}", without.id));
-        harness.run_steps(3);
-        drawings.add("a stage without new code", &harness);
-        let stage = Stage::find("glass-schlick").unwrap();
-        harness.state_mut().facts = facts_of("--stage glass-schlick");
-        harness.run_steps(3);
-        assert_eq!(harness.state().code.excerpts.len(), excerpts_of(stage).len());
-        let title = format!("Code of {}", stage.section);
-        assert!(harness.query_all_by_label(&title).next().is_some());
-        assert!(harness.state().commands.is_empty());
-        harness.get_by_label("Close window").click();
-        harness.run_steps(1);
-        assert!(harness.state().commands.contains(&Command::Code));
-        drawings.keep("code_of_stages");
-    }
 
     #[test]
     fn the_code_of_a_stage_is_what_is_new_since_the_section_before() {

@@ -187,8 +187,6 @@ fn read<T: Send + 'static>(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::origin::Origin;
-    use crate::stages::Stage;
 
     #[test]
     fn a_text_is_written_or_it_is_said_why_not() {
@@ -221,24 +219,6 @@ mod tests {
         }
         let refused = save(OutputFormat::Png, "b.exr").unwrap_err();
         assert!(refused.ends_with("b.exr does not end in .png"), "{refused}");
-    }
-
-    #[test]
-    fn a_picture_of_changed_spheres_does_not_say_that_it_is_the_stage() {
-        let document = || Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let told = |document: Document| {
-            let film = small_film(1, 0.5);
-            let screen = OnScreen::of(document, film.clone());
-            let subject = screen.subject();
-            let description = describer(&subject)(&film);
-            let recipe = file::parse(description.recipe(), "told").unwrap();
-            assert_eq!(recipe.samples_per_pixel, 1, "as many as the film has");
-            description.get(key::STAGE).map(str::to_owned)
-        };
-        assert_eq!(told(document()).as_deref(), Some("metal"));
-        let mut changed = document();
-        changed.checked = Document::new(Origin::of_stage(&Stage::ALL[0])).checked;
-        assert_eq!(told(changed), None);
     }
 
     #[test]
@@ -281,19 +261,6 @@ mod tests {
         let reason = "nothing has been traced yet; try again in a moment";
         assert_eq!(files.saved.take(), Some(Err(reason.to_owned())));
         assert!(!path.exists());
-    }
-
-    #[test]
-    fn a_scene_is_in_its_file_once_that_is_written() {
-        let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        for (name, is_written) in [("none/a.toml", false), ("a.toml", true)] {
-            let path = directory.path().join(name);
-            files.save_scene(&context, path.clone(), &document);
-            assert_eq!(files.saved.wait().unwrap().is_ok(), is_written, "{name}");
-            assert_eq!(document.checked.file(), is_written.then_some(path));
-        }
     }
 
     #[test]

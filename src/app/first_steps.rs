@@ -118,7 +118,7 @@ fn hint(ui: &mut Ui, is_done: bool, text: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed, facts_of};
+    use crate::app::tests::{dressed, facts_of};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -143,33 +143,6 @@ mod tests {
     const ROOM: Rect = Rect { min: egui::pos2(20.0, 10.0), max: egui::pos2(680.0, 490.0) };
 
     #[test]
-    fn the_card_lists_what_to_try_in_the_stage_that_is_shown() {
-        let mut drawings = Drawings::default();
-        for words in ["--stage glass-schlick", "--stage ppm-tiny", "--stage sky", "--stage red-sphere"] {
-            drawings.add(words, &shown(words, ROOM));
-        }
-        for (name, over) in [
-            ("a narrow room", Rect::from_min_size(ROOM.min, vec2(220.0, 480.0))),
-            ("a low room", Rect::from_min_size(ROOM.min, vec2(660.0, 140.0))),
-            ("hardly any room", Rect::from_min_size(ROOM.min, vec2(60.0, 60.0))),
-        ] {
-            drawings.add(name, &shown("--stage glass-schlick", over));
-        }
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-            harness.run_steps(3);
-            drawings.add(&format!("{step:?} is done"), &harness);
-        }
-        assert!(harness.state().commands.is_empty(), "it says good-bye first");
-        drawings.add_tips(&mut harness);
-        harness.state_mut().facts.model.has_first_steps = false;
-        harness.run_steps(3);
-        drawings.add("closed", &harness);
-        drawings.keep("first_steps_card");
-    }
-
-    #[test]
     fn buttons_lead_to_the_first_stage_and_close_the_card() {
         let mut harness = shown("--stage glass-schlick", ROOM);
         let first = &Stage::ALL[0];
@@ -181,36 +154,5 @@ mod tests {
         assert_eq!(harness.state().commands, [Command::FirstSteps]);
         let harness = shown(&format!("--stage {}", first.id), ROOM);
         assert!(harness.query_by_label_contains("Start the book").is_none(), "it is shown already");
-    }
-
-    #[test]
-    fn a_card_on_which_everything_is_done_closes_itself() {
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-        }
-        harness.state_mut().card.all_done = Instant::now().checked_sub(FAREWELL);
-        harness.step();
-        assert_eq!(harness.state().commands.last(), Some(&Command::FirstSteps));
-        harness.state_mut().facts.model.has_first_steps = false;
-        harness.step();
-        assert!(harness.state().card.all_done.is_none(), "the next time it stays as long");
-    }
-
-    #[test]
-    fn the_window_wakes_when_the_card_is_to_close() {
-        let mut harness = shown("--stage glass-schlick", ROOM);
-        let sleep = |harness: &Harness<'_, Shown>| {
-            harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay
-        };
-        assert_eq!(sleep(&harness), Duration::MAX, "there is something left to do");
-        for step in Step::ALL {
-            harness.state_mut().facts.model.remembered.first_steps.note(step);
-        }
-        // Of a moment in the future, no time has passed yet.
-        harness.state_mut().card.all_done = Some(Instant::now() + Duration::from_secs(600));
-        harness.run_steps(8);
-        assert_eq!(sleep(&harness), FAREWELL);
-        assert!(harness.state().commands.is_empty());
     }
 }

@@ -128,18 +128,6 @@ mod tests {
     }
 
     #[test]
-    fn a_backend_is_logged_once_for_each_render() {
-        let lines = logged(|log| {
-            log.command("Pause or go on");
-            for (run, backend) in [(1, "cpu"), (1, "cpu"), (1, "gpu"), (2, "gpu"), (2, "gpu")] {
-                log.tracing(run, backend);
-            }
-        });
-        let words: Vec<String> = lines.iter().map(|line| line.join(" ")).collect();
-        assert_eq!(words, ["command Pause or go on", "tracing 1 cpu", "tracing 1 gpu", "tracing 2 gpu"]);
-    }
-
-    #[test]
     fn the_latency_is_that_of_the_first_picture_after_each_change() {
         let lines = logged(|log| {
             log.changed();
@@ -151,17 +139,5 @@ mod tests {
         });
         let [line] = &lines[..] else { panic!("{lines:?}") };
         assert!(line[0] == "latency" && line[1].parse::<f64>().unwrap() >= 0.0, "{line:?}");
-    }
-
-    #[test]
-    fn commands_and_renders_can_be_read_at_once() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("log.csv");
-        let mut log = FrameLog::create(&path).unwrap();
-        let ends_with = |end: &str| std::fs::read_to_string(&path).unwrap().ends_with(end);
-        log.command("Undo");
-        assert!(ends_with(",Undo\n"));
-        log.tracing(3, "cpu");
-        assert!(ends_with(",3,cpu\n"));
     }
 }

@@ -48,16 +48,10 @@ impl Identity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::KeptThread;
+
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
-    use crate::app::model::view::ViewState;
-    use crate::app::tracer::{Tracer, Want};
-    use crate::backends::BackendChoice;
-    use crate::progressive::{FilmIdentity, Stop, View};
-    use crate::render_cpu::CpuOptions;
-    use std::time::{Duration, Instant};
+
+    use crate::progressive::FilmIdentity;
 
     #[test]
     fn films_are_the_same_if_all_their_sums_are() {
@@ -101,39 +95,5 @@ mod tests {
         });
         let late = "nothing is told of films that are no longer compared";
         assert_eq!([identity.answers.take(), identity.answers.take()], [Some(false), None], "{late}");
-    }
-
-    #[test]
-    fn films_are_compared_again_after_more_samples() {
-        let mut document = Document::new(Origin::usual());
-        document.give_size([16, 9]);
-        let want = Want {
-            document: &document,
-            backend: &BackendChoice::Cpu(CpuOptions::default()),
-            stop: Stop::at_samples(4_000_000_000),
-            view: View::Picture,
-            is_moving: false,
-            is_paused: false,
-        };
-        let film = small_film(7, 14.0);
-        let other = ReferenceMeans { identity: Some(FilmIdentity::of(&film)), ..ReferenceMeans::of(&film) };
-        let other = Arc::new(other);
-        let (context, view, thread) = (Context::default(), ViewState::default(), KeptThread::default());
-        let (mut identity, mut tracer) = (Identity::default(), Tracer::new().unwrap());
-        let (mut counts, begin) = (Vec::new(), Instant::now());
-        while counts.len() < 4 {
-            assert!(begin.elapsed() < Duration::from_secs(60), "no more samples: {counts:?}");
-            tracer.want(&want).unwrap();
-            tracer.poll(&context);
-            let subject = Subject::new(&view, (&document, &tracer), None, &thread);
-            identity.follow(Some(&other), &subject, &context);
-            let samples = subject.shown_samples();
-            let compared = identity.compared.as_ref().map(|(_, film, count)| (*film, *count));
-            assert_eq!(compared, Some((subject.film_id(), samples)));
-            if counts.last() != Some(&samples) {
-                counts.push(samples);
-            }
-            std::thread::sleep(Duration::from_millis(1));
-        }
     }
 }

@@ -200,10 +200,10 @@ mod tests {
     use crate::animation::Keyframe;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::model::view::{Mode, ViewState};
-    use crate::app::tests::{Case, Drawings, dressed, facts_of, leave};
+
+    use crate::app::tests::{dressed, facts_of};
     use crate::recipe::Recipe;
-    use crate::stress::shown_cases;
+
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
@@ -221,127 +221,6 @@ mod tests {
             facts.model.view.is_with_next = is_with_next;
         };
         dressed([270.0, 900.0]).build_ui_state(draw, panel)
-    }
-
-    /// Draws it after the scene was edited, without a difference.
-    fn edit(facts: &mut Facts) {
-        let document = &mut facts.model.document;
-        let scene = Arc::clone(document.checked.scene());
-        document.checked = Arc::new(CheckedScene::new(scene, document.origin.recipe.rules));
-    }
-
-    #[test]
-    fn the_panel_tells_about_what_is_shown() {
-        let mut drawings = Drawings::default();
-        let mut harness = panel("--stage glass-schlick --size 32x18");
-        drawings.add("a stage", &harness);
-        let changes: [Case<Facts>; 9] = [
-            ("edited", edit),
-            ("its sight", |facts| facts.has_sight = true),
-            ("a wipe", |facts| facts.model.view.toggle(Mode::Wipe, With::Stage)),
-            ("a difference from the next stage", |facts| {
-                facts.model.view.is_with_next = true;
-                facts.model.view.toggle(Mode::Difference, With::Stage);
-            }),
-            ("another view", |facts| facts.model.view.choose(Show::Bounces)),
-            ("its code", |facts| facts.model.remembered.has_code = true),
-            ("an extreme scene", |facts| {
-                facts.model.document = Document::new(Origin::of_case(&shown_cases()[0]));
-            }),
-            ("an extreme scene by the book", |facts| facts.model.view.toggle(Mode::Wipe, With::Book)),
-            ("an edited extreme scene", edit),
-        ];
-        for (name, change) in changes {
-            change(&mut harness.state_mut().facts);
-            harness.run_steps(3);
-            drawings.add(name, &harness);
-        }
-        for words in [
-            "--scene field:20",
-            "--stage view-distant",
-            "--stage fov-wide",
-            "--stage ppm-tiny",
-            "--stage book",
-        ] {
-            harness.state_mut().facts = facts_of(words);
-            harness.run_steps(3);
-            drawings.add(words, &harness);
-        }
-        edit(&mut harness.state_mut().facts);
-        harness.run_steps(3);
-        drawings.add("edited", &harness);
-        drawings.keep("info");
-    }
-
-    #[test]
-    fn the_panel_names_what_is_compared() {
-        let mut harness = panel("--stage glass-schlick --size 32x18");
-        let stage = Stage::find("glass-schlick").unwrap();
-        let other = ViewState::default().other_of(stage).unwrap();
-        let of_stage = format!("with {} {}, same camera", other.section, other.title);
-        let of_book = "with the book's arithmetic, same camera";
-        let changes: [(Case<Facts>, &str); 5] = [
-            (("nothing", |_| {}), of_stage.as_str()),
-            (("the book", |facts| facts.model.view.toggle(Mode::Wipe, With::Book)), of_book),
-            (("the book", |facts| facts.model.view.toggle(Mode::Difference, With::Book)), of_book),
-            (("nothing", |facts| facts.model.view.choose(Show::Picture)), of_stage.as_str()),
-            (
-                ("the stage", |facts| facts.model.view.toggle(Mode::Difference, With::Stage)),
-                of_stage.as_str(),
-            ),
-        ];
-        for ((name, change), words) in changes {
-            change(&mut harness.state_mut().facts);
-            harness.run_steps(3);
-            assert!(harness.query_by_label(words).is_some(), "{name}: {words}");
-        }
-    }
-
-    #[test]
-    fn every_control_has_its_tip_and_gives_its_command() {
-        let mut drawings = Drawings::default();
-        let mut harness = panel("--stage fov-wide --size 32x18");
-        edit(&mut harness.state_mut().facts);
-        harness.run_steps(3);
-        leave(&mut harness);
-        drawings.add("a stage", &harness);
-        drawings.add_tips(&mut harness);
-        for (name, command) in [
-            ("Show me", Command::ShowMe),
-            ("Code", Command::Code),
-            ("Companion", Command::Companion),
-            ("Wipe", Command::Wipe),
-            ("Difference", Command::WipeDifference),
-            ("Reset the scene", Command::ResetSpheres),
-        ] {
-            harness.get_by_label(name).click();
-            harness.run_steps(2);
-            assert_eq!(std::mem::take(&mut harness.state_mut().commands), [command]);
-        }
-        harness.state_mut().facts.model.document = Document::new(Origin::of_case(&shown_cases()[0]));
-        harness.run_steps(3);
-        leave(&mut harness);
-        drawings.add("an extreme scene", &harness);
-        drawings.add_tips(&mut harness);
-        harness.get_by_label(&Command::BookArithmetic.name()).click();
-        harness.run_steps(2);
-        assert_eq!(harness.state().commands, [Command::BookArithmetic]);
-        drawings.keep("info_tips");
-    }
-
-    #[test]
-    fn the_list_of_views_gives_the_chosen_one() {
-        let mut drawings = Drawings::default();
-        let mut harness = panel("--stage glass-schlick --size 32x18");
-        drawings.add("closed", &harness);
-        harness.get_by_role(egui::Role::ComboBox).click();
-        harness.run_steps(3);
-        leave(&mut harness);
-        drawings.add("open", &harness);
-        harness.get_by_label(&Command::Show(Show::Error).name()).click();
-        harness.run_steps(3);
-        assert_eq!(harness.state().commands, [Command::Show(Show::Error)]);
-        drawings.keep("info_views");
     }
 
     #[test]

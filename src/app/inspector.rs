@@ -215,9 +215,9 @@ fn pixel_ui(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::checked::CheckedScene;
+
     use crate::app::model::origin::{Origin, Source};
-    use crate::app::tests::{Drawings, part};
+
     use crate::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;
@@ -258,73 +258,6 @@ mod tests {
                 "{at:?}: no {expected} in {texts:?}"
             );
         }
-    }
-
-    #[test]
-    fn among_very_many_spheres_none_is_searched_for() {
-        for (count, is_named) in [(PICK_LIMIT, true), (PICK_LIMIT + 1, false)] {
-            let recipe = Recipe::builtin("three-spheres").unwrap();
-            let mut document = Document::new(Origin::new(recipe, Source::Builtin));
-            let mut scene = document.scene().clone();
-            let behind = document.camera.look_from + 99.0 * document.camera.basis().w;
-            (scene.spheres.len()..count).for_each(|_| scene.add_sphere(behind, 0.5, 0));
-            document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
-            let at = document.size().map(|length| length / 2);
-            let pixel = Pixel { at, mean: [0.0; 3], error: None, bytes: [0; 3], samples: 1 };
-            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, None, ui));
-            assert_eq!(harness.query_by_label_contains("at distance").is_some(), is_named, "{count}");
-        }
-    }
-
-    #[test]
-    fn a_view_tells_its_value_at_the_pixel() {
-        let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        let pixel = Pixel { at: [0, 0], mean: [0.5; 3], error: None, bytes: [0; 3], samples: 1 };
-        for (layer, value, told) in [
-            (Layer::Normals, [0.5, 1.0, 0.25], ["normal", "0.0000", "1.0000", "-0.5000"].as_slice()),
-            (Layer::Albedo, [0.125, 0.75, 1.0], ["albedo", "0.12500", "0.75000", "1.00000"].as_slice()),
-            (Layer::RaysPerPath, [2.5; 3], ["rays/path", "2.50"].as_slice()),
-        ] {
-            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, Some((layer, value)), None, ui));
-            let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
-            let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
-            for text in told {
-                assert!(texts.iter().any(|found| found == text), "{layer:?}: no {text} in {texts:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_pixel_is_told_line_by_line() {
-        let mut document =
-            Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        document.set_size([32, 18]);
-        let plain = Pixel {
-            at: [16, 9],
-            mean: [0.5, 0.25, 1.0 / 3.0],
-            error: Some([1e-3, 0.25, 0.0]),
-            bytes: [188, 137, 155],
-            samples: 4096,
-        };
-        let sky = Pixel { at: [0, 1], error: None, ..plain.clone() };
-        let [other, scaled] =
-            [None, Some([7, 5])].map(|scaled| OtherPixel { mean: [0.75, 0.0, 2.0], scaled });
-        let mut drawings = Drawings::default();
-        for (name, pixel, layer, other) in [
-            ("a picture", Some(plain.clone()), None, None),
-            ("the sky", Some(sky), None, None),
-            ("normals", Some(plain.clone()), Some((Layer::Normals, [0.5, 1.0, 0.25])), None),
-            ("albedo", Some(plain.clone()), Some((Layer::Albedo, [0.125, 0.75, 1.0])), None),
-            ("rays", Some(plain.clone()), Some((Layer::RaysPerPath, [2.5; 3])), None),
-            ("a difference", Some(plain.clone()), None, Some(other)),
-            ("a difference that is scaled", Some(plain), None, Some(scaled)),
-            ("none", None, None, None),
-        ] {
-            let inspector = Inspector { pixel, ..Inspector::default() };
-            let panel = part([270.0, 400.0], |ui| inspector.ui(ui, &document, layer, other));
-            drawings.add(name, &panel);
-        }
-        drawings.keep("inspector");
     }
 
     #[test]

@@ -309,6 +309,3 @@ fn scrolling(
         });
     });
 }
-
-#[cfg(test)]
-mod tests;

@@ -157,11 +157,11 @@ pub fn line(ui: &Ui, command: Command, name: String, is_chosen: bool) -> Button<
 mod tests {
     use super::*;
     use crate::app::model::remembered::Bookmark;
-    use crate::app::tests::{Drawings, alone, dressed, facts_of, leave, rest_at};
-    use eframe::egui::accesskit::Toggled;
+    use crate::app::tests::{dressed, facts_of};
+
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
-    use std::collections::BTreeSet;
+    use egui_kittest::kittest::Queryable;
+
     use std::path::PathBuf;
 
     struct Menus {
@@ -196,37 +196,6 @@ mod tests {
     }
 
     #[test]
-    fn menus_list_their_commands() {
-        alone("menu::tests::menus_list_their_commands", || {
-            for (name, size) in [("menus", [1280.0, 1000.0]), ("menus_of_a_low_window", [1280.0, 300.0])] {
-                let mut drawings = Drawings::default();
-                let mut harness = opened(size);
-                drawings.add("closed", &harness);
-                for group in Group::ALL {
-                    press(&mut harness, group.name());
-                    leave(&mut harness);
-                    drawings.add(group.name(), &harness);
-                    harness.key_press(egui::Key::Escape);
-                    harness.run_steps(4);
-                }
-                drawings.keep(name);
-            }
-        });
-    }
-
-    #[test]
-    fn entries_have_tips_beside_them() {
-        let mut harness = opened([1280.0, 800.0]);
-        let mut drawings = Drawings::default();
-        press(&mut harness, "Camera");
-        drawings.add("Camera", &harness);
-        let of_camera = Command::all().into_iter().filter(|command| command.group() == Group::Camera);
-        let names: Vec<String> = of_camera.map(Command::name).collect();
-        drawings.add_tips_of(&mut harness, &names.iter().map(String::as_str).collect::<Vec<_>>());
-        drawings.keep("menus_tips");
-    }
-
-    #[test]
     fn an_entry_gives_its_command_and_closes_the_menu() {
         let mut harness = opened([1280.0, 800.0]);
         press(&mut harness, "Edit");
@@ -237,49 +206,5 @@ mod tests {
         press(&mut harness, "Open recent");
         press(&mut harness, "Open b.exr");
         assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::Recent(1)]);
-    }
-
-    /// Everything that menus, the palette, the list of keys and the manual say about the commands.
-    #[test]
-    fn every_command_has_its_place_its_keys_and_its_words() {
-        let facts = facts_of("--stage glass-schlick --size 32x18");
-        let mut drawings = Drawings::default();
-        let context = egui::Context::default();
-        context.set_os(egui::os::OperatingSystem::Nix);
-        let further = [Command::Recent(0), Command::Bookmark(0)];
-        let mut seen = BTreeSet::new();
-        for command in Command::all().into_iter().chain(further) {
-            let keys = command.keys(&context).unwrap_or_default();
-            let (group, section) = (command.group().name(), section(command));
-            let on = facts.switch(command).map_or("", |is_on| if is_on { ", on" } else { ", off" });
-            let dialog = if command.opens_dialog() { ", opens a dialog" } else { "" };
-            let active = if facts.is_on(command) { ", active" } else { "" };
-            let name = command.name();
-            drawings
-                .tell(&format!("{group} {section}: {name} [{keys}]{on}{dialog}{active}: {}", command.help()));
-            assert!(seen.insert(name), "{command:?}");
-        }
-        drawings.keep("commands");
-    }
-
-    #[test]
-    fn an_entry_tells_whether_it_is_on_and_which_file_it_opens() {
-        let mut harness = opened([1280.0, 800.0]);
-        press(&mut harness, "View");
-        let toggled = |harness: &Harness<'_, Menus>, command: Command| {
-            harness.get_by_label(&command.name()).accesskit_node().toggled()
-        };
-        assert_eq!(toggled(&harness, Command::Gizmo), Some(Toggled::True));
-        assert_ne!(toggled(&harness, Command::Plot), Some(Toggled::True));
-        harness.state_mut().facts.model.remembered.has_plot = true;
-        harness.run_steps(2);
-        assert_eq!(toggled(&harness, Command::Plot), Some(Toggled::True));
-        harness.key_press(egui::Key::Escape);
-        harness.run_steps(4);
-        press(&mut harness, "File");
-        press(&mut harness, "Open recent");
-        let entry = harness.get_by_label("Open b.exr").rect().center();
-        rest_at(&mut harness, entry);
-        assert!(harness.query_by_label("/of/b.exr").is_some(), "its tip is the whole path");
     }
 }

@@ -13,9 +13,6 @@ mod code;
 mod command;
 mod corner_card;
 mod dialogs;
-#[cfg(test)]
-#[path = "../../tests/window/drawn.rs"]
-mod drawn;
 mod facts;
 mod files;
 mod first_steps;
@@ -197,13 +194,11 @@ fn display() -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::drawn::{change, drawn};
     use super::facts::Facts;
     use super::*;
     use crate::cli::{Request, parse};
-    use crate::kept;
-    use eframe::egui::{Event, Pos2, Rect, Role, Ui};
-    use egui_kittest::kittest::NodeT;
+    use eframe::egui::{Event, Pos2, Ui};
+
     use egui_kittest::{Harness, HarnessBuilder};
     use std::time::{Duration, Instant};
 
@@ -257,94 +252,6 @@ mod tests {
         harness.run_steps(3);
     }
 
-    /// Everything that can be pointed at, by name and from left to right.
-    fn controls<State>(harness: &Harness<'_, State>) -> Vec<(String, Rect)> {
-        let is_control = |role| {
-            let controls =
-                [Role::Button, Role::SpinButton, Role::CheckBox, Role::ComboBox, Role::Slider, Role::Link];
-            controls.contains(&role)
-        };
-        let nodes = harness.root().children_recursive();
-        let mut controls: Vec<(String, Rect)> = nodes
-            .filter(|node| is_control(node.accesskit_node().role()))
-            .map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
-            .collect();
-        controls.sort_by(|(_, a), (_, b)| {
-            a.left()
-                .total_cmp(&b.left())
-                .then(a.top().total_cmp(&b.top()))
-                .then(a.right().total_cmp(&b.right()))
-        });
-        controls
-    }
-
-    /// A state by name, and what leads to it from the one before.
-    pub(super) type Case<T> = (&'static str, fn(&mut T));
-
-    /// What is drawn in one state after another: all of the first, then what has changed since the state before.
-    #[derive(Default)]
-    pub(super) struct Drawings {
-        text: String,
-        before: Vec<String>,
-    }
-
-    impl Drawings {
-        /// Adds what is drawn now.
-        pub(super) fn add<State>(&mut self, name: &str, harness: &Harness<'_, State>) {
-            let now = drawn(harness);
-            self.text.push_str(&format!("{name}\n{}", change(&self.before, &now)));
-            self.before = now;
-        }
-
-        /// Adds what else is drawn while the pointer rests on each control.
-        pub(super) fn add_tips<State>(&mut self, harness: &mut Harness<'_, State>) {
-            self.add_tips_of(harness, &[]);
-        }
-
-        /// Adds what else is drawn while the pointer rests on each control of these names; without names, on each.
-        pub(super) fn add_tips_of<State>(&mut self, harness: &mut Harness<'_, State>, names: &[&str]) {
-            let mut controls = controls(harness);
-            controls.retain(|(name, _)| names.is_empty() || names.contains(&name.as_str()));
-            for (name, rect) in controls {
-                rest_at(harness, rect.center());
-                let change = change(&self.before, &drawn(harness));
-                let new: String = change
-                    .lines()
-                    .filter(|line| line.starts_with('+'))
-                    .map(|line| format!("{line}\n"))
-                    .collect();
-                self.text.push_str(&format!("at {name}\n{new}"));
-            }
-            leave(harness);
-        }
-
-        /// Adds a line of text.
-        pub(super) fn tell(&mut self, line: &str) {
-            self.text.push_str(&format!("{line}\n"));
-        }
-
-        /// Compares all of it with a kept text.
-        pub(super) fn keep(&self, name: &str) {
-            // Keys have other names on macOS.
-            if cfg!(not(target_os = "macos")) {
-                kept::check(&format!("drawn/{name}"), &self.text);
-            }
-        }
-    }
-
-    /// Runs a test in a process that finds no graphics adapter, so that every machine draws the same. `test` is its path
-    /// in the window's module.
-    pub(super) fn alone(test: &str, draw: impl FnOnce()) {
-        if std::env::var("WGPU_BACKEND").is_ok_and(|backend| backend == "noop") {
-            return draw();
-        }
-        let mut again = std::process::Command::new(std::env::current_exe().unwrap());
-        again.args(["--exact", &format!("app::{test}"), "--nocapture"]).env("WGPU_BACKEND", "noop");
-        let output = again.output().unwrap();
-        let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
-        assert!(output.status.success() && out.contains("1 passed"), "{out}{err}");
-    }
-
     fn input() -> egui::RawInput {
         let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0));
         egui::RawInput { screen_rect: Some(screen), ..egui::RawInput::default() }
@@ -380,23 +287,5 @@ mod tests {
         let has_gpu = model::device::adapter().is_ok_and(|adapter| !adapter.is_software);
         let expected = if has_gpu { [Wgpu, Glow] } else { [Glow, Wgpu] };
         assert_eq!(renderers(DrawWith::Auto), expected);
-    }
-
-    #[test]
-    fn the_first_frame_has_the_style_of_those_that_follow() {
-        let context = egui::Context::default();
-        let own = context.global_style();
-        let options = options("weekender --stage normals --size 16x9 --samples 1");
-        let mut window = create(options, &context).unwrap();
-        let mut styles = Vec::new();
-        for _ in 0..3 {
-            let _ = context.run_ui(input(), |ui| {
-                styles.push(ui.style().as_ref().clone());
-                window.ui_in(ui);
-            });
-        }
-        let [first, .., last] = &styles[..] else { panic!("{} frames", styles.len()) };
-        assert!(first == last, "the first frame has another style");
-        assert!(*first != *own, "the style is egui's own");
     }
 }

@@ -200,7 +200,7 @@ fn paint(ui: &mut Ui, timelines: &[Timeline; 2]) {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::app::tests::{Drawings, dressed};
+    use crate::app::tests::dressed;
     use crate::stages::Stage;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
@@ -227,31 +227,6 @@ mod tests {
         let mut harness = dressed(size).build_ui_state(draw, (packet, Vec::new()));
         harness.run_steps(3);
         harness
-    }
-
-    #[test]
-    fn each_lane_has_a_row_and_each_step_a_column() {
-        let mut drawings = Drawings::default();
-        for (stage, lanes, size) in [
-            ("metal-fuzzy", 4, [700.0, 400.0]),
-            ("red-sphere", 2, [700.0, 400.0]),
-            ("glass-schlick", 1, [300.0, 250.0]),
-        ] {
-            drawings.add(&format!("{stage}, {lanes} lanes, {size:?}"), &panel(stage, lanes, size));
-        }
-        let mut empty = panel("red-sphere", 2, [700.0, 400.0]);
-        empty.state_mut().0 = Packet::default();
-        empty.run_steps(3);
-        drawings.add("nothing is recorded yet", &empty);
-        drawings.keep("packets");
-    }
-
-    #[test]
-    fn the_panel_has_a_button_that_closes_it() {
-        let mut harness = panel("red-sphere", 2, [700.0, 400.0]);
-        harness.get_by_label("Close").click();
-        harness.run_steps(2);
-        assert_eq!(harness.state().1, [Command::Packet]);
     }
 
     #[test]
@@ -287,33 +262,5 @@ mod tests {
         take(&mut packet);
         packet.follow(&context, &document, None, false);
         assert!(packet.steps().is_none() && packet.asked.is_none());
-    }
-
-    #[test]
-    fn timelines_that_were_asked_for_earlier_are_not_shown() {
-        let (mut packet, context) = (Packet::default(), egui::Context::default());
-        let document = document("red-sphere");
-        let [earlier, newest] = [2, 4].map(|lanes| {
-            packet.follow(&context, &document, Some(lanes), false);
-            packet.answers.wait().unwrap()
-        });
-        packet.answers.answer(&context).give(earlier);
-        packet.follow(&context, &document, Some(4), false);
-        assert_eq!(packet.steps(), None);
-        let timelines = newest.timelines.as_ref().unwrap();
-        assert_eq!(timelines.each_ref().map(|timeline| timeline.lanes.len()), [4, 4]);
-        packet.answers.answer(&context).give(newest);
-        packet.follow(&context, &document, Some(4), false);
-        assert!(packet.steps().is_some());
-    }
-
-    #[test]
-    fn lanes_trace_a_block_of_pixels_in_the_middle() {
-        let at = |lane, lanes| pixel_of(lane, lanes, [100, 60]);
-        assert_eq!([0, 1, 2, 3].map(|lane| at(lane, 4)), [[50, 30], [51, 30], [50, 31], [51, 31]]);
-        assert_eq!([0, 3, 4, 7].map(|lane| at(lane, 8)), [[50, 30], [53, 30], [50, 31], [53, 31]]);
-        assert_eq!([1, 15].map(|lane| at(lane, 16)), [[51, 30], [53, 33]]);
-        assert_eq!(at(0, 1), [50, 30]);
-        assert_eq!(pixel_of(15, 16, [4, 2]), [3, 1], "no pixel beyond the last");
     }
 }

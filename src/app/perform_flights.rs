@@ -101,16 +101,11 @@ fn is_input(event: &Event) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Bookmark;
-    use crate::app::model::viewpoint::Viewpoint;
-    use crate::app::tests::{sleep_after, window};
-    use eframe::egui::{Context, Key, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
-    use glam::DVec3;
-    use std::time::Duration;
 
-    fn bookmarked(cameras: [Camera; 2]) -> Vec<Bookmark> {
-        cameras.map(|camera| Bookmark::new("a".to_owned(), &camera)).to_vec()
-    }
+    use crate::app::model::viewpoint::Viewpoint;
+    use crate::app::tests::window;
+    use eframe::egui::Context;
+    use glam::DVec3;
 
     /// A window with a camera that can look elsewhere.
     fn distant() -> Window {
@@ -128,88 +123,5 @@ mod tests {
         assert_ne!(expected, Viewpoint::Left.camera(&before, before.vup));
         window.perform_flight(&context, Command::ViewFrom(Viewpoint::Left));
         assert_eq!(window.document().camera, expected);
-    }
-
-    #[test]
-    fn a_flight_leads_elsewhere_or_does_not_begin() {
-        let (mut window, context) = (distant(), Context::default());
-        let here = window.document().camera;
-        window.model.remembered.bookmarks = bookmarked([here, Camera { vfov_degrees: 33.0, ..here }]);
-        for (place, flies) in [(0, false), (1, true)] {
-            window.perform_flight(&context, Command::Bookmark(place));
-            assert_eq!((window.flight.is_some(), window.document().camera), (flies, here), "{place}");
-        }
-    }
-
-    #[test]
-    fn frames_are_drawn_while_the_camera_flies() {
-        let (mut window, context) = (distant(), Context::default());
-        let here = window.document().camera;
-        window.model.remembered.bookmarks = bookmarked([here, Camera { vfov_degrees: 33.0, ..here }]);
-        for command in [Command::FlyBookmarks, Command::Bookmark(1)] {
-            let sleep = sleep_after(&context, |context| window.perform_flight(context, command));
-            assert_eq!(sleep, Duration::ZERO, "{command:?}");
-            let sleep = sleep_after(&context, |context| window.go_on_flying(context));
-            assert_eq!((sleep, window.flight.is_some()), (Duration::ZERO, true), "{command:?}");
-            assert!(window.changes.is_moving(), "it is previewed");
-        }
-        window.flight = None;
-        assert!(sleep_after(&context, |context| window.go_on_flying(context)) > Duration::ZERO);
-    }
-
-    #[test]
-    fn a_path_is_written_with_the_number_of_its_frames_or_a_warning() {
-        let (directory, context, mut window) = (tempfile::tempdir().unwrap(), Context::default(), distant());
-        let here = window.document().camera;
-        let aside = Camera { look_from: here.look_from + DVec3::X, ..here };
-        // Halfway between the two, the eye is where it looks.
-        let opposite = Camera { look_from: here.look_at * 2.0 - here.look_from, ..here };
-        let warning = "Frame 30 of the path cannot be rendered: ";
-        for (place, (other, told)) in
-            [(aside, "The path has 61 frames; render them with --frames 0..61"), (opposite, warning)]
-                .into_iter()
-                .enumerate()
-        {
-            window.model.remembered.bookmarks = bookmarked([here, other]);
-            let path = directory.path().join(format!("{place}.toml"));
-            window.save_flight(&context, path.clone());
-            let messages = window.messages();
-            assert!(messages.len() == place + 1 && messages[place].starts_with(told), "{messages:?}");
-            assert_eq!(window.files.saved.wait(), Some(Ok(path)));
-        }
-    }
-
-    #[test]
-    fn the_pointer_may_move_while_the_camera_flies() {
-        let (key, physical_key, modifiers) = (Key::A, None, Modifiers::NONE);
-        let pressed = |pressed, repeat| Event::Key { key, physical_key, pressed, repeat, modifiers };
-        let button = |pressed| Event::PointerButton {
-            pos: Pos2::ZERO,
-            button: PointerButton::Primary,
-            pressed,
-            modifiers,
-        };
-        let wheel = Event::MouseWheel {
-            unit: egui::MouseWheelUnit::Line,
-            delta: egui::vec2(0.0, 1.0),
-            phase: egui::TouchPhase::Move,
-            source: egui::MouseWheelSource::Wheel,
-            modifiers,
-        };
-        let (device_id, id, pos) = (TouchDeviceId(1), TouchId(1), Pos2::ZERO);
-        let touch = |phase| Event::Touch { device_id, id, phase, pos, force: None };
-        let begun = touch(TouchPhase::Start);
-        for event in [pressed(true, false), button(true), Event::Zoom(1.5), wheel, begun] {
-            assert!(is_input(&event), "{event:?}");
-        }
-        for event in [
-            pressed(true, true),
-            pressed(false, false),
-            button(false),
-            Event::PointerMoved(Pos2::ZERO),
-            touch(TouchPhase::Move),
-        ] {
-            assert!(!is_input(&event), "{event:?}");
-        }
     }
 }

@@ -206,6 +206,3 @@ impl Window {
         self.read_in_order(context, ids);
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -168,7 +168,7 @@ impl Window {
 mod tests {
     use super::*;
     use crate::app::model::kept::Kept;
-    use crate::app::model::slots::Coming;
+
     use crate::app::tests::{until, window};
     use crate::film::PixelSum;
     use std::sync::Arc;
@@ -225,25 +225,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_goes_to_a_slot_that_awaits_no_picture() {
-        let context = egui::Context::default();
-        let mut window = finished(&context);
-        let [one, two, three, ..] = SlotNumber::ALL;
-        let coming = Coming {
-            name: "earlier".to_owned(),
-            id: "a".to_owned(),
-            size: [16, 9],
-            samples: 7,
-            has_own_size: true,
-        };
-        window.model.view.slots.expect(one, coming);
-        for number in [two, three] {
-            window.perform_on_slots(&context, SlotCommand::Keep);
-            assert!(window.slot_actions.is_wanted(number) && !window.slot_actions.is_wanted(one), "{number}");
-        }
-    }
-
-    #[test]
     fn a_slot_goes_on_unless_the_live_picture_has_all_of_it() {
         let context = egui::Context::default();
         let mut window = finished(&context);
@@ -264,111 +245,5 @@ mod tests {
             assert!(*window.document() == document);
             window.seconds_before = Some(0.0);
         }
-    }
-
-    #[test]
-    fn a_picture_that_no_slot_has_room_for_is_not_kept() {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
-        let context = egui::Context::default();
-        until(&mut window, &context, "samples", |window| window.main.has_samples(window.document()));
-        let [one, two, ..] = SlotNumber::ALL;
-        let (name, id, size) = ("large".to_owned(), "1".to_owned(), [20_000, 10_000]);
-        window.model.view.slots.expect(one, Coming { name, id, size, samples: 1, has_own_size: true });
-        window.perform_on_slots(&context, SlotCommand::KeepIn(two));
-        window.keep_wanted(&context);
-        let told = window.messages();
-        assert!(told.iter().any(|text| text.starts_with("Not kept: the picture takes ")), "{told:?}");
-        assert!(!window.slot_actions.is_wanted(two));
-    }
-
-    #[test]
-    fn commands_for_a_slot_are_for_the_one_that_is_meant_not_the_one_that_is_shown() {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
-        let context = egui::Context::default();
-        let [one, two, three, four, ..] = SlotNumber::ALL;
-        for (number, name, size) in [(one, "first", [16, 9]), (two, "second", [8, 6])] {
-            let (mut document, mut film) = (window.document().clone(), Film::new(size[0], size[1], 2));
-            document.give_size(size);
-            film.record(0..4, 0).unwrap();
-            let kept = Kept::new(document, film, Arc::default(), None);
-            window.model.view.slots.put(number, Slot { name: name.to_owned(), kept: Arc::new(kept) });
-        }
-        window.model.view.look(Some(one));
-        window.model.view.slots.choose(two);
-        let told = |window: &mut Window, command| {
-            window.perform_on_slots(&context, command);
-            window.messages().pop().unwrap_or_default()
-        };
-        let deleted = "Deleted slot 2: second; Slots > Bring back the slot returns it";
-        assert_eq!(told(&mut window, SlotCommand::Delete), deleted);
-        assert!(window.slot(one).is_some() && window.slot(two).is_none());
-        assert_eq!(told(&mut window, SlotCommand::BringBack), "Brought back slot 2: second");
-        assert!(window.slot(one).is_some() && window.slot(two).is_some());
-        window.perform_on_slots(&context, SlotCommand::Open);
-        assert_eq!(window.slot_actions.reopened.wait().unwrap().unwrap().document.size(), [8, 6]);
-        window.perform_on_slots(&context, SlotCommand::TakeSize);
-        assert_eq!(window.document().size(), [8, 6]);
-        window.perform_on_slots(&context, SlotCommand::Wipe);
-        assert_eq!((window.model.view.compared_slot(), window.looked()), (Some(two), Some(one)));
-        for command in [SlotCommand::Keep, SlotCommand::Keep, SlotCommand::KeepIn(two)] {
-            window.perform_on_slots(&context, command);
-        }
-        assert_eq!(window.slot_actions.take_wanted(), [three, four, two]);
-    }
-
-    #[test]
-    fn a_picture_that_takes_the_place_of_another_is_told_with_both_names() {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
-        let number = SlotNumber::ALL[1];
-        let mut told = |samples| {
-            let kept = Kept::new(window.document().clone(), film(samples), Arc::default(), None);
-            window.put(Copied { number, kept });
-            window.messages().pop().unwrap()
-        };
-        let (first, second) = (told(5), told(6));
-        assert!(first.starts_with("Kept in slot 2: 11.4 ") && first.contains(", 5 samples ("), "{first}");
-        assert!(first.ends_with(')'), "it was free: {first}");
-        assert!(second.starts_with("Kept in slot 2: 11.4 ") && second.contains(", 6 samples ("), "{second}");
-        assert!(second.contains("), in place of 11.4 ") && second.ends_with(", 5 samples"), "{second}");
-        assert_eq!(window.slot(number).map(|(_, samples)| samples), Some(6));
-    }
-
-    #[test]
-    fn what_failed_is_told_in_words() {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
-        let context = egui::Context::default();
-        window.slot_actions.copied.answer(&context).give(Err("there is no room".to_owned()));
-        window.slot_actions.reopened.answer(&context).give(Err("it is too large".to_owned()));
-        window.receive_for_slots();
-        assert_eq!(window.messages(), ["Not kept: there is no room", "Not opened: it is too large"]);
-    }
-
-    #[test]
-    fn a_picture_without_samples_is_kept_once_it_has_some() {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
-        let (context, one) = (egui::Context::default(), SlotNumber::ALL[0]);
-        window.perform_on_slots(&context, SlotCommand::KeepIn(one));
-        window.keep_wanted(&context);
-        assert!(window.slot_actions.is_wanted(one) && !window.slot_actions.is_copying());
-        until(&mut window, &context, "the slot", |window| window.slot(one).is_some());
-    }
-
-    #[test]
-    fn going_on_from_a_slot_ends_a_comparison_and_is_told() {
-        let mut window = finished(&egui::Context::default());
-        let [one, two, ..] = SlotNumber::ALL;
-        for number in [one, two] {
-            let kept = Kept::new(window.document().clone(), film(5), Arc::default(), None);
-            window.model.view.slots.put(number, Slot { name: String::new(), kept: Arc::new(kept) });
-        }
-        window.model.view.look(Some(one));
-        window.model.view.toggle(Mode::Wipe, With::Slot(two));
-        assert!(window.is_comparing() && window.looked() == Some(one));
-        let document = window.document().clone();
-        window.go_on_from(Reopened { document, film: film(5), seconds: None });
-        assert!(!window.is_comparing() && window.looked().is_none());
-        let told = "Going on from 11.4 Windows at a slant with 5 samples per pixel; Undo returns";
-        assert_eq!(window.messages().pop().as_deref(), Some(told));
-        assert_eq!(window.seconds_before, None, "nobody knows how long they took");
     }
 }

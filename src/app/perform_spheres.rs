@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::document::Document;
-    use crate::app::model::edit::Body;
+
     use crate::app::model::origin::Origin;
     use crate::app::tests::window;
     use crate::scene::Scene;
@@ -126,31 +126,6 @@ mod tests {
             (window.model.document, window.model.selected) = (from.clone(), Some(3));
             window.keep_selection_after(|window| window.model.document = to.clone());
             assert_eq!(window.selected(), selected, "{name}");
-        }
-    }
-
-    #[test]
-    fn only_of_a_pinhole_it_is_told_that_all_is_sharp() {
-        for (angle, told) in [(0.0, 1), (1.0, 0)] {
-            let mut window = glass();
-            window.model.selected = Some(1);
-            window.model.document.camera.defocus_angle_degrees = angle;
-            window.perform_on_spheres(Command::FocusSphere);
-            assert_eq!(window.messages().len(), told, "{angle}");
-            assert!(window.document().camera.focus_distance.is_some());
-        }
-    }
-
-    #[test]
-    fn an_edit_is_a_first_step_unless_it_is_refused() {
-        for (radius, is_possible) in [(0.25, true), (f64::NAN, false)] {
-            let mut window = glass();
-            window.model.has_first_steps = true;
-            let body = Body::of(window.document().scene(), 1).unwrap();
-            window.edit(Edit::Change(1, Body { radius, ..body }));
-            assert_eq!(window.document().has_changed_scene(), is_possible, "{radius}");
-            assert_eq!(window.model.remembered.first_steps.has(Step::Change), is_possible);
-            assert_eq!(window.messages().is_empty(), is_possible, "{:?}", window.messages());
         }
     }
 }

@@ -106,72 +106,11 @@ mod tests {
     use super::*;
     use crate::app::Window;
     use crate::app::kept::KeptThread;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
+
     use crate::app::model::view::ViewState;
-    use crate::app::tests::{Drawings, until, window};
-    use crate::stages::Stage;
+    use crate::app::tests::{until, window};
+
     use egui::pos2;
-
-    #[test]
-    fn numbers_are_drawn_only_in_large_pixels_that_are_seen() {
-        let area = Rect::from_min_max(pos2(0.0, 0.0), pos2(200.0, 100.0));
-        let rect = Rect::from_min_size(pos2(-120.0, -30.0), vec2(3200.0, 1800.0));
-        assert_eq!(visible(rect, area, [64, 36]), Some([[2, 0], [7, 3]]));
-        assert_eq!(visible(rect, area, [80, 45]), None, "40 points are too few");
-        assert_eq!(visible(rect.translate(vec2(5000.0, 0.0)), area, [64, 36]), None, "out of sight");
-        let right = rect.translate(vec2(-3000.0, 0.0));
-        assert_eq!(visible(right, area, [64, 36]), Some([[62, 0], [64, 3]]), "no pixel beyond the last");
-    }
-
-    #[test]
-    fn each_pixel_has_its_numbers_in_its_middle() {
-        let area = Rect::from_min_max(pos2(8.0, 8.0), pos2(292.0, 192.0));
-        let rect = Rect::from_min_size(pos2(-40.0, -10.0), vec2(400.0, 240.0));
-        let means = vec![[0.0, 0.5, 123456.0], [0.1, 0.2, 0.3], [0.19, 0.19, 0.19], [0.21, 0.21, 0.21]];
-        let part = Part { first: [1, 1], width: 2, means };
-        let values = PixelValues { part: Some(part), ..PixelValues::default() };
-        let mut drawings = Drawings::default();
-        for exposure in [0.0, 1.0] {
-            let tone = Tone { exposure, ..Tone::default() };
-            let size = [5, 3];
-            let picture = crate::app::tests::part([300.0, 200.0], |ui| {
-                values.paint(ui, area, rect, size, &tone);
-            });
-            drawings.add(&format!("{exposure} stops"), &picture);
-        }
-        let tone = Tone::default();
-        let small = crate::app::tests::part([300.0, 200.0], |ui| {
-            values.paint(ui, area, rect, [10, 6], &tone);
-        });
-        drawings.add("pixels without room", &small);
-        drawings.keep("pixel_values");
-    }
-
-    #[test]
-    fn numbers_are_asked_for_again_when_others_are_seen() {
-        let context = egui::Context::default();
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        document.set_size([4, 2]);
-        let screens = [16.0, 4.0].map(|sum| OnScreen::of(document.clone(), small_film(8, sum)));
-        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(400.0, 200.0));
-        let mut values = PixelValues::default();
-        // What is answered, if the film is asked: the first pixel, and the last channel of the last one.
-        let mut ask = |screen: &OnScreen, area: Rect| {
-            screen.before_answers(|subject| {
-                values.follow(subject, rect, Some(area), &context);
-                values.follow(subject, rect, Some(area), &context);
-            });
-            let answers = [values.answers.take(), values.answers.take()];
-            answers.map(|part| part.map(|part| (part.first, part.means.last().unwrap()[2])))
-        };
-        let (whole, right) = (rect, Rect { min: pos2(250.0, 0.0), ..rect });
-        assert_eq!(ask(&screens[0], whole), [Some(([0, 0], 2.0)), None]);
-        assert_eq!(ask(&screens[0], whole), [None, None], "they are known");
-        assert_eq!(ask(&screens[0], right), [Some(([2, 0], 2.0)), None], "other pixels");
-        assert_eq!(ask(&screens[1], right), [Some(([2, 0], 0.5)), None], "another film");
-    }
 
     #[test]
     fn the_numbers_of_visible_pixels_are_asked_for_once() {

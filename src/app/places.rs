@@ -92,7 +92,7 @@ pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Pla
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::slots::{Coming, SlotNumber};
+
     use crate::app::tests::{facts_of, part};
 
     /// The places that the keyboard goes through, from the first one to the picture.
@@ -137,29 +137,5 @@ mod tests {
         model.remembered.has_panels = false;
         model.has_recovered = true;
         assert_eq!(all(&model), [Place::Recovered]);
-    }
-
-    #[test]
-    fn the_strip_of_slots_comes_last() {
-        let mut model = facts_of("--stage metal --size 32x18").model;
-        let (name, id, size) = ("mine".to_owned(), "1".to_owned(), [4, 2]);
-        let coming = Coming { name, id, size, samples: 7, has_own_size: true };
-        model.view.slots.expect(SlotNumber::ALL[0], coming);
-        assert_eq!(all(&model), [Place::Menu, Place::Controls, Place::Info, Place::Slots]);
-    }
-
-    #[test]
-    fn after_escape_the_keyboard_begins_with_the_first_place_again() {
-        let model = facts_of("--stage metal --size 32x18").model;
-        let _ = part([200.0, 100.0], |ui| {
-            let control = Id::unique("a control");
-            let first = next(ui.ctx(), None, &model);
-            ui.memory_mut(|memory| memory.request_focus(control));
-            let second = next(ui.ctx(), first, &model);
-            assert_eq!([first, second], [Place::Menu, Place::Controls].map(Some));
-            ui.memory_mut(|memory| memory.request_focus(control));
-            ui.memory_mut(|memory| memory.surrender_focus(control));
-            assert_eq!(next(ui.ctx(), second, &model), Some(Place::Menu));
-        });
     }
 }

@@ -63,19 +63,6 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn a_prediction_without_an_end_says_so() {
-        let prediction = Prediction { time: 38.0, range: [31.0, f64::INFINITY] };
-        assert_eq!(prediction_words(&prediction), "in about 38 s (31 or more)");
-    }
-
-    #[test]
-    fn a_range_of_one_number_is_left_out() {
-        let words = |range| prediction_words(&Prediction { time: 0.8, range });
-        assert_eq!(words([0.7, 0.9]), "in about 1 s");
-        assert_eq!(words([0.7, 1.9]), "in about 1 s (1 to 2)");
-    }
-
-    #[test]
     fn the_prediction_counts_from_now_and_tells_its_range() {
         let mut status = Status {
             samples_per_pixel: 100,
@@ -119,23 +106,6 @@ mod tests {
             history,
             ..Status::default()
         }
-    }
-
-    #[test]
-    fn the_newest_estimate_comes_after_those_of_the_history() {
-        let history = vec![
-            at("cpu", 1, 0.0, 0.5),
-            at("cpu", 2, 1.0, 0.25),
-            at("cpu", 4, 2.0, 0.0),
-            at("cpu", 8, 3.0, 0.125),
-        ];
-        let points = |status: &Status| points(status).iter().map(|p| (p.time, p.error)).collect::<Vec<_>>();
-        let mut status = tracing(history, 4.0, 0.0625);
-        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125), (4.0, 0.0625)]);
-        status.error = None;
-        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125)]);
-        status.error = Some(ErrorEstimate { rmse: 0.0, rmse_deviation: 0.0, rel_mse: 0.0 });
-        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125)]);
     }
 
     #[test]

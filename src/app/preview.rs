@@ -139,9 +139,8 @@ fn coarsest(document: &Document) -> u32 {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::render::Stats;
+
     use crate::stages::Stage;
-    use std::time::Duration;
 
     fn document(id: &str, size: [u32; 2]) -> Document {
         let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
@@ -211,40 +210,6 @@ mod tests {
         // The picture itself would be shown as soon.
         (previews.render_speed, previews.speed) = (Some(1e3), Some(1e9));
         assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
-    }
-
-    #[test]
-    fn speeds_are_those_of_the_last_render_and_the_last_preview() {
-        let mut previews = Previews::default();
-        let document = document("book", [1000, 400]);
-        previews.note_speed(&Status::default());
-        assert_eq!(previews.render_speed, None, "nothing has been traced");
-        let (trace, stats) = (Duration::from_secs(2), Stats { paths: 8_000_000, ..Stats::default() });
-        previews.note_speed(&Status { trace, stats, ..Status::default() });
-        assert_eq!(previews.render_speed, Some(4e6));
-        // 60,000 samples in a twentieth of a second, at three tenths of the speed of a render.
-        assert_eq!(previews.choose(&document), Preview { divisor: 6, samples: 4 });
-        assert!(!previews.is_moving());
-        let moving = previews.follow_move(&document);
-        assert!(previews.is_moving());
-        previews.pictured(&document, moving.divisor, 1e5, 0.06);
-        assert_eq!(previews.follow_move(&document), moving, "fast enough");
-        previews.pictured(&document, moving.divisor, 1e5, 0.0);
-        assert_eq!(previews.speed, Some(1e8), "no time is shorter than a millisecond");
-        previews.end_move();
-        assert!(!previews.is_moving());
-    }
-
-    #[test]
-    fn a_late_preview_is_followed_by_one_as_coarse_as_the_time_wants() {
-        // Twice as coarse takes a quarter of the time; 50 ms are the aim, and up to 70 ms nothing changes.
-        for (seconds, divisor) in [(0.05, 2), (0.069, 2), (0.071, 3), (0.11, 3), (0.12, 4), (0.21, 5)] {
-            let (mut previews, document) = (at_speed(8e6), document("book", [1000, 400]));
-            assert_eq!(previews.follow_move(&document), Preview { divisor: 2, samples: 4 });
-            previews.pictured(&document, 2, 4e5, seconds);
-            let expected = Preview { divisor, samples: 4 };
-            assert_eq!(previews.follow_move(&document), expected, "{seconds} s");
-        }
     }
 
     #[test]

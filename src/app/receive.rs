@@ -184,7 +184,7 @@ fn device_after(chosen: Device, known: usize, status: &Status) -> (Device, usize
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::Keyframe;
+
     use crate::app::tests::window;
     use crate::film::Film;
     use crate::recipe::Recipe;
@@ -270,41 +270,6 @@ mod tests {
         assert_eq!(window.model.remembered.directory.as_ref(), Some(&here), "a bare name");
         window.remember_directory(Path::new("to/c.png"));
         assert_eq!(window.model.remembered.directory, Some(here.join("to")));
-    }
-
-    #[test]
-    fn a_reference_of_another_size_waits_for_the_picture_to_get_that_size() {
-        for (size, is_shown) in [([16, 9], true), ([16, 10], false), ([15, 9], false)] {
-            let mut window = window("weekender --stage normals --size 16x9");
-            let [width, height] = size;
-            let means = vec![[0.0; 3]; (width * height) as usize];
-            let reference = ReferenceMeans { width, height, means, identity: None };
-            window.take_reference(PathBuf::from("/of/a.exr"), reference);
-            assert!(window.model.view.reference.is_some());
-            assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
-            let commands = if is_shown { vec![Command::Show(Show::Difference)] } else { vec![] };
-            assert_eq!(window.commands, commands, "{size:?}");
-            let told = window.messages();
-            let expected =
-                if is_shown { "Showing the difference from /of/a.exr" } else { "No difference yet" };
-            assert!(told[0].starts_with(expected), "{told:?}");
-            assert!(
-                is_shown || told[0].contains(&format!("{width}x{height} and the picture is 16x9")),
-                "{told:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn a_scene_with_keyframes_is_told_to_have_an_animation() {
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        recipe.keyframes = [0, 20].map(|frame| Keyframe { frame, camera: recipe.camera }).to_vec();
-        let job = recipe.job().unwrap();
-        let mut window = window("weekender --stage normals --size 16x9");
-        let path = PathBuf::from("/of/mine.toml");
-        window.show_opened(Opened { path, recipe, job, stage: None, content: Content::Scene });
-        let told = window.messages();
-        assert!(told[0].starts_with("Opened /of/mine.toml; its animation has 21 frames"), "{told:?}");
     }
 
     #[test]

@@ -120,19 +120,4 @@ mod tests {
         assert_eq!((entry.number, &entry.id, entry.name.as_str()), (Some(number), &id, "my picture"));
         assert_eq!(listing.faults, <[String; 0]>::default());
     }
-
-    #[test]
-    fn a_panic_of_a_window_without_files_of_its_own_keeps_the_film() {
-        let directory = tempfile::tempdir().unwrap();
-        // Its name finds the film again among all temporary files.
-        let name = directory.path().file_name().unwrap().to_str().unwrap().replace('.', "");
-        panic_with(traced(&directory.path().join(format!("{name}.toml"))));
-        let path = std::env::temp_dir().join(format!("weekender-{name}-{}.exr", std::process::id()));
-        let read = checkpoint::load(&path).unwrap();
-        std::fs::remove_file(&path).unwrap();
-        let recipe = file::parse(read.description.recipe(), "kept").unwrap();
-        assert_eq!((recipe.samples_per_pixel, recipe.settings.width), (read.film.sample_count(), 16));
-        assert!(read.film.sample_count() >= 4);
-        assert_seconds(&read);
-    }
 }

@@ -242,26 +242,4 @@ mod tests {
         assert_eq!(needed.strong_count(), 0, "the thread ends");
         assert_eq!(scene_file.found(&of_file), None);
     }
-
-    #[test]
-    fn only_a_large_scene_is_taken_for_what_was_just_read() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("mine.toml");
-        let text = file::to_toml(&Stage::find("metal").unwrap().recipe());
-        let small = Stage::find("glass-schlick").unwrap().recipe();
-        let large = Recipe::builtin("field:60000").unwrap();
-        assert!(large.scene.spheres.len() > SPHERES_LIMIT);
-        for (recipe, first) in [(small, Holds::Other), (large, Holds::Same)] {
-            let (origin, mut seen) = (Origin::new(recipe, Source::File(path.clone())), Seen::default());
-            write(&path, &text, 1);
-            assert_eq!(seen.look(&path, &origin).0.as_ref(), Some(&first));
-            assert_eq!(origin.is_in_file(), first == Holds::Same);
-            // Once it is written again, it is read.
-            write(&path, &text, 2);
-            assert_eq!(seen.look(&path, &origin), (None, SETTLE));
-            assert_eq!(seen.look(&path, &origin).0, Some(Holds::Other));
-            std::fs::remove_file(&path).unwrap();
-            assert_eq!(Seen::default().look(&path, &origin).0, Some(Holds::Gone), "{first:?}");
-        }
-    }
 }

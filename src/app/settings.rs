@@ -229,10 +229,6 @@ mod tests {
         names.iter().map(|name| Bookmark::new((*name).to_owned(), &Camera::default())).collect()
     }
 
-    fn names(settings: &Remembered) -> Vec<&str> {
-        settings.bookmarks.iter().map(|bookmark| bookmark.name.as_str()).collect()
-    }
-
     fn stored(path: &Path) -> Remembered {
         SettingsFile::read(path).settings.unwrap()
     }
@@ -260,65 +256,6 @@ mod tests {
         assert_eq!(stored(&path), mine);
         mine.bookmarks.clear();
         assert_eq!(file.finish(&mine), Ok(()));
-        assert_eq!(stored(&path), mine);
-    }
-
-    #[test]
-    fn only_changes_are_written_and_not_too_often() {
-        let directory = tempfile::tempdir().unwrap();
-        let (context, path) = (Context::default(), directory.path().join("settings.json"));
-        let mut file = SettingsFile::read(&path).file;
-        let mut mine = Remembered::default();
-        assert_eq!(keep_now(&mut file, &mine), None);
-        fs::remove_file(&path).unwrap();
-        assert_eq!((keep_now(&mut file, &mine), file.finish(&mine)), (None, Ok(())));
-        assert!(!path.exists(), "nothing has changed");
-        mine.theme = Theme::Light;
-        file.next = Instant::now() + Duration::from_secs(3600);
-        assert_eq!(file.keep(&context, &mine), None);
-        assert!(!file.is_writing, "it waits for further changes");
-        assert_eq!(file.finish(&mine), Ok(()));
-        assert_eq!(stored(&path).theme, Theme::Light);
-    }
-
-    #[test]
-    fn changes_of_one_moment_are_written_together() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut file = SettingsFile::read(&directory.path().join("settings.json")).file;
-        let begin = Instant::now();
-        assert_eq!(keep_now(&mut file, &Remembered::default()), None);
-        assert!(file.next >= begin + WRITES_APART);
-    }
-
-    #[test]
-    fn what_two_windows_change_is_kept() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("settings.json");
-        let first = Remembered { bookmarks: named(&["a", "b", "c"]), ..Remembered::default() };
-        SettingsFile::read(&path).file.finish(&first).unwrap();
-        let [mut one, mut two] = [&path; 2].map(|path| SettingsFile::read(path).file);
-        let mut mine = Remembered { bookmarks: named(&["a", "c", "one"]), has_plot: true, ..first.clone() };
-        let yours =
-            Remembered { bookmarks: named(&["two", "c", "b", "a"]), theme: Theme::Dark, ..first.clone() };
-        assert_eq!(keep_now(&mut one, &mine), None);
-        assert_eq!(two.finish(&yours), Ok(()));
-        let both = stored(&path);
-        assert_eq!(names(&both), ["two", "c", "a", "one"]);
-        assert_eq!((both.has_plot, both.theme), (true, Theme::Dark));
-        // The first window has not read what the second one wrote.
-        mine.has_code = true;
-        assert_eq!(one.finish(&mine), Ok(()));
-        assert_eq!(stored(&path), Remembered { has_code: true, ..both });
-    }
-
-    #[test]
-    fn a_window_that_stopped_while_it_wrote_holds_up_no_other() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("settings.json");
-        let stopped = File::create(path.with_extension("lock")).unwrap();
-        stopped.lock().unwrap();
-        let mine = Remembered { bookmarks: named(&["a"]), ..Remembered::default() };
-        assert_eq!(SettingsFile::read(&path).file.finish(&mine), Ok(()));
         assert_eq!(stored(&path), mine);
     }
 

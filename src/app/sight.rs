@@ -95,7 +95,6 @@ mod tests {
     use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::model::tone::Tone;
     use crate::film::Film;
-    use crate::progressive::ReferenceMeans;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();
@@ -113,30 +112,6 @@ mod tests {
         let mut film = Film::new(4, 2, 1);
         film.record(0..1, 0).unwrap();
         Kept::new(document.clone(), film, Arc::default(), None)
-    }
-
-    #[test]
-    fn a_sight_of_a_slot_is_that_of_the_live_picture() {
-        let (stage, mut document) = stage("metal");
-        let (mut view, mut placement) = (ViewState::default(), Placement::default());
-        let kept = Arc::new(kept(&document));
-        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
-        view.look(Some(SlotNumber::ALL[0]));
-        let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-        assert!(view.slots.looked().is_none() && sight.lasts(&document, &view));
-    }
-
-    #[test]
-    fn a_sight_of_another_picture_leaves_its_camera() {
-        let (stage, mut document) = stage("metal");
-        let (mut view, mut placement) = (ViewState::default(), Placement::default());
-        document.camera.vfov_degrees = 33.0;
-        let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-        assert!(sight.has_moved_camera());
-        let mut other = Document::new(Origin::of_stage(stage));
-        let home = other.camera;
-        sight.end(&mut other, &mut view, &mut placement);
-        assert_eq!(other.camera, home);
     }
 
     #[test]
@@ -215,27 +190,5 @@ mod tests {
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));
-    }
-
-    #[test]
-    fn what_is_kept_or_loaded_during_a_sight_stays() {
-        let (stage, mut document) = stage("metal");
-        let (mut view, mut placement) = (ViewState::default(), Placement::default());
-        let one = SlotNumber::ALL[0];
-        for is_there in [true, false] {
-            let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-            if is_there {
-                let kept = Arc::new(kept(&document));
-                view.slots.put(one, Slot { name: String::new(), kept });
-                let means = vec![[0.0; 3]];
-                view.reference =
-                    Some(Arc::new(ReferenceMeans { width: 1, height: 1, means, identity: None }));
-            } else {
-                view.slots.delete(one);
-                view.reference = None;
-            }
-            sight.end(&mut document, &mut view, &mut placement);
-            assert_eq!((view.slots.get(one).is_some(), view.reference.is_some()), (is_there, is_there));
-        }
     }
 }

@@ -163,30 +163,13 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::corner_card::corner_card;
+
     use crate::app::model::origin::Origin;
-    use crate::app::places::Place;
-    use crate::app::tests::{Drawings, dressed, leave};
+
     use crate::stages::Stage;
-    use egui_kittest::kittest::Queryable;
 
     const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
     const LONG: Duration = Duration::from_secs(1);
-
-    #[test]
-    fn what_took_long_or_is_needed_is_kept() {
-        let keep = |present: &Present| verdict(present, LONG, false, 0) == Verdict::Keep;
-        assert!(!keep(&YOUNG));
-        assert!(keep(&Present { seconds: 11.0, ..YOUNG }));
-        assert!(keep(&Present { seconds: f64::INFINITY, ..YOUNG }), "nobody knows how long it took");
-        let needed = Present { is_needed: true, ..YOUNG };
-        assert!(keep(&needed));
-        assert_eq!(verdict(&needed, LONG, true, 0), Verdict::Keep, "the mouse presses the offer");
-        assert!(
-            !keep(&Present { is_documents: false, seconds: 11.0, is_needed: false }),
-            "it is lost anyway"
-        );
-    }
 
     #[test]
     fn a_window_that_is_being_resized_is_waited_for() {
@@ -197,31 +180,6 @@ mod tests {
         let old = Present { seconds: 99.0, ..YOUNG };
         assert!(matches!(verdict(&old, short, false, 0), Verdict::Wait(_)), "nothing flickers");
         assert_eq!(verdict(&Present { is_documents: false, ..YOUNG }, short, true, 0), Verdict::Change);
-    }
-
-    #[test]
-    fn a_size_that_never_settles_is_not_followed_for_ever() {
-        assert_eq!(verdict(&YOUNG, LONG, false, CHANGES - 1), Verdict::Change);
-        assert_eq!(verdict(&YOUNG, LONG, false, CHANGES), Verdict::Keep);
-    }
-
-    #[test]
-    fn sizes_that_were_asked_for_are_not_restless() {
-        let (context, mut sizer) = (Context::default(), Sizer::default());
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let mut follow = |sizer: &mut Sizer, room| {
-            sizer.follow(&context, &mut document, (Sizing::Viewport, room), &YOUNG);
-            document.size()
-        };
-        for width in 0..2 * CHANGES as u32 {
-            sizer.ask();
-            assert_eq!(follow(&mut sizer, [320 + 16 * width, 9000])[0], 320 + 16 * width);
-        }
-        // The window is resized, and the size stays.
-        let settled = Instant::now().checked_sub(LONG).unwrap();
-        sizer.fitting = Some(([160, 90], settled));
-        assert_eq!(follow(&mut sizer, [160, 9000]), [160, 90]);
-        assert_eq!(sizer.offer(), None);
     }
 
     fn ago(seconds: u64) -> Instant {
@@ -258,73 +216,11 @@ mod tests {
     }
 
     #[test]
-    fn the_books_size_and_that_of_another_picture_are_taken_at_once() {
-        let another = Present { is_documents: false, ..YOUNG };
-        let mut sizer = Sizer::default();
-        assert_eq!(followed(&mut sizer, Sizing::Viewport, &another), [320, 180]);
-        assert_eq!(sizer.changes.len(), 0, "the picture is new anyway");
-        let old = Present { seconds: 99.0, ..YOUNG };
-        assert_eq!(followed(&mut Sizer::default(), Sizing::Book, &old), [400, 225]);
-    }
-
-    #[test]
-    fn changes_of_long_ago_are_forgotten() {
-        for (seconds, expected) in [(15, [320, 180]), (13, [160, 90])] {
-            let changes = (0..6).map(|_| ago(seconds)).collect();
-            let mut sizer = Sizer { fitting: Some(([320, 180], ago(1))), changes, ..Sizer::default() };
-            assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{seconds} s ago");
-            assert_eq!(sizer.changes.len(), if seconds == 15 { 1 } else { 6 });
-        }
-    }
-
-    #[test]
     fn ten_seconds_of_tracing_are_given_up_and_no_more() {
         let after = |seconds| verdict(&Present { seconds, ..YOUNG }, SETTLE, false, 0);
         assert_eq!([10.0, 10.5].map(after), [Verdict::Change, Verdict::Keep]);
         let nearly = Duration::from_millis(249);
         assert_eq!(verdict(&YOUNG, nearly, false, 0), Verdict::Wait(Duration::from_millis(1)));
         assert_eq!(verdict(&YOUNG, SETTLE, true, 0), Verdict::Wait(SETTLE));
-    }
-
-    #[test]
-    fn the_offer_is_on_no_card() {
-        let over = Rect::from_min_max(pos2(0.0, 0.0), pos2(600.0, 400.0));
-        let (usual, size) = (pos2(588.0, 276.0), vec2(120.0, 24.0));
-        let card = |left: f32, bottom: f32| Some(Rect::from_min_max(pos2(left, 12.0), pos2(588.0, bottom)));
-        let corner = |card| free_corner(usual, size, over, card);
-        assert_eq!(corner(None), Some(usual));
-        assert_eq!(corner(card(288.0, 200.0)), Some(usual), "the card ends above it");
-        assert_eq!(corner(card(288.0, 260.0)), Some(pos2(280.0, 276.0)));
-        assert_eq!(corner(card(288.0, 390.0)), Some(pos2(280.0, 276.0)));
-        assert_eq!(corner(card(100.0, 390.0)), None, "nowhere");
-
-        let sizer = Sizer { offer: Some([1037, 583]), ..Sizer::default() };
-        let draw = move |ui: &mut Ui, card: &mut Option<Rect>| {
-            corner_card(ui, over, Place::Recovered, "Card", |ui| ui.set_min_height(300.0));
-            *card = shown_card(ui.ctx());
-            sizer.ui(ui, over, &mut Vec::new());
-        };
-        let mut harness = dressed([600.0, 400.0]).build_ui_state(draw, None);
-        harness.run_steps(4);
-        let card = harness.state().unwrap();
-        let offer = harness.get_by_label("Render at 1037x583").rect();
-        assert!(card.bottom() > offer.top() && !offer.intersects(card), "{offer} {card}");
-    }
-
-    #[test]
-    fn the_offer_is_above_the_axes_and_gives_its_command() {
-        let mut drawings = Drawings::default();
-        let sizer = Sizer { offer: Some([1037, 583]), ..Sizer::default() };
-        let over = Rect::from_min_max(egui::pos2(40.0, 30.0), egui::pos2(600.0, 390.0));
-        let draw = move |ui: &mut Ui, commands: &mut Vec<Command>| sizer.ui(ui, over, commands);
-        let mut harness = dressed([640.0, 400.0]).build_ui_state(draw, Vec::new());
-        harness.run_steps(2);
-        leave(&mut harness);
-        drawings.add("the offer", &harness);
-        drawings.add_tips(&mut harness);
-        harness.get_by_label("Render at 1037x583").click();
-        harness.run_steps(2);
-        assert_eq!(*harness.state(), [Command::Size(Sizing::Viewport)]);
-        drawings.keep("size_offer");
     }
 }

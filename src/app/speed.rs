@@ -58,24 +58,6 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_is_seen_at_once() {
-        let mut speed = Speed::default();
-        for step in 0..=100_u64 {
-            speed.follow(&status("cpu", 0.1 * step as f64, 100 * step));
-        }
-        assert!((speed.paths_per_second().unwrap() - 1000.0).abs() < 1e-6);
-        speed.follow(&status("gpu", 10.1, 10_000));
-        assert_eq!(speed.paths_per_second(), None, "nothing is known yet");
-        speed.follow(&status("gpu", 10.2, 20_000));
-        assert!((speed.paths_per_second().unwrap() - 100_000.0).abs() < 1e-3);
-        // A new film begins at zero seconds.
-        for (seconds, paths) in [(0.1, 50), (0.2, 100)] {
-            speed.follow(&Status { run: 2, ..status("gpu", seconds, paths) });
-        }
-        assert!((speed.paths_per_second().unwrap() - 500.0).abs() < 1e-6);
-    }
-
-    #[test]
     fn only_the_last_second_counts() {
         let mut speed = Speed::default();
         for step in 0..=20_u64 {

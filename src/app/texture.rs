@@ -85,44 +85,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_divider_goes_where_the_pictures_differ_most() {
-        let size = [64, 4];
-        let plain = |shade: &dyn Fn(usize) -> u8| {
-            let rgb8: Vec<u8> = (0..64 * 4).flat_map(|pixel| [shade(pixel % 64); 3]).collect();
-            Texture::new(size, &rgb8, None)
-        };
-        let grey = plain(&|_| 100);
-        let ball = plain(&|x| if (12..20).contains(&x) { 160 } else { 100 });
-        let at = grey.most_different_column(&ball).unwrap();
-        assert!((at - 0.25).abs() < 0.02, "{at}");
-        assert_eq!(grey.most_different_column(&plain(&|_| 100)), None);
-        let brighter = grey.most_different_column(&plain(&|_| 101)).unwrap();
-        assert!((brighter - 0.5).abs() < 0.02, "no place is better than the middle: {brighter}");
-        assert_eq!(grey.most_different_column(&Texture::new([1, 1], &[0; 3], None)), None);
-    }
-
-    #[test]
-    fn a_divider_leaves_a_sixth_of_each_picture_and_looks_at_a_sixteenth_around() {
-        let row = |shade: &dyn Fn(usize) -> u8| {
-            let rgb8: Vec<u8> = (0..96).flat_map(|x| [shade(x); 3]).collect();
-            Texture::new([96, 1], &rgb8, None)
-        };
-        let grey = row(&|_| 100);
-        let at = |shade: &dyn Fn(usize) -> u8| {
-            let share = grey.most_different_column(&row(shade))?;
-            Some((share * 768.0).round() / 8.0)
-        };
-        // Columns 16 to 79 can have the divider; what is at the edge is seen from six columns away.
-        assert_eq!(at(&|x| if x < 4 { 200 } else { 100 }), None, "too near to the edge");
-        assert_eq!(at(&|x| if x == 10 { 200 } else { 100 }), Some(16.5));
-        assert_eq!(at(&|x| if x == 85 { 200 } else { 100 }), Some(79.5));
-        assert_eq!(at(&|x| if x == 86 { 200 } else { 100 }), None);
-        // Of all columns that see one that differs, the one nearest to the middle.
-        assert_eq!(at(&|x| if x == 30 { 0 } else { 100 }), Some(36.5));
-        assert_eq!(at(&|x| if x == 60 { 0 } else { 100 }), Some(54.5));
-    }
-
-    #[test]
     fn a_pixel_has_its_colour_and_a_new_picture_the_same_texture() {
         let context = Context::default();
         let mut first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);

@@ -187,7 +187,6 @@ pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed};
 
     /// The contrast of two colours by WCAG 2, 1 to 21.
     fn contrast(a: Color32, b: Color32) -> f64 {
@@ -221,81 +220,5 @@ mod tests {
             }
             assert!(contrast(palette.on_accent, palette.accent) >= LEAST);
         }
-    }
-
-    /// What the two themes set, as text.
-    #[test]
-    fn both_themes_have_their_colours_and_sizes() {
-        let context = Context::default();
-        install(&context);
-        let mut drawings = Drawings::default();
-        for theme in [egui::Theme::Dark, egui::Theme::Light] {
-            let style = context.style_of(theme);
-            let Style { text_styles, spacing, interaction, visuals, .. } = &*style;
-            let widgets = &visuals.widgets;
-            drawings.tell(&format!("{theme:?}"));
-            for (text, font) in text_styles {
-                drawings.tell(&format!("letters of {text}: {}", font.size));
-            }
-            for line in [
-                format!("between: {}, within buttons: {}", spacing.item_spacing, spacing.button_padding),
-                format!("controls: {}, menus: {:?}", spacing.interact_size, spacing.menu_margin),
-                format!("rails: {}, tips: {}", spacing.slider_rail_height, spacing.tooltip_width),
-                format!("tips after {} s", interaction.tooltip_delay),
-                format!("labels can be selected: {}", interaction.selectable_labels),
-                format!("panels: {:?}, windows: {:?}", visuals.panel_fill, visuals.window_fill),
-                format!("edges: {:?}", visuals.window_stroke),
-                format!("corners: {:?} {:?}", visuals.window_corner_radius, visuals.menu_corner_radius),
-                format!("backgrounds: {:?} {:?}", visuals.extreme_bg_color, visuals.faint_bg_color),
-                format!("links: {:?}", visuals.hyperlink_color),
-                format!("warnings: {:?}, errors: {:?}", visuals.warn_fg_color, visuals.error_fg_color),
-                format!("weak: {:?}, chosen: {:?}", visuals.weak_text_color, visuals.selection),
-                format!("sliders: {} {:?}", visuals.slider_trailing_fill, visuals.handle_shape),
-                format!("numbers: {:?}, disabled: {}", visuals.numeric_color_space, visuals.disabled_alpha),
-                format!("shadows: {:?} {:?}", visuals.popup_shadow, visuals.window_shadow),
-                format!("plain: {:?}", widgets.noninteractive),
-                format!("inactive: {:?}", widgets.inactive),
-                format!("hovered: {:?}", widgets.hovered),
-                format!("active: {:?}", widgets.active),
-                format!("open: {:?}", widgets.open),
-            ] {
-                drawings.tell(&line);
-            }
-        }
-        drawings.keep("themes");
-    }
-
-    #[test]
-    fn the_control_with_the_keyboard_has_a_ring_in_the_themes_own_colour() {
-        let mut drawings = Drawings::default();
-        for theme in [egui::Theme::Dark, egui::Theme::Light] {
-            let mut harness = dressed([200.0, 100.0]).with_theme(theme).build_ui(|ui| {
-                float_frame(ui).show(ui, |ui| _ = ui.button("press"));
-                ui.painter().rect_filled(ui.max_rect().shrink(30.0), 0.0, surround(ui));
-                ui.painter().rect_filled(ui.max_rect().shrink(40.0), 0.0, accent(ui));
-                paint_focus(ui.ctx());
-            });
-            drawings.add("no control has it", &harness);
-            harness.key_press(egui::Key::Tab);
-            harness.run_steps(2);
-            drawings.add("a button has it", &harness);
-        }
-        drawings.keep("focus");
-    }
-
-    #[test]
-    fn the_chosen_theme_is_used() {
-        let context = Context::default();
-        for (theme, preference) in [
-            (Theme::Light, egui::ThemePreference::Light),
-            (Theme::Dark, egui::ThemePreference::Dark),
-            (Theme::System, egui::ThemePreference::System),
-        ] {
-            choose(&context, theme);
-            assert_eq!(context.options(|options| options.theme_preference), preference);
-        }
-        let icon = icon();
-        assert_eq!((icon.width, icon.height, icon.rgba.len()), (64, 64, 64 * 64 * 4));
-        assert_eq!(panel(Margin::symmetric(3, 4)), Frame::new().inner_margin(Margin::symmetric(3, 4)));
     }
 }

@@ -291,6 +291,3 @@ fn folded_devices(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let help = "What traces; the same picture continues. (G switches between CPU and GPU)";
     tips::explain(ui, response, Side::Below, help, None).accessible_name("Choose a device");
 }
-
-#[cfg(test)]
-mod tests;

@@ -159,48 +159,8 @@ impl Toasts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, part};
+
     use eframe::egui::{Rect, pos2, vec2};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-
-    #[test]
-    fn each_message_is_closed_by_its_own_button() {
-        let mut toasts = Toasts::default();
-        for text in ["first", "second", "third"] {
-            toasts.add(text.to_owned(), Tone::Bad);
-        }
-        let draw = |ui: &mut egui::Ui, toasts: &mut Toasts| {
-            toasts.ui(ui, ui.ctx().content_rect(), &mut Vec::new());
-        };
-        let mut harness = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, toasts);
-        harness.get_all_by_label("×").nth(1).unwrap().click();
-        harness.run_steps(2);
-        assert_eq!(harness.state().texts().collect::<Vec<_>>(), ["first", "third"]);
-    }
-
-    #[test]
-    fn messages_are_stacked_over_the_lower_edge() {
-        let mut drawings = Drawings::default();
-        for [width, height] in [[600.0, 400.0], [300.0, 400.0], [130.0, 400.0]] {
-            let over = Rect::from_min_size(pos2(8.0, 8.0), vec2(width, height - 20.0));
-            let mut toasts = Toasts::default();
-            let mut harness = part([width + 16.0, height], |ui| {
-                if toasts.0.is_empty() {
-                    toasts.good("Saved /of/a.png");
-                    toasts.add(
-                        "Not opened: there is no such file, so nothing was opened".to_owned(),
-                        Tone::Bad,
-                    );
-                }
-                toasts.ui(ui, over, &mut Vec::new());
-            });
-            harness.run_steps(3);
-            drawings.add(&format!("{width} points"), &harness);
-            drawings.add_tips(&mut harness);
-        }
-        drawings.keep("toasts");
-    }
 
     #[test]
     fn a_message_is_told_once_and_the_newest_is_the_last() {
@@ -232,66 +192,6 @@ mod tests {
     }
 
     #[test]
-    fn only_failures_look_like_failures() {
-        let mut toasts = Toasts::default();
-        toasts.good("saved");
-        toasts.offer("changed", Command::Reload);
-        toasts.bad("not saved");
-        toasts.warn("too thin", 7);
-        let told = toasts.0.iter().map(|toast| (toast.text.as_str(), toast.tone, toast.run));
-        let expected = [
-            ("saved", Tone::Good, None),
-            ("changed", Tone::Good, None),
-            ("not saved", Tone::Bad, None),
-            ("too thin", Tone::Bad, Some(7)),
-        ];
-        assert_eq!(told.collect::<Vec<_>>(), expected);
-    }
-
-    #[test]
-    fn the_window_wakes_when_the_first_message_ends() {
-        // For messages of the future, no time has passed yet.
-        let later = Instant::now() + Duration::from_secs(600);
-        let toast = |(tone, offer): &(Tone, Option<Command>)| Toast {
-            text: format!("{tone:?} {offer:?}"),
-            tone: *tone,
-            since: later,
-            run: None,
-            offer: *offer,
-        };
-        let (good, bad, offer) = ((Tone::Good, None), (Tone::Bad, None), (Tone::Good, Some(Command::Reload)));
-        for (messages, seconds) in [
-            (&[bad, good][..], Some(4)),
-            (&[good, bad][..], Some(4)),
-            (&[bad, offer][..], Some(15)),
-            (&[offer][..], None),
-        ] {
-            let mut toasts = Toasts(messages.iter().map(toast).collect());
-            let draw = |ui: &mut egui::Ui| toasts.ui(ui, ui.ctx().content_rect(), &mut Vec::new());
-            let mut harness = part([600.0, 400.0], draw);
-            harness.run_steps(4);
-            let sleep = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
-            assert_eq!(Some(sleep).filter(|sleep| *sleep < Duration::MAX), seconds.map(Duration::from_secs));
-        }
-    }
-
-    #[test]
-    fn an_offer_that_is_closed_is_not_taken() {
-        let mut toasts = Toasts::default();
-        toasts.offer("It was changed", Command::Reload);
-        toasts.good("Saved");
-        let draw = |ui: &mut egui::Ui, (toasts, commands): &mut (Toasts, Vec<Command>)| {
-            toasts.ui(ui, ui.ctx().content_rect(), commands);
-        };
-        let mut harness =
-            Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, (toasts, Vec::new()));
-        harness.get_all_by_label("×").next().unwrap().click();
-        harness.run_steps(2);
-        assert_eq!(harness.state().0.texts().collect::<Vec<_>>(), ["Saved"]);
-        assert!(harness.state().1.is_empty());
-    }
-
-    #[test]
     fn failures_stay_longer() {
         let ages = [(4.0, Tone::Good), (11.0, Tone::Bad), (15.0, Tone::Bad)];
         let toast = |(seconds, tone)| Toast {
@@ -306,30 +206,5 @@ mod tests {
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
         let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["11"]);
-    }
-
-    #[test]
-    fn an_offer_stays_until_it_is_taken_or_withdrawn() {
-        let (mut toasts, long_ago) = (Toasts::default(), Instant::now().checked_sub(Duration::from_secs(99)));
-        toasts.good("Saved");
-        toasts.offer("It was changed", Command::Reload);
-        toasts.0.iter_mut().for_each(|toast| toast.since = long_ago.unwrap());
-        let draw = |ui: &mut egui::Ui, (toasts, commands): &mut (Toasts, Vec<Command>)| {
-            toasts.ui(ui, ui.ctx().content_rect(), commands);
-        };
-        let mut harness =
-            Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, (toasts, Vec::new()));
-        harness.run_steps(2);
-        assert_eq!(harness.state().0.texts().collect::<Vec<_>>(), ["It was changed"]);
-        harness.get_by_label(&Command::Reload.name()).click();
-        harness.run_steps(2);
-        let (toasts, commands) = harness.state_mut();
-        assert_eq!(*commands, [Command::Reload]);
-        assert_eq!(toasts.texts().count(), 0);
-        toasts.offer("It was changed", Command::Reload);
-        toasts.withdraw(Command::Open);
-        assert_eq!(toasts.texts().count(), 1);
-        toasts.withdraw(Command::Reload);
-        assert_eq!(toasts.texts().count(), 0);
     }
 }

@@ -34,33 +34,3 @@ pub fn lower_first(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_reason_goes_on_in_the_middle_of_a_sentence() {
-        assert_eq!(["Nothing yet", "Über", "a", ""].map(lower_first), ["nothing yet", "über", "a", ""]);
-    }
-
-    #[test]
-    fn flags_and_keys_become_controls() {
-        for (message, expected) in [
-            ("vup is [0, 0, 0], which has no direction", "Up is [0, 0, 0], which has no direction"),
-            ("look_from and look_at are both 0; move one", "Look from and Look at are both 0; move one"),
-            (
-                "make it thicker, or render with --device reference",
-                "make it thicker, or choose the device f64",
-            ),
-            ("(focus_distance)", "(Focus distance)"),
-            ("vfov is 0 and defocus_angle is -1", "Field of view is 0 and Defocus angle is -1"),
-            ("max_depth is 0; vfov2 and max_depths", "Depth is 0; vfov2 and max_depths"),
-            ("\"my_vup.exr\" cannot be read", "\"my_vup.exr\" cannot be read"),
-            ("größer als vup", "größer als Up"),
-            ("", ""),
-        ] {
-            assert_eq!(in_window_words(message), expected);
-        }
-    }
-}

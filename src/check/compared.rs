@@ -76,9 +76,7 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &Expected, width: usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kept;
     use crate::stages::{Stage, Transfer};
-    use std::fmt::Write;
 
     fn right(transfer: Transfer) -> Hypothesis {
         let mut recipe = Stage::find("sky").unwrap().recipe();
@@ -134,27 +132,5 @@ mod tests {
         let bytes = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
         let found = compared([16, 16], Transfer::LinearAboveGamma2, bytes, |_, _| [0.25; 3]);
         assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
-    }
-
-    #[test]
-    fn verdicts_on_noise_are_as_kept() {
-        let noise = |x: u32, y: u32, c: u32| {
-            let [word, ..] = crate::sampling::pcg4d([x, y, c, 5]);
-            (word >> 27) as u8
-        };
-        let everywhere_or_in_a_block: [fn(u32, u32) -> bool; 2] = [|_, _| true, |x, y| x < 8 && y < 8];
-        let mut text = String::new();
-        for more in 0..24 {
-            for is_in in everywhere_or_in_a_block {
-                let bytes = |x: u32, y: u32| {
-                    let more = if is_in(x, y) { more } else { 0 };
-                    [0, 1, 2].map(|c| 100 + more + noise(x, y, c))
-                };
-                let found = compared([48, 32], Transfer::Linear, bytes, |_, _| [116.0 / 256.0; 3]);
-                write!(text, "{more}: {:.6e} {}; ", found.misfit, found.is_noise).unwrap();
-            }
-            text.push('\n');
-        }
-        kept::check("check_noise", &text);
     }
 }

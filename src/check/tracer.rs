@@ -303,39 +303,6 @@ mod tests {
         }
     }
 
-    /// Sums over all pixels and channels, and sums in which each pixel counts as often as its place.
-    #[test]
-    fn pictures_with_each_mistake_are_as_kept() {
-        use crate::kept;
-        use crate::stages::Stage;
-        use std::fmt::Write;
-        let mut text = String::new();
-        for stage in Stage::ALL.iter().filter(|stage| stage.id != "book") {
-            let mut recipe = stage.recipe();
-            (recipe.settings.width, recipe.settings.height) = (13, 8);
-            for mistake in [None].into_iter().chain(Mistake::ALL.map(Some)) {
-                let pixels = Tracer::new(&recipe, mistake).means(3);
-                let sum: DVec3 = pixels.iter().map(|pixel| DVec3::from(*pixel)).sum();
-                let places: f64 = pixels.iter().zip(1_u32..).map(|(p, place)| p[0] * f64::from(place)).sum();
-                let id = mistake.map_or("right", |mistake| mistake.about().id);
-                writeln!(text, "{} {id}: {sum:.7} {places:.7}", stage.id).unwrap();
-            }
-        }
-        // Where a mistake changes nothing, the picture is the right one, which need not be told again.
-        let mut right = "";
-        let mut told = String::new();
-        for line in text.lines() {
-            let Some((name, numbers)) = line.split_once(": ") else { continue };
-            if name.ends_with(" right") || numbers != right {
-                writeln!(told, "{line}").unwrap();
-            }
-            if name.ends_with(" right") {
-                right = numbers;
-            }
-        }
-        kept::check("check_tracer", &told);
-    }
-
     #[test]
     fn random_vectors_lie_where_they_should() {
         let mut random = Random { counter: 0, pixel: 7 };

@@ -3,7 +3,7 @@
 use super::*;
 use crate::backends::BackendChoice;
 use crate::cli::ProgressChoice;
-use crate::kept;
+
 use crate::render_cpu::CpuOptions;
 use data::{Measured, ReferenceUsed, Rounding, Run};
 use std::path::PathBuf;
@@ -117,29 +117,6 @@ fn made_up() -> Data {
         rounding(OTHER, "cpu", Some(0.05)),
     ];
     Data { schema: SCHEMA, settings: settings(), references: vec![reference], runs, rounding }
-}
-
-#[test]
-fn what_follows_from_measurements_is_as_kept() {
-    let (data, targets) = (made_up(), [0.05, 0.01, 1e-3]);
-    let curves = curves(&data, &targets);
-    let calibration = calibration::calibration(&data);
-    let sampler_ratios = summary::sampler_ratios(&curves);
-    let findings = Findings {
-        data: &data,
-        curves: &curves,
-        targets: &targets,
-        calibration: &calibration,
-        sampler_ratios: &sampler_ratios,
-    };
-    let text = format!(
-        "{}\n{}\n{:.7?}\n{calibration:.7?}\n{sampler_ratios:.7?}\n{:#.7?}\n",
-        csv::csv(&data),
-        table::markdown(&findings, "weekender report"),
-        curves,
-        chart(&data, 0.05)
-    );
-    kept::check("report", &text);
 }
 
 #[test]

@@ -1,147 +1,72 @@
-//! Dependencies between rooms: each room may use only the rooms listed for it, and within the window each file only
-//! those listed for it. Lower layers come first, and an unused permission is an error. ARCHITECTURE.md describes the layers.
-
+//! Dependencies between rooms: each room may use only the rooms and crates listed for it. Lower layers come first, and
+//! an unused permission is an error. ARCHITECTURE.md describes the layers.
 #![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
 
 mod rooms;
-mod sources;
-mod window;
 
 use rooms::{CRATES, ROOMS};
-use sources::{SourceFile, file_of, sources};
-use std::collections::BTreeSet;
-use window::{TOP, WINDOW};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// Compares actual uses with the permissions. Reports uses that are not allowed, unused permissions, and uses of
-/// higher layers.
-fn faults(allowed: &[(&str, &[&str])], uses: &BTreeSet<(String, String, String)>) -> BTreeSet<String> {
-    let mut faults = BTreeSet::new();
-    let may = |user: &str| allowed.iter().find(|(name, _)| *name == user).map(|(_, used)| *used);
-    for (user, used, file) in uses {
-        match may(user) {
-            None => _ = faults.insert(format!("{user} is not listed")),
-            Some(list) if !list.contains(&used.as_str()) => {
-                faults.insert(format!("{user} uses {used} in {file}"));
-            }
-            Some(_) => {}
+/// The code of each room, without comments and tests, which may use anything.
+fn rooms() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut rooms: BTreeMap<String, String> = BTreeMap::new();
+    let mut places: Vec<PathBuf> = vec![root.clone()];
+    while let Some(place) = places.pop() {
+        if place.is_dir() {
+            places
+                .extend(fs::read_dir(place).expect("readable").map(|entry| entry.expect("readable").path()));
+        } else if place.extension().is_some_and(|ending| ending == "rs") && !place.ends_with("tests.rs") {
+            let name = place.strip_prefix(&root).expect("below src").with_extension("");
+            let room = name.iter().next().expect("a name").to_string_lossy();
+            let text = fs::read_to_string(&place).expect("UTF-8");
+            let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+            let lines = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+            rooms.entry(room.into_owned()).or_default().extend(lines.flat_map(|line| [line, "\n"]));
         }
     }
-    for (place, (user, list)) in allowed.iter().enumerate() {
-        for used in *list {
-            if !uses.iter().any(|(a, b, _)| a == user && b == used) {
-                faults.insert(format!("{user} may use {used}, which it does not"));
-            }
-            if !allowed[..place].iter().any(|(lower, _)| lower == used) {
-                faults.insert(format!("{user} uses {used}, which does not stand before it"));
-            }
-        }
-    }
-    faults
+    rooms.retain(|name, _| name != "lib" && name != "main");
+    assert!(!rooms.is_empty(), "the sources were not found");
+    rooms
 }
 
 #[test]
 fn rooms_use_only_the_rooms_below_them() {
-    let sources = sources();
-    let mut uses = BTreeSet::new();
-    for source in sources.iter().filter(|source| !matches!(source.room(), "lib" | "main")) {
-        for path in source.used.iter().chain(&source.handed_on) {
-            let is_room = |name: &String| sources.iter().any(|source| source.room() == name);
-            if let Some(used) = path.first().filter(|name| is_room(name) && *name != source.room()) {
-                uses.insert((source.room().to_owned(), used.clone(), source.name.clone()));
-            }
+    let rooms = rooms();
+    let mut faults = Vec::new();
+    let mut lower: Vec<&str> = Vec::new();
+    for row in ROOMS.lines() {
+        let (name, listed) = row.split_once(':').expect("a room and what it uses");
+        let listed: BTreeSet<&str> = listed.split_whitespace().collect();
+        let code = rooms.get(name).map_or("", String::as_str);
+        let uses = code.split("crate::").skip(1).map(|path| {
+            let end = path.find(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            &path[..end.unwrap_or(path.len())]
+        });
+        let used: BTreeSet<&str> = uses.filter(|used| *used != name && rooms.contains_key(*used)).collect();
+        if used != listed {
+            let row: Vec<&str> = used.iter().copied().collect();
+            faults.push(format!("the sources say {name}: {}", row.join(" ")));
         }
-    }
-    let faults = faults(ROOMS, &uses);
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
-#[test]
-fn files_of_the_window_use_only_those_below_them() {
-    let sources = sources();
-    let mut uses = BTreeSet::new();
-    for source in sources.iter().filter(|source| source.room() == "app") {
-        let part = source.window_part();
-        for path in source.used.iter().chain(&source.handed_on).filter(|path| path[0] == "app") {
-            let used = file_of(&sources, path).map_or("mod", SourceFile::window_part);
-            if used != part {
-                uses.insert((part.to_owned(), used.to_owned(), source.name.clone()));
-            }
+        let higher: Vec<&&str> = used.iter().filter(|used| !lower.contains(used)).collect();
+        if !higher.is_empty() {
+            faults.push(format!("{name} uses {higher:?}, which must stand before it"));
         }
+        lower.push(name);
     }
-    let faults = faults(WINDOW, &uses);
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
-#[test]
-fn only_the_top_knows_the_whole_window_and_the_model_no_drawing() {
-    for source in sources().iter().filter(|source| source.room() == "app") {
-        let names = |word: &str| {
-            // A floating panel of egui's is not the window.
-            let code = source.code.replace("egui::Window", "");
-            let mut words = code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-            words.any(|found| found == word)
-        };
-        let is_top = TOP.contains(&source.window_part());
-        assert!(is_top || !names("Window"), "{} knows the whole window", source.name);
-        let is_model = source.window_part() == "model";
-        assert!(!is_model || !(names("egui") || names("eframe")), "{} knows of drawing", source.name);
-    }
-}
-
-#[test]
-fn files_import_each_other_in_no_circle() {
-    let sources = sources();
-    let place = |source: &SourceFile| sources.iter().position(|other| other.name == source.name);
-    let mut reached: Vec<BTreeSet<usize>> = Vec::new();
-    for source in &sources {
-        let used = source.used.iter().filter_map(|path| place(file_of(&sources, path)?));
-        // A folder's main file and the other files in it may use each other, except in the window.
-        let is_inside = |other: &SourceFile| {
-            if source.room() == "app" {
-                return false;
-            }
-            let folder =
-                |a: &SourceFile, b: &SourceFile| a.name.ends_with("mod") && b.module.starts_with(&a.module);
-            folder(source, other) || folder(other, source)
-        };
-        let others = used.filter(|used| sources[*used].name != source.name);
-        reached.push(others.filter(|used| !is_inside(&sources[*used])).collect());
-    }
-    loop {
-        let before = reached.clone();
-        for set in &mut reached {
-            let further: Vec<usize> = set.iter().flat_map(|next| before[*next].clone()).collect();
-            set.extend(further);
-        }
-        if reached == before {
-            break;
-        }
-    }
-    let circles: BTreeSet<Vec<&str>> = (0..sources.len())
-        .filter(|start| reached[*start].contains(start))
-        .map(|start| {
-            let back = reached[start].iter().filter(|other| reached[**other].contains(&start));
-            back.map(|other| sources[*other].name.as_str()).collect()
-        })
-        .collect();
-    assert!(circles.is_empty(), "{circles:?}");
+    let missing: Vec<&String> = rooms.keys().filter(|room| !lower.contains(&room.as_str())).collect();
+    assert!(faults.is_empty() && missing.is_empty(), "not listed: {missing:?}; {faults:#?}");
 }
 
 #[test]
 fn crates_stay_in_their_rooms() {
-    let sources = sources();
-    let mut faults = BTreeSet::new();
-    for (name, rooms) in CRATES {
-        let users: BTreeSet<&str> = sources
-            .iter()
-            .filter(|source| source.code.contains(&format!("{name}::")))
-            .map(SourceFile::room)
-            .collect();
-        let listed: BTreeSet<&str> = rooms.iter().copied().collect();
-        faults.extend(users.difference(&listed).map(|room| format!("{room} uses {name}")));
-        faults.extend(
-            listed.difference(&users).map(|room| format!("{room} may use {name}, which it does not")),
-        );
+    for (name, listed) in CRATES {
+        let path = format!("{name}::");
+        let users: BTreeSet<String> =
+            rooms().into_iter().filter(|(_, code)| code.contains(&path)).map(|(room, _)| room).collect();
+        let listed: BTreeSet<String> = listed.iter().map(|room| (*room).to_owned()).collect();
+        assert_eq!(users, listed, "{name}");
     }
-    assert!(faults.is_empty(), "{faults:#?}");
 }

@@ -12,7 +12,7 @@ use weekender::render_cpu::sphere::{
     surface_point,
 };
 use weekender::scene::Camera;
-use weekender::stages::{DielectricLaws, Rules};
+use weekender::stages::DielectricLaws;
 
 pub const FUSED: Scalar<true> = Scalar;
 pub const UNFUSED: Scalar<false> = Scalar;
@@ -280,23 +280,6 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
     }
 }
 
-/// The same in whole pictures: a path that leaves a lone sphere hits nothing more, whatever the depth.
-#[test]
-fn case_08_lone_spheres_are_met_once() {
-    let mut renderer = widest();
-    for (radius, away) in [(0.5, 1e3), (1e-4, 1.0), (1.0, 3.0), (1e4, 2e4)] {
-        let scene = scene(&[(DVec3::new(0.0, 0.0, -away), radius, lambertian(0.5))]);
-        let vfov_degrees = (2.2 * (radius / away).atan()).to_degrees().max(0.01);
-        let camera = Camera { vfov_degrees, ..Camera::BOOK };
-        let of_depth =
-            |max_depth| job(&scene, camera, weekender::render::RenderSettings { max_depth, ..size(64, 64) });
-        let (shallow, _) = render_with_stats(&mut renderer, &of_depth(2), 0..32);
-        let (deep, stats) = render_with_stats(&mut renderer, &of_depth(50), 0..32);
-        assert_eq!(shallow, deep, "radius {radius} at {away}");
-        assert!(stats.rays > stats.paths + stats.paths / 4, "the sphere is in view: {stats:?}");
-    }
-}
-
 /// A ray enters glass of index 1.5 and travels to the other side.
 fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<f64> {
     let number = l.splat_u(NUMBER);
@@ -356,14 +339,4 @@ fn case_09_chord_inside_a_tiny_sphere() {
     }
     println!("case 9: relative chord {largest:.2e}");
     assert!(largest <= 1e-2, "{largest:e}");
-}
-
-/// The rules of these cases are those of the finished tracer.
-#[test]
-fn the_acne_stage_alone_anchors_nothing() {
-    let job = ground_job(1e5);
-    let acne = Rules { surface: weekender::stages::SurfaceRule::Acne, ..Rules::FINISHED };
-    let acne = RenderJob::new(job.scene().clone(), *job.camera(), *job.settings(), acne).unwrap();
-    assert!(PreparedScene::<f32>::new(&acne).anchored.is_empty());
-    assert_eq!(PreparedScene::<f32>::new(&job).anchored.len(), 1);
 }

@@ -5,10 +5,9 @@
 use crate::common::*;
 use crate::stiff::{Ball, under_white_sky};
 use glam::DVec3;
-use weekender::prepared::PreparedScene;
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::{DielectricLaws, Rules, SurfaceRule};
+use weekender::stages::{DielectricLaws, Rules};
 
 /// Every ray has one way only.
 const WITHOUT_CHANCE: Rules =
@@ -98,27 +97,4 @@ fn a_ball_of_steep_glass_is_as_white_as_the_sky() {
             assert!((found - 1.0).abs() < 1e-6, "index {index}: {found}");
         }
     }
-}
-
-#[test]
-fn glass_is_steep_beyond_a_factor_of_four_or_64_rays() {
-    let is_steep = |material: Material, max_depth: u32, rules: Rules| {
-        let balls = scene(&[(DVec3::ZERO, 1.0, material)]);
-        let settings = RenderSettings { max_depth, ..size(4, 3) };
-        let job = RenderJob::new(balls, VIEW, settings, rules).unwrap();
-        PreparedScene::<f32>::new(&job).features.steep_glass
-    };
-    for (index, depth, expected) in [
-        (4.0, 64, false),
-        (0.25, 64, false),
-        (4.001, 2, true),
-        (0.249, 2, true),
-        (1.5, 64, false),
-        (1.5, 65, true),
-    ] {
-        assert_eq!(is_steep(glass(index), depth, Rules::FINISHED), expected, "{index}, {depth} rays");
-    }
-    assert!(!is_steep(mirror(0.9), 1000, Rules::FINISHED), "metal has no critical angle");
-    // The book's arithmetic is as imprecise as it is.
-    assert!(!is_steep(glass(9.0), 1000, Rules { surface: SurfaceRule::Book, ..Rules::FINISHED }));
 }

@@ -4,7 +4,6 @@ use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::film::Film;
-use weekender::kernel::Roots;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
 use weekender::render::{RenderJob, RenderSettings};
@@ -82,16 +81,6 @@ fn nearly_equal_balls_reflect_what_one_does() {
 }
 
 #[test]
-fn overlapping_balls_far_away_are_one_picture() {
-    let mut random = Random::new(4);
-    let at = DVec3::new(1e4, 0.0, 0.0);
-    let balls: Vec<Ball> =
-        (0..30).map(|_| (at + random.in_box(1.0), random.within(0.3, 1.0), lambertian(0.8))).collect();
-    let camera = Camera { look_from: at + DVec3::new(0.0, 1.0, 5.0), look_at: at, ..AT_BALL };
-    as_list_and_hierarchy(&job(&under_white_sky(&balls), camera, size(32, 32)), 16);
-}
-
-#[test]
 fn of_copies_in_two_colours_the_first_is_seen() {
     let coloured = |albedo| (DVec3::ZERO, 1.0, Material::Lambertian { albedo });
     for (first, second) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::X)] {
@@ -123,16 +112,6 @@ fn shells_and_crowds_have_low_trees() {
         println!("{} spheres: {} levels", spheres.len(), hierarchy.depth());
         assert!(hierarchy.depth() <= DEPTH_LIMIT);
         assert!(weekender::prepared::wide_bvh::WideBvh::build(spheres, DVec3::ZERO).depth() <= 24);
-    }
-}
-
-#[test]
-fn many_shells_are_a_picture() {
-    for count in [108, 1000] {
-        let shell = |i: u32| (DVec3::ZERO, 1.0 - f64::from(i) / f64::from(2 * count), lambertian(0.5));
-        let shells: Vec<Ball> = (0..count).map(shell).collect();
-        let film = as_list_and_hierarchy(&job(&under_white_sky(&shells), AT_BALL, size(4, 4)), 4);
-        assert_eq!(film.mean(5), [0.5; 3]);
     }
 }
 
@@ -232,48 +211,6 @@ fn a_scene_is_the_same_wherever_it_is() {
     }
 }
 
-/// A ground is precise near its details, whatever lies far away.
-#[test]
-fn far_spheres_do_not_move_the_anchor() {
-    let detail =
-        [(DVec3::new(2e-4, -2e-4, 2e-4), 6e-4, glass(0.015)), (DVec3::Y * -1.4e6, 1.4e6, lambertian(0.5))];
-    let eye = DVec3::new(0.0, 2e-4, 0.0);
-    let camera = Camera { look_from: eye, look_at: eye - DVec3::new(-0.02, 1.0, 0.05), ..AT_BALL };
-    let anchor = |balls: &[Ball]| {
-        PreparedScene::<f32>::new(&job(&scene(balls), camera, size(2, 2))).anchored[0].anchor
-    };
-    assert_eq!(anchor(&detail), anchor(&among_many(&detail)));
-}
-
-/// One extreme sphere, distance or eye does not put all spheres into the list.
-#[test]
-fn oddities_anchor_few_spheres() {
-    let (scene, camera) = field(4000);
-    let prepared = |scene: &Scene, camera: Camera| PreparedScene::<f32>::new(&job(scene, camera, size(8, 8)));
-    let check = |prepared: PreparedScene<f32>, what: &str| {
-        println!("{what}: {} anchored", prepared.anchored.len());
-        assert!(
-            prepared.hierarchy.is_some() && prepared.anchored.len() <= 8,
-            "{what}: {}",
-            prepared.anchored.len()
-        );
-    };
-    let plain = prepared(&scene, camera).anchored.len();
-    let mut speck = scene.clone();
-    speck.add_sphere(DVec3::new(0.3, 0.7, 0.3), 1e-4, 0);
-    check(prepared(&speck, camera), "a tiny sphere");
-    assert_eq!(prepared(&speck, camera).anchored.len(), plain, "it is near none");
-    check(
-        prepared(&scene, Camera { focus_distance: Some(1e-4), defocus_angle_degrees: 1.0, ..camera }),
-        "focus",
-    );
-    let ball = scene.spheres[100];
-    let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * (ball.radius + 1e-4);
-    check(prepared(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "near a ball");
-    let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * ball.radius;
-    check(prepared(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "on a ball");
-}
-
 #[test]
 fn total_reflection_lasts() {
     let scene = under_white_sky(&[(DVec3::ZERO, 1.0, glass(1.5))]);
@@ -340,27 +277,4 @@ fn no_light_gets_into_a_closed_ball() {
             }
         }
     }
-}
-
-#[test]
-fn what_a_closed_ball_hides_is_left_out() {
-    let ball = (DVec3::ZERO, 1.0, lambertian(1.0));
-    let crossing = (DVec3::X, 0.5, lambertian(0.5));
-    let tangent = (DVec3::Y * 3.0, 2.0, lambertian(0.5));
-    let around = (DVec3::ZERO, 5.0, lambertian(0.5));
-    let scene = scene(&[ball, crossing, tangent, around]);
-    let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
-    let prepared = PreparedScene::<f32>::new(&job(&scene, camera, size(2, 2)));
-    assert_eq!(prepared.scene_index, [1, 0]);
-    assert_eq!(prepared.anchored[0].roots(), Roots::Farther);
-}
-
-/// A matte ball covered by identical glass does not count as a cavity.
-#[test]
-fn a_covered_ball_is_no_cavity() {
-    let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::ZERO, 1.0, lambertian(0.5))];
-    let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
-    let [both, glass] =
-        [&balls[..], &balls[..1]].map(|balls| job(&under_white_sky(balls), camera, size(8, 8)));
-    assert_eq!(render(&mut widest(), &both, 0..8), render(&mut widest(), &glass, 0..8));
 }

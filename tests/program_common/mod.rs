@@ -11,7 +11,26 @@ pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
         command.env_remove(display);
     }
     command.current_dir(directory).args(arguments).stdin(Stdio::null());
+    #[cfg(unix)]
+    restore_signals();
     command
+}
+
+/// Gives programs that are started from now on the default action of Ctrl-C and the like, which a shell disables for
+/// what it runs in the background. A program inherits that a signal is ignored, but no handler.
+#[cfg(unix)]
+pub fn restore_signals() {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::flag;
+    use std::sync::Arc;
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        for signal in [SIGINT, SIGTERM] {
+            flag::register_conditional_default(signal, Arc::new(true.into())).unwrap();
+        }
+        // Tests under nohup still survive the end of their terminal.
+        flag::register(SIGHUP, Arc::new(false.into())).unwrap();
+    });
 }
 
 pub fn text(bytes: &[u8]) -> String {

@@ -1,11 +1,10 @@
 //! Every command, by menu, key and palette.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
-use eframe::egui::{self, Key, Modifiers};
+use crate::common::{SMALL, control, open, send};
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, Device, SlotCommand, Window};
-use weekender::stages::Stage;
+use weekender::app::{Command, SlotCommand, Window};
 
 /// Gives a command. Returns whether it was enabled or says why not.
 fn is_done_or_refused(harness: &mut Harness<'_, Window>, command: Command) -> bool {
@@ -86,136 +85,6 @@ fn every_menu_lists_its_commands() {
     }
 }
 
-/// What a command must have changed, compared with the window before.
-fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Harness<'_, Window>) -> bool {
-    let copied =
-        harness.output().platform_output.commands.iter().any(
-            |output| matches!(output, egui::OutputCommand::CopyText(text) if text.starts_with("weekender")),
-        );
-    let window = harness.state_mut();
-    let remembered = window.remembered_mut().clone();
-    let document = window.document();
-    match command {
-        Command::Fresh => document.name() == "three-spheres",
-        Command::Open
-        | Command::Save(_)
-        | Command::SaveScene
-        | Command::LoadReference
-        | Command::SavePlot
-        | Command::SaveFlight
-        | Command::Palette
-        | Command::Help => window.has_dialog(),
-        Command::CopyPlot => window.messages().iter().any(|text| text.starts_with("Copied")),
-        Command::CopyCommand => copied || window.messages().iter().any(|text| text.starts_with("Copied")),
-        Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
-            document.camera != before.camera || document.settings != before.settings
-        }
-        Command::AddSphere | Command::DuplicateSphere | Command::DeleteSphere | Command::ResetSpheres => {
-            document.scene() != before.scene()
-        }
-        Command::NextSphere | Command::PreviousSphere => window.selected().is_some(),
-        Command::Deselect => window.selected().is_none(),
-        Command::FocusSphere | Command::LookAtSphere => document.camera != before.camera,
-        Command::AddBookmark => remembered.bookmarks.len() == 1,
-        Command::Flights => !remembered.has_flights,
-        Command::Gizmo => !remembered.has_gizmo,
-        // See moving.rs and flights.rs.
-        Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => true,
-        Command::Show(show) => window.show() == show,
-        Command::Wipe | Command::WipeDifference | Command::BookArithmetic => window.is_comparing(),
-        Command::Extreme(case) => document.case() == Some(case),
-        Command::Panels => !remembered.has_panels,
-        Command::Controls => !remembered.has_controls,
-        Command::Info => !remembered.has_info,
-        Command::Plot => remembered.has_plot,
-        Command::Packet => remembered.has_packet,
-        Command::Code => remembered.has_code,
-        Command::Companion => window.messages().iter().any(|text| text.contains("companion")),
-        Command::Theme(theme) => remembered.theme == theme,
-        Command::Pause => window.is_paused(),
-        Command::Restart => window.status().run > 1,
-        Command::SwitchDevice => remembered.device == Device::Gpu,
-        Command::Device(device) => remembered.device == device,
-        Command::Size(sizing) => remembered.sizing == sizing && document.settings != before.settings,
-        Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
-        Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
-        Command::Stage(stage) => document.stage() == Some(stage),
-        Command::ShowMe => window.has_sight(),
-        Command::Present => window.is_presenting(),
-        // See thumbnails.rs and present.rs.
-        Command::Stages | Command::Blank => true,
-        // The next two belong to the window system; the others belong to the viewport and are tested there.
-        Command::Quit | Command::Book | Command::FullScreen => true,
-        Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
-        Command::NextRay | Command::PreviousRay | Command::ListPaths => true,
-        // See paths.rs, and perform_scene_file.rs of the window.
-        Command::ClearPaths | Command::Reload => true,
-        Command::NextPanel | Command::GoOn => true,
-        // See recent.rs and first_steps.rs.
-        Command::CopyPicture | Command::Recent(_) | Command::FirstSteps => true,
-        // See slots.rs, sizes.rs and crop.rs.
-        Command::Slot(_) | Command::ReferenceSize => true,
-        Command::Crop | Command::CopyCrop | Command::SaveCrop => true,
-        // See tone.rs.
-        Command::Brighter | Command::Darker | Command::NoExposure => true,
-    }
-}
-
-#[test]
-fn every_command_does_what_it_says() {
-    for command in Command::all() {
-        // A render that has ended cannot be paused.
-        let endless = format!("{SMALL} --samples 4000000000");
-        let mut harness = open(if command == Command::Pause { &endless } else { SMALL });
-        until(&mut harness, "a picture", has_samples(1));
-        // Something to undo and something to redo.
-        if matches!(command, Command::Undo | Command::Redo | Command::Home | Command::ResetAll) {
-            harness.run_steps(90);
-            harness.state_mut().document_mut().camera.vfov_degrees = 33.0;
-            harness.run_steps(90);
-        }
-        if matches!(
-            command,
-            Command::DuplicateSphere
-                | Command::DeleteSphere
-                | Command::Deselect
-                | Command::FocusSphere
-                | Command::LookAtSphere
-                | Command::ResetSpheres
-        ) {
-            send(&mut harness, Command::AddSphere);
-        }
-        if command == Command::Redo {
-            send(&mut harness, Command::Undo);
-        }
-        if matches!(command, Command::FlyBookmarks | Command::SaveFlight) {
-            send(&mut harness, Command::AddBookmark);
-            send(&mut harness, Command::AddBookmark);
-        }
-        if harness.state().disabled_reason(command).is_some() {
-            continue;
-        }
-        let before = harness.state().document().clone();
-        harness.state_mut().send(command);
-        harness.step();
-        assert!(is_done(command, &before, &mut harness), "{command:?}");
-    }
-}
-
-#[test]
-fn the_book_is_opened_at_the_section_of_the_stage() {
-    let mut harness = open(SMALL);
-    harness.state_mut().send(Command::Book);
-    harness.step();
-    let opened = harness.output().platform_output.commands.iter().find_map(|output| match output {
-        egui::OutputCommand::OpenUrl(opened) => Some(opened.url.clone()),
-        _ => None,
-    });
-    let url = Stage::find("glass-schlick").unwrap().url();
-    assert!(harness.state().messages().contains(&format!("Opening {url}")));
-    assert_eq!(opened, Some(url));
-}
-
 #[test]
 fn escape_leaves_a_control_before_tab_hides_the_panels() {
     let mut harness = open(SMALL);
@@ -235,47 +104,6 @@ fn escape_leaves_a_control_before_tab_hides_the_panels() {
     harness.key_press(Key::Tab);
     harness.run_steps(2);
     assert!(!harness.state_mut().remembered_mut().has_panels);
-}
-
-#[test]
-fn escape_closes_the_code_before_it_deselects() {
-    let mut harness = open(SMALL);
-    send(&mut harness, Command::NextSphere);
-    harness.key_press(Key::K);
-    harness.run_steps(2);
-    for expected in [(true, true), (false, true), (false, false)] {
-        let has_code = harness.state_mut().remembered_mut().has_code;
-        assert_eq!((has_code, harness.state().selected().is_some()), expected);
-        harness.key_press(Key::Escape);
-        harness.run_steps(2);
-    }
-}
-
-#[test]
-fn an_open_menu_keeps_keys_from_what_is_behind_it() {
-    let mut harness = open(SMALL);
-    let state = |harness: &mut Harness<'_, Window>| {
-        let has_controls = harness.state_mut().remembered_mut().has_controls;
-        let window = harness.state();
-        (has_controls, window.is_comparing(), window.document().stage(), window.document().camera)
-    };
-    let before = state(&mut harness);
-    control(&harness, "File").click();
-    harness.run_steps(3);
-    for key in [Key::X, Key::L, Key::PageDown] {
-        harness.key_press(key);
-        harness.run_steps(2);
-    }
-    harness.key_down(Key::W);
-    harness.run_steps(3);
-    harness.key_up(Key::W);
-    harness.run_steps(2);
-    assert!(state(&mut harness) == before);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    harness.key_press(Key::L);
-    harness.run_steps(2);
-    assert!(state(&mut harness).0 != before.0);
 }
 
 #[test]
@@ -309,64 +137,4 @@ fn changes_are_taken_back_and_made_again_one_by_one() {
     );
     send(&mut harness, Command::Undo);
     assert_eq!(angle(&harness), 44.0);
-}
-
-/// However few commands match, the box of the palette stays where it is, and all results come back.
-#[test]
-fn the_palette_keeps_its_place_and_size() {
-    let mut harness = open(SMALL);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
-    harness.run_steps(5);
-    let shape = |harness: &Harness<'_, Window>| {
-        let edit = harness.get_by_label("Command").rect();
-        let rows = harness.get_all_by_role(egui::Role::Button).filter(|row| row.rect().top() > edit.bottom());
-        (edit, rows.filter(|row| row.rect().bottom() < edit.bottom() + 360.0).count())
-    };
-    let before = shape(&harness);
-    assert!(before.1 > 8, "{before:?}");
-    for letter in ["x", "y", "z", "z", "y"] {
-        harness.event(egui::Event::Text(letter.to_owned()));
-        harness.run_steps(3);
-        assert_eq!(shape(&harness).0, before.0, "{letter}");
-    }
-    for _ in 0..5 {
-        harness.key_press(Key::Backspace);
-        harness.run_steps(3);
-        assert_eq!(shape(&harness).0, before.0);
-    }
-    assert_eq!(shape(&harness), before);
-}
-
-/// F6 goes from part to part, and the first control of each has the focus.
-#[test]
-fn f6_goes_through_the_panels() {
-    use egui_kittest::kittest::NodeT;
-    let mut harness = open(SMALL);
-    let focused = |harness: &Harness<'_, Window>| {
-        let mut nodes = harness.root().children_recursive();
-        let found = nodes.find(|node| node.accesskit_node().is_focused());
-        found.map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
-    };
-    let mut places = Vec::new();
-    for _ in 0..4 {
-        harness.key_press(Key::F6);
-        harness.run_steps(3);
-        places.push(focused(&harness));
-    }
-    let picture = harness.get_by_label("Picture").rect();
-    let [Some(menu), Some(left), Some(right), None] = &places[..] else { panic!("{places:?}") };
-    assert_eq!(menu.0, "File");
-    assert!(left.1.right() <= picture.left() && right.1.left() >= picture.right(), "{places:?}");
-}
-
-/// At a width without room for the right panel, its text is below the controls, and a button leads there.
-#[test]
-fn a_narrow_window_says_where_the_stage_is() {
-    let mut harness = crate::common::open_sized(SMALL, [800.0, 600.0]);
-    harness.run_steps(3);
-    let heading = |harness: &Harness<'_, Window>| harness.get_by_label("What is new").rect();
-    assert!(heading(&harness).top() > 600.0, "{:?}", heading(&harness));
-    harness.get_by_label("Stage and pixel: below").click();
-    harness.run_steps(60);
-    assert!(heading(&harness).top() < 500.0, "{:?}", heading(&harness));
 }

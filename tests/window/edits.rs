@@ -1,13 +1,10 @@
 //! The spheres of the scene: editing them, and what becomes of a changed scene.
 
-use crate::common::{choose_from_menu, control, drag_from, has_samples, open, save, send, until};
-use crate::objects::{
-    click, has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres,
-};
+use crate::common::{control, drag_from, has_samples, open, save, send, until};
+use crate::objects::{has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
-use glam::DVec3;
+use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Document, Window};
 use weekender::cli::{self, Request};
 use weekender::scene::Material;
@@ -48,21 +45,6 @@ fn numbers_of_the_panel_change_the_sphere_one_undo_step_each() {
 }
 
 #[test]
-fn undo_selects_the_sphere_that_it_changes() {
-    let mut harness = opened();
-    let (metal, middle) = (metal_sphere(&harness), middle_sphere(&harness));
-    select(&mut harness, metal);
-    let at = on_screen(&harness, spheres(&harness)[metal].center);
-    drag_from(&mut harness, at, egui::vec2(-30.0, -20.0));
-    select(&mut harness, middle);
-    send(&mut harness, Command::Undo);
-    assert_eq!(harness.state().selected(), Some(metal));
-    send(&mut harness, Command::Deselect);
-    send(&mut harness, Command::Redo);
-    assert_eq!(harness.state().selected(), Some(metal));
-}
-
-#[test]
 fn a_slider_drag_is_one_undo_step() {
     let mut harness = opened();
     let metal = metal_sphere(&harness);
@@ -75,102 +57,6 @@ fn a_slider_drag_is_one_undo_step() {
     assert!(after.effective_fuzz() > 0.2, "{after:?}");
     send(&mut harness, Command::Undo);
     assert_eq!(material(&harness, metal), before);
-}
-
-#[test]
-fn numbers_stay_within_the_limits_of_scenes() {
-    let mut harness = opened();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    let radius = spheres(&harness)[metal].radius;
-    for (name, value, kept) in [
-        ("Radius", -1.0, radius),
-        ("Radius", 1e300, 1e18),
-        ("Centre x", -1e300, -1e18),
-        ("Fuzz", -0.5, 0.0),
-        ("Albedo red", 1.5, 1.0),
-    ] {
-        control(&harness, name).set_value_accesskit(value);
-        harness.run_steps(3);
-        let scene = harness.state().document().scene();
-        let sphere = scene.spheres[metal];
-        let material = scene.material_of(&sphere);
-        let number = match name {
-            "Radius" => sphere.radius,
-            "Centre x" => sphere.center.x,
-            "Fuzz" => material.effective_fuzz(),
-            _ => material.albedo().unwrap().x,
-        };
-        assert_eq!(number, kept, "{name} {value}");
-        harness.state().document().job(1).unwrap();
-    }
-}
-
-#[test]
-fn a_warning_goes_with_its_scene() {
-    let mut harness = open("--stage hollow-glass --size 32x18");
-    until(&mut harness, "a picture", has_samples(1));
-    let is_bubble = |sphere: &weekender::scene::Sphere| sphere.radius == 0.4;
-    let ball = spheres(&harness).iter().position(is_bubble).unwrap() - 1;
-    select(&mut harness, ball);
-    control(&harness, "Radius").set_value_accesskit(0.4 + 1e-9);
-    let is_told =
-        |window: &Window| window.messages().iter().any(|text| text.contains("choose the device f64"));
-    until(&mut harness, "the warning", is_told);
-    let run = harness.state().status().run;
-    send(&mut harness, Command::Undo);
-    assert_eq!(spheres(&harness)[ball].radius, 0.5);
-    // The picture of before may still be on the screen, so it says nothing about the new render.
-    let is_traced = |window: &Window| window.status().run > run && window.status().samples_per_pixel > 0;
-    until(&mut harness, "samples of the scene without the warning", is_traced);
-    assert!(!is_told(harness.state()));
-}
-
-/// What is known about the old scene is not applied to the new one, which has fewer spheres.
-#[test]
-fn a_sphere_around_the_camera_can_be_deleted() {
-    let mut harness = opened();
-    let last = spheres(&harness).len() - 1;
-    let inside = spheres(&harness)[last].center;
-    harness.state_mut().document_mut().camera.look_from = inside;
-    until(&mut harness, "the picture from inside", has_samples(1));
-    harness.run_steps(3);
-    send(&mut harness, Command::PreviousSphere);
-    assert_eq!(harness.state().selected(), Some(last));
-    send(&mut harness, Command::DeleteSphere);
-    assert_eq!(spheres(&harness).len(), last);
-    until(&mut harness, "the picture without it", has_samples(1));
-}
-
-#[test]
-fn the_material_of_one_sphere_changes() {
-    let mut harness = opened();
-    let middle = middle_sphere(&harness);
-    select(&mut harness, middle);
-    let albedo = material(&harness, middle).albedo().unwrap();
-    let others: Vec<Material> = (0..spheres(&harness).len())
-        .filter(|other| *other != middle)
-        .map(|other| material(&harness, other))
-        .collect();
-    for (kind, expected) in [
-        ("metal", Material::Metal { albedo, fuzz: 0.0 }),
-        ("dielectric", Material::Dielectric { refraction_index: 1.5 }),
-    ] {
-        control(&harness, "Material").click();
-        harness.run_steps(3);
-        harness.get_all_by_label(kind).last().unwrap().click();
-        harness.run_steps(3);
-        assert_eq!(material(&harness, middle), expected);
-    }
-    control(&harness, "Refraction index").set_value_accesskit(2.4);
-    harness.run_steps(3);
-    assert_eq!(material(&harness, middle), Material::Dielectric { refraction_index: 2.4 });
-    let after: Vec<Material> = (0..spheres(&harness).len())
-        .filter(|other| *other != middle)
-        .map(|other| material(&harness, other))
-        .collect();
-    assert_eq!(after, others);
-    until(&mut harness, "its picture", has_samples(1));
 }
 
 #[test]
@@ -213,15 +99,6 @@ fn spheres_are_added_copied_deleted_and_brought_back() {
     send(&mut harness, Command::Undo);
     assert_eq!(spheres(&harness), first);
     assert!(!harness.state().document().has_changed_scene());
-}
-
-#[test]
-fn the_menu_of_a_right_click_adds_a_sphere() {
-    let mut harness = opened();
-    let count = spheres(&harness).len();
-    let at = on_screen(&harness, DVec3::new(0.0, 0.0, -1.0));
-    choose_from_menu(&mut harness, at, "Add a sphere here");
-    assert_eq!((spheres(&harness).len(), harness.state().selected()), (count + 1, Some(count)));
 }
 
 #[test]
@@ -317,49 +194,4 @@ fn a_changed_scene_is_saved_opened_and_copied_as_a_command() {
     harness.step();
     assert!(copied(&harness).unwrap().contains("--scene=defocus-changed.toml"));
     assert!(harness.state().messages().iter().any(|text| text.contains("save the scene file")));
-}
-
-/// A large scene is edited on a thread: the window goes on, one edit is one undo step, and its time is told.
-#[test]
-fn a_sphere_among_very_many_is_edited() {
-    let mut harness = open("--scene field:60000 --size 32x18");
-    until(&mut harness, "a picture", has_samples(1));
-    let before = harness.state().document().job(1).unwrap();
-    harness.run_steps(90);
-    let at = harness.state().picture_rect().lerp_inside(egui::vec2(0.5, 0.85));
-    click(&mut harness, at, Modifiers::NONE);
-    let sphere = harness.state().selected().expect("the field fills the picture");
-    let sphere = if sphere == 0 {
-        send(&mut harness, Command::NextSphere);
-        1
-    } else {
-        sphere
-    };
-    for radius in [0.125, 0.25] {
-        control(&harness, "Radius").set_value_accesskit(radius);
-        harness.step();
-    }
-    let shown = control(&harness, "Radius").accesskit_node().numeric_value();
-    assert_eq!(shown, Some(0.25), "the panel does not wait");
-    let radius = |window: &Window| window.document().scene().spheres[sphere].radius;
-    until(&mut harness, "the edit", |window| radius(window) == 0.25);
-    until(&mut harness, "its time", |window| {
-        window.messages().iter().any(|text| text.starts_with("Changed 1 of 60001 spheres"))
-    });
-    while harness.state().document().has_changed_scene() {
-        send(&mut harness, Command::Undo);
-    }
-    assert_eq!(harness.state().document().job(1).unwrap(), before);
-}
-
-#[test]
-fn a_button_brings_the_spheres_of_the_stage_back() {
-    let mut harness = opened();
-    let before = spheres(&harness);
-    send(&mut harness, Command::AddSphere);
-    assert_eq!(spheres(&harness).len(), before.len() + 1);
-    harness.get_by_label("Reset the scene").click_accesskit();
-    harness.run_steps(3);
-    assert_eq!(spheres(&harness), before);
-    assert!(harness.query_by_label("Reset the scene").is_none());
 }

@@ -1,6 +1,6 @@
 //! Extreme scenes, and the switch to the book's arithmetic.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
+use crate::common::{has_samples, open, send, until};
 use egui_kittest::kittest::Queryable;
 use weekender::app::Command;
 use weekender::stress::shown_cases;
@@ -27,29 +27,4 @@ fn every_extreme_scene_is_shown_with_what_to_watch_and_wiped_against_the_book() 
     until(&mut harness, "the book's picture", |window| window.has_other_picture());
     send(&mut harness, Command::BookArithmetic);
     assert!(!harness.state().is_comparing());
-}
-
-#[test]
-fn a_stage_is_wiped_against_its_pair_or_the_book() {
-    let mut harness = open(SMALL);
-    send(&mut harness, Command::Wipe);
-    until(&mut harness, "the pair", |window| window.has_other_picture());
-    // The comparison does not end; it changes to another one.
-    send(&mut harness, Command::BookArithmetic);
-    assert!(harness.state().is_comparing());
-    until(&mut harness, "the book's picture", |window| window.has_other_picture());
-    send(&mut harness, Command::Wipe);
-    assert!(harness.state().is_comparing());
-    until(&mut harness, "the pair again", |window| window.has_other_picture());
-}
-
-#[test]
-fn the_menu_names_the_scenes() {
-    let mut harness = open(SMALL);
-    control(&harness, "Extreme scenes").click();
-    harness.run_steps(3);
-    harness.get_by_label("Soap bubbles").click();
-    until(&mut harness, "bubbles", |window| {
-        window.document().case().is_some_and(|case| case.id == "file/soap-bubbles")
-    });
 }

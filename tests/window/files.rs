@@ -1,9 +1,6 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{
-    SMALL, copied_command, has_samples, name_file, open, painted, save, send, until, until_painted,
-    until_seen,
-};
+use crate::common::{SMALL, copied_command, has_samples, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -171,55 +168,4 @@ fn the_command_is_copied() {
         copied.starts_with("weekender --batch --stage=glass-schlick --size=32x18 --samples="),
         "{copied}"
     );
-}
-
-/// A loaded film that the picture's film equals, bit by bit.
-#[test]
-fn an_identical_film_is_said_to_be_identical() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut harness = open("--stage defocus --size 48x27 --samples 40");
-    until(&mut harness, "the end", has_samples(40));
-    let path = directory.path().join("same.exr");
-    save(&mut harness, Command::Save(OutputFormat::Exr), &path);
-    name_file(&mut harness, Command::LoadReference, &path);
-    until(&mut harness, "the difference", |window| window.show() == weekender::app::Show::Difference);
-    until_painted(&mut harness, "identical to the bit");
-    assert!(painted(&harness, "|difference|"));
-    harness.event(egui::Event::PointerMoved(harness.get_by_label("Picture").rect().center()));
-    for text in ["A, this", "B, other", "A − B"] {
-        until_seen(&mut harness, text);
-    }
-    // Another seed is another film.
-    harness.state_mut().document_mut().settings.seed = 5;
-    harness.run_steps(3);
-    until(&mut harness, "the end", has_samples(40));
-    for _ in 0..50 {
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
-    assert!(!painted(&harness, "identical to the bit"));
-}
-
-#[test]
-fn the_box_for_a_files_name_can_be_cancelled() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    send(&mut harness, Command::Save(OutputFormat::Png));
-    harness.run_steps(2);
-    assert!(harness.state().has_dialog());
-    harness.get_by_label("Cancel").click();
-    harness.run_steps(3);
-    assert!(!harness.state().has_dialog());
-}
-
-#[test]
-fn what_a_drop_opens_is_told_while_a_file_is_over_the_window() {
-    let mut harness = open(SMALL);
-    let file = egui::HoveredFile { path: Some("scenes/mine.toml".into()), mime: String::new() };
-    harness.input_mut().hovered_files.push(file);
-    harness.step();
-    assert!(painted(&harness, "Drop to open mine.toml"));
-    harness.input_mut().hovered_files.clear();
-    harness.step();
-    assert!(!painted(&harness, "Drop to open"));
 }

@@ -1,10 +1,7 @@
 //! The card that a new user sees.
 
-use crate::common::{
-    control, drag_from, hold, middle, open, open_sized, opened, send, until, until_seen, window,
-};
-use crate::remembered::remembering;
-use eframe::egui::{Key, Rect, vec2};
+use crate::common::{drag_from, hold, middle, open, opened, until, until_seen, window};
+use eframe::egui::{Key, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
@@ -38,23 +35,6 @@ fn ticks(harness: &Harness<'_, Window>) -> [bool; 3] {
         assert!(is_done != has(step), "{step}");
         is_done
     })
-}
-
-#[test]
-fn the_first_window_shows_the_last_picture_and_a_card() {
-    let mut harness = first();
-    assert!(has_card(&harness));
-    assert_eq!(harness.state().document().stage().unwrap().id, "book");
-    let has = |name: &str| harness.query_all_by_label(name).next().is_some();
-    assert!(has("Field of view") && has("Defocus angle"), "camera and lens are open");
-    assert!(FOLDED.iter().all(|name| !has(name)), "render, stop and output are folded");
-    assert_eq!(ticks(&harness), [false; 3]);
-    harness.get_by_label("Start the book at 2.1").click();
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().stage().unwrap().id, "ppm-tiny");
-    assert!(has_card(&harness), "the steps are still there");
-    assert!(harness.query_by_label("Start the book at 2.1").is_none(), "this is where it starts");
-    assert!(harness.query_by_label(&format!("{} (from section 5.2 on)", STEPS[1])).is_some());
 }
 
 #[test]
@@ -101,59 +81,5 @@ fn each_step_is_ticked_off_once_it_is_done() {
         assert!(begin.elapsed().as_secs() < 60, "the card stays");
         std::thread::sleep(std::time::Duration::from_millis(20));
         harness.step();
-    }
-}
-
-#[test]
-fn a_closed_card_returns_only_when_asked() {
-    let directory = tempfile::tempdir().unwrap();
-    let settings = directory.path().join("settings.json");
-    let mut harness = remembering("", &settings);
-    assert!(has_card(&harness));
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    assert!(!has_card(&harness));
-    harness.state_mut().end_in_order();
-    let mut again = remembering("", &settings);
-    assert!(!has_card(&again));
-    assert_eq!(again.state().document().name(), "three-spheres");
-    control(&again, "Help").click();
-    again.run_steps(3);
-    again.get_by_label("First steps").click();
-    again.run_steps(3);
-    assert!(has_card(&again));
-    again.get_by_label("Close the first steps").click();
-    again.run_steps(3);
-    assert!(!has_card(&again));
-}
-
-#[test]
-fn what_was_done_is_forgotten_when_the_card_is_shown_again() {
-    let mut harness = first();
-    let at = middle(&harness);
-    drag_from(&mut harness, at, vec2(40.0, 0.0));
-    harness.run_steps(3);
-    assert_eq!(ticks(&harness), [true, false, false]);
-    send(&mut harness, Command::FirstSteps);
-    send(&mut harness, Command::FirstSteps);
-    harness.run_steps(3);
-    assert_eq!(ticks(&harness), [false; 3]);
-}
-
-/// The card is in the viewport, away from the middle of the picture, and the keyboard reaches it.
-#[test]
-fn the_card_leaves_the_middle_of_the_picture_free() {
-    for size in [[1280.0, 800.0], [800.0, 600.0]] {
-        let mut harness = open_sized("", size);
-        harness.run_steps(3);
-        let parts = [ABOUT, STEPS[0], STEPS[1], STEPS[2], "Start the book at 2.1", "Close the first steps"];
-        let card =
-            parts.map(|part| harness.get_by_label(part).rect()).into_iter().fold(Rect::NOTHING, Rect::union);
-        let (room, picture) = (harness.get_by_label("Picture").rect(), harness.state().picture_rect());
-        assert!(room.contains_rect(card.expand(8.0)), "{size:?}: {card:?} in {room:?}");
-        assert!(!card.expand(16.0).contains(picture.center()), "{size:?}: {card:?} over {picture:?}");
-        harness.key_press(Key::F6);
-        harness.run_steps(3);
-        assert!(harness.get_by_label("Start the book at 2.1").is_focused(), "{size:?}");
     }
 }

@@ -1,11 +1,10 @@
 //! The menus of a right click on the picture.
 
-use crate::common::{SMALL, drag_from, has_samples, middle, open, send, until};
-use crate::objects::{metal_sphere, opened, select, spheres};
+use crate::common::{has_samples, middle, open, until};
 use eframe::egui::{self, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use weekender::app::{Command, SlotCommand, SlotNumber, Window};
+use weekender::app::Window;
 
 /// Opens the menu in the middle of the picture.
 fn open_menu(harness: &mut Harness<'_, Window>) {
@@ -29,13 +28,6 @@ fn entry<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
     entry.unwrap_or_else(|| panic!("no {name} in the menu"))
 }
 
-fn choose(harness: &mut Harness<'_, Window>, command: Command) {
-    open_menu(harness);
-    entry(harness, &command.name()).click();
-    harness.run_steps(5);
-    assert_eq!(harness.state().performed(), Some(command));
-}
-
 #[test]
 fn a_picture_without_rays_offers_nothing_of_what_is_there() {
     let mut harness = open("--stage ppm-tiny");
@@ -52,36 +44,4 @@ fn a_picture_without_rays_offers_nothing_of_what_is_there() {
         assert!(entry(&harness, name).accesskit_node().is_disabled(), "{name}");
     }
     assert!(!entry(&harness, "Crop…").accesskit_node().is_disabled());
-}
-
-#[test]
-fn the_selected_sphere_is_copied_and_deleted() {
-    let mut harness = opened();
-    let before = spheres(&harness).len();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    choose(&mut harness, Command::DuplicateSphere);
-    assert_eq!(spheres(&harness).len(), before + 1);
-    choose(&mut harness, Command::DeleteSphere);
-    assert_eq!(spheres(&harness).len(), before);
-}
-
-#[test]
-fn a_slot_that_is_shown_and_a_crop_have_menus_of_their_own() {
-    let mut harness = open(&format!("{SMALL} --samples 4"));
-    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
-    let one = SlotNumber::ALL[0];
-    send(&mut harness, Command::Slot(SlotCommand::KeepIn(one)));
-    until(&mut harness, "a kept picture", |window| window.slot(one).is_some());
-    send(&mut harness, Command::Slot(SlotCommand::Look(one)));
-    choose(&mut harness, Command::Slot(SlotCommand::LookLive));
-    assert_eq!(harness.state().looked(), None);
-
-    send(&mut harness, Command::Crop);
-    let from = middle(&harness);
-    drag_from(&mut harness, from, egui::vec2(60.0, 40.0));
-    assert!(harness.state().crop().is_some());
-    choose(&mut harness, Command::CopyCrop);
-    choose(&mut harness, Command::Crop);
-    assert!(harness.state().crop().is_none());
 }

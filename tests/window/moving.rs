@@ -1,12 +1,11 @@
 //! Moving about: orbits and the wheel at what is under the pointer, and the axes in the corner.
 
-use crate::common::{control, drag_from, has_samples, hold, middle, open, send, until};
+use crate::common::{control, has_samples, hold, open, send, until};
 use crate::objects::on_screen;
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
+use eframe::egui::{self, Modifiers, Pos2, Shape, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
-use weekender::app::{Command, Viewpoint, Window};
+use weekender::app::{Command, Window};
 use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 
@@ -34,12 +33,6 @@ fn under(harness: &Harness<'_, Window>, at: Pos2) -> Option<DVec3> {
 /// A point of the screen on the edge of a sphere that is not in the middle of the picture.
 fn aside(harness: &Harness<'_, Window>) -> Pos2 {
     on_screen(harness, DVec3::new(-1.0, 0.2, -1.0))
-}
-
-fn sky(harness: &Harness<'_, Window>) -> Pos2 {
-    let rect = harness.state().picture_rect();
-    let points = (0..20).map(|step| rect.lerp_inside(vec2(0.3 + 0.02 * step as f32, 0.02)));
-    points.into_iter().find(|at| under(harness, *at).is_none()).unwrap()
 }
 
 /// Whether the pivot is marked at this point of the screen.
@@ -102,15 +95,6 @@ fn a_drag_turns_about_what_was_under_the_pointer() {
 }
 
 #[test]
-fn in_the_sky_a_drag_turns_about_look_at() {
-    let mut harness = opened("view-distant");
-    let (start, before) = (sky(&harness), camera(&harness));
-    drag_from(&mut harness, start, vec2(60.0, 20.0));
-    assert_eq!(camera(&harness).look_at, before.look_at);
-    assert_ne!(camera(&harness).look_from, before.look_from);
-}
-
-#[test]
 fn the_wheel_goes_to_what_is_under_the_pointer_and_never_through() {
     let mut harness = opened("view-distant");
     let (at, before) = (aside(&harness), camera(&harness));
@@ -134,31 +118,6 @@ fn the_wheel_goes_to_what_is_under_the_pointer_and_never_through() {
     scroll(&mut harness, at, -10.0);
     assert!(camera(&harness).look_from.distance(point) > eye.distance(point));
     assert!(on_screen(&harness, point).distance(at) < 1.0);
-}
-
-#[test]
-fn the_wheel_ends_at_the_point_of_a_slanting_surface_and_does_not_slide_along() {
-    let mut harness = opened("view-distant");
-    let ground = harness.state().picture_rect().lerp_inside(vec2(0.1, 0.95));
-    let point = under(&harness, ground).expect("the ground");
-    for _ in 0..40 {
-        scroll(&mut harness, ground, 10.0);
-        let now = on_screen(&harness, point);
-        assert!(now.distance(ground) < 3.0, "the point went from {ground} to {now}");
-    }
-    let near = camera(&harness).look_from.distance(point);
-    assert!(near < 0.5, "it came near: {near}");
-}
-
-#[test]
-fn the_wheel_in_the_sky_goes_there_at_the_depth_of_look_at() {
-    let mut harness = opened("view-distant");
-    let (at, before) = (sky(&harness), camera(&harness));
-    scroll(&mut harness, at, 2.0);
-    let after = camera(&harness);
-    let ahead = |camera: &Camera| camera.look_from.distance(camera.look_at);
-    assert!(ahead(&after) < 0.95 * ahead(&before));
-    assert!(after.basis().w.distance(before.basis().w) < 1e-12, "it looks the same way");
 }
 
 #[test]
@@ -187,148 +146,5 @@ fn a_click_on_the_axes_flies_to_that_side_in_one_undo_step() {
         assert_eq!(camera(&harness), start, "{name}: one step back");
         send(&mut harness, Command::Redo);
         harness.run_steps(90);
-    }
-}
-
-#[test]
-fn a_view_from_the_top_can_be_turned() {
-    let mut harness = opened("view-distant");
-    send(&mut harness, Command::ViewFrom(Viewpoint::Top));
-    harness.run_steps(60);
-    assert_eq!(camera(&harness).vup, DVec3::NEG_Z);
-    let (start, above) = (sky_or_corner(&harness), camera(&harness));
-    drag_from(&mut harness, start, vec2(30.0, 0.0));
-    let turned = camera(&harness);
-    assert_eq!(turned.vup, DVec3::Y, "about what is up in the scene");
-    let tilt = above.basis().w.angle_between(turned.basis().w).to_degrees();
-    assert!(tilt < 1.01, "{tilt}");
-    assert!(turned.basis().v.angle_between(above.basis().v).to_degrees() > 5.0, "it has turned");
-    drag_from(&mut harness, start, vec2(0.0, -200.0));
-    assert!(camera(&harness).basis().w.y < 0.8, "and comes down");
-}
-
-fn sky_or_corner(harness: &Harness<'_, Window>) -> Pos2 {
-    harness.state().picture_rect().lerp_inside(vec2(0.1, 0.1))
-}
-
-#[test]
-fn a_drag_on_the_axes_orbits_and_the_keyboard_reaches_them() {
-    let mut harness = opened("view-distant");
-    let before = camera(&harness);
-    let at = control(&harness, "View from the right (+x)").rect().center();
-    drag_from(&mut harness, at, vec2(40.0, 0.0));
-    let after = camera(&harness);
-    assert_eq!(after.look_at, before.look_at);
-    assert!(after.look_from.distance(before.look_from) > 0.3);
-    harness.run_steps(60);
-    assert!(camera(&harness) == after, "a drag is no click");
-    control(&harness, "View from the back (-z)").focus();
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(60);
-    assert!(camera(&harness).basis().w.distance(DVec3::NEG_Z) < 1e-12);
-    assert_eq!(harness.state().selected(), None);
-}
-
-#[test]
-fn the_axes_can_be_hidden_and_stages_without_rays_have_none() {
-    let mut harness = opened("view-distant");
-    let is_shown =
-        |harness: &Harness<'_, Window>| harness.query_all_by_label("View from the top (+y)").next().is_some();
-    assert!(is_shown(&harness));
-    send(&mut harness, Command::Gizmo);
-    assert!(!is_shown(&harness));
-    send(&mut harness, Command::Gizmo);
-    assert!(is_shown(&harness));
-    send(&mut harness, Command::Panels);
-    assert!(!is_shown(&harness), "nothing but the picture");
-    let mut harness = opened("ppm-tiny");
-    assert!(!is_shown(&harness));
-    assert!(harness.state().disabled_reason(Command::ViewFrom(Viewpoint::Top)).is_some());
-    harness.step();
-}
-
-/// Whatever would move the camera or list paths says why nothing happens.
-#[test]
-fn a_stage_without_rays_refuses_to_move_its_camera_and_has_no_paths() {
-    type Act = fn(&mut Harness<'static, Window>, Pos2);
-    let acts: [(&str, Act); 6] = [
-        ("List the paths of this pixel: this", |harness, _| harness.key_press(Key::T)),
-        ("Bookmark this camera: this", |harness, _| {
-            harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
-        }),
-        ("This", |harness, _| {
-            harness.key_down(Key::W);
-            harness.run_steps(3);
-            harness.key_up(Key::W);
-        }),
-        ("This", |harness, at| drag_from(harness, at, vec2(40.0, 20.0))),
-        ("This", |harness, at| scroll(harness, at, 2.0)),
-        ("This", |harness, at| {
-            hold(harness, at, true);
-            hold(harness, at, false);
-        }),
-    ];
-    for (index, (begin, act)) in acts.into_iter().enumerate() {
-        let acted = || {
-            let mut harness = open("--stage ppm-gradient --size 64x36");
-            until(&mut harness, "a picture", has_samples(1));
-            let (before, at) = (camera(&harness), middle(&harness));
-            harness.event(egui::Event::PointerMoved(at));
-            harness.run_steps(2);
-            assert!(harness.state().messages().is_empty());
-            act(&mut harness, at);
-            harness.run_steps(3);
-            (harness, before)
-        };
-        // A machine that stalls may miss a message, which stays for four seconds.
-        let mut again = (0..5).map(|_| acted());
-        let is_told = |(harness, _): &(Harness<'_, Window>, Camera)| !harness.state().messages().is_empty();
-        let (mut harness, before) = again.find(is_told).unwrap_or_else(|| panic!("{index}: nothing is told"));
-        let reason =
-            format!("{begin} stage traces no rays: its picture depends only on the position of each pixel");
-        assert_eq!(harness.state().messages(), [reason], "{index}");
-        assert_eq!((camera(&harness), harness.state().listed_paths()), (before, 0), "{index}");
-        assert!(harness.state().disabled_reason(Command::Undo).is_some(), "{index}");
-        assert!(harness.state_mut().remembered_mut().bookmarks.is_empty(), "{index}");
-    }
-}
-
-/// A click beside the ends of the axes does not select what is behind them.
-#[test]
-fn the_axes_hide_the_picture_from_the_mouse() {
-    let mut harness = opened("view-distant");
-    let ends = Viewpoint::ALL.map(|side| control(&harness, side.name()).rect());
-    let all = ends.into_iter().fold(egui::Rect::NOTHING, egui::Rect::union);
-    (0..8).for_each(|_| send(&mut harness, Command::ZoomIn));
-    let (pos, button, modifiers) = (all.center(), PointerButton::Primary, Modifiers::NONE);
-    assert!(harness.state().picture_rect().contains(pos) && under(&harness, pos).is_some());
-    assert!(ends.iter().all(|end| !end.contains(pos)), "{ends:?}");
-    harness.event(egui::Event::PointerMoved(pos));
-    harness.step();
-    for pressed in [true, false] {
-        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-        harness.step();
-    }
-    harness.run_steps(2);
-    assert_eq!(harness.state().selected(), None);
-    let role = control(&harness, "View from the top (+y)").accesskit_node().role();
-    assert_eq!(role, egui::Role::Button);
-}
-
-/// A new picture with as many samples as the one before is no less new.
-#[test]
-fn a_resting_pointer_reads_each_new_picture() {
-    let mut harness = open("--stage normals --size 32x18 --samples 1");
-    until(&mut harness, "a picture", has_samples(1));
-    let at = middle(&harness);
-    harness.event(egui::Event::PointerMoved(at));
-    until(&mut harness, "the pixel", |window| window.inspected().is_some());
-    for step in 1..=3 {
-        let (pixel, before) = harness.state().inspected().unwrap();
-        harness.state_mut().document_mut().camera.look_from.x += 0.2 * f64::from(step);
-        let is_another =
-            |window: &Window| window.inspected().is_some_and(|(at, mean)| at == pixel && mean != before);
-        until(&mut harness, "the value in the new picture", is_another);
     }
 }

@@ -1,7 +1,7 @@
 //! The spheres of the scene: selecting and dragging them.
 
-use crate::common::{drag_from, has_samples, open, painted, send, until};
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
+use crate::common::{drag_from, has_samples, open, send, until};
+use eframe::egui::{self, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
@@ -89,28 +89,6 @@ fn a_click_selects_and_a_click_on_the_sky_deselects() {
 }
 
 #[test]
-fn keys_go_through_the_spheres_and_escape_deselects() {
-    let mut harness = opened();
-    let count = spheres(&harness).len();
-    let press = |harness: &mut Harness<'_, Window>, key| {
-        harness.key_press(key);
-        harness.run_steps(2);
-        harness.state().selected()
-    };
-    for sphere in (0..count).chain([0]) {
-        assert_eq!(press(&mut harness, Key::Period), Some(sphere));
-    }
-    for sphere in (0..count).rev() {
-        assert_eq!(press(&mut harness, Key::Comma), Some(sphere));
-    }
-    send(&mut harness, Command::FullScreen);
-    assert_eq!(press(&mut harness, Key::Escape), None);
-    assert!(harness.state().is_full_screen(), "the first Escape only deselects");
-    press(&mut harness, Key::Escape);
-    assert!(!harness.state().is_full_screen());
-}
-
-#[test]
 fn a_drag_moves_the_selected_sphere_and_nothing_else() {
     let mut harness = opened();
     let metal = metal_sphere(&harness);
@@ -149,34 +127,6 @@ fn a_drag_moves_the_selected_sphere_and_nothing_else() {
 }
 
 #[test]
-fn a_drag_with_ctrl_keeps_the_height() {
-    let mut harness = open("--stage view-distant --size 64x36");
-    until(&mut harness, "a picture", has_samples(1));
-    let middle = middle_sphere(&harness);
-    let before = spheres(&harness)[middle].center;
-    select(&mut harness, middle);
-    let at = on_screen(&harness, before);
-    let event = |pos, pressed| egui::Event::PointerButton {
-        pos,
-        button: PointerButton::Primary,
-        pressed,
-        modifiers: Modifiers::COMMAND,
-    };
-    harness.event_modifiers(event(at, true), Modifiers::COMMAND);
-    harness.step();
-    for step in 1..=10 {
-        let to = at + egui::vec2(4.0, 3.0) * step as f32;
-        harness.event_modifiers(egui::Event::PointerMoved(to), Modifiers::COMMAND);
-        harness.step();
-    }
-    harness.event_modifiers(event(at + egui::vec2(40.0, 30.0), false), Modifiers::COMMAND);
-    harness.run_steps(3);
-    let after = spheres(&harness)[middle].center;
-    assert!((after.y - before.y).abs() < 1e-9 && after.distance(before) > 0.05, "{before} {after}");
-    assert!(on_screen(&harness, after).distance(at + egui::vec2(40.0, 30.0)) < 1.5);
-}
-
-#[test]
 fn the_handle_changes_the_radius() {
     let mut harness = opened();
     let middle = middle_sphere(&harness);
@@ -204,72 +154,4 @@ fn the_handle_changes_the_radius() {
     drag_from(&mut harness, beside, egui::vec2(to, 0.0));
     let beside = spheres(&harness)[middle];
     assert!((beside.radius / after.radius - 1.0).abs() < 0.005, "{} {}", after.radius, beside.radius);
-}
-
-#[test]
-fn the_lens_is_focused_on_the_near_side_of_a_sphere() {
-    let mut harness = opened();
-    let metal = metal_sphere(&harness);
-    select(&mut harness, metal);
-    let sphere = spheres(&harness)[metal];
-    send(&mut harness, Command::FocusSphere);
-    let camera = harness.state().document().camera;
-    let nearest = sphere.center + (camera.look_from - sphere.center).normalize() * sphere.radius;
-    let depth = camera.depth_of(nearest);
-    assert!(depth < camera.depth_of(sphere.center) - 0.5 * sphere.radius);
-    assert!(
-        (camera.focus_distance.unwrap() - depth).abs() < 1e-9,
-        "{:?}, not {depth}",
-        camera.focus_distance
-    );
-    let told = harness.state().messages();
-    assert!(told.iter().any(|text| text.starts_with("A pinhole is sharp everywhere")), "{told:?}");
-    // From inside, nothing of its surface is ahead at that point.
-    harness.state_mut().document_mut().camera.look_from = sphere.center + DVec3::new(0.0, 0.0, 0.1);
-    harness.run_steps(2);
-    send(&mut harness, Command::FocusSphere);
-    let camera = harness.state().document().camera;
-    assert!((camera.focus_distance.unwrap() - camera.depth_of(sphere.center)).abs() < 1e-9);
-}
-
-#[test]
-fn the_ground_is_not_dragged() {
-    let mut harness = opened();
-    let (before, camera) = (spheres(&harness), harness.state().document().camera);
-    let at = harness.state().picture_rect().lerp_inside(egui::vec2(0.5, 0.97));
-    click(&mut harness, at, Modifiers::NONE);
-    let ground = harness.state().selected().unwrap();
-    assert!(before[ground].radius > 50.0);
-    drag_from(&mut harness, at, egui::vec2(30.0, -10.0));
-    assert_eq!(spheres(&harness), before);
-    assert_ne!(harness.state().document().camera, camera);
-}
-
-#[test]
-fn a_click_with_ctrl_tells_the_distance_that_is_then_in_focus() {
-    for (stage, note) in [("defocus", ""), ("glass-schlick", " (a pinhole is sharp everywhere)")] {
-        let mut harness = open(&format!("--stage {stage} --size 64x36"));
-        until(&mut harness, "a picture", has_samples(1));
-        // The words are there for a moment, so they are read in the frame of the click.
-        let click = |harness: &mut Harness<'_, Window>, x, y| {
-            let pos = harness.state().picture_rect().lerp_inside(egui::vec2(x, y));
-            let (button, modifiers) = (PointerButton::Primary, Modifiers::COMMAND);
-            harness.run_steps(40);
-            harness.event(egui::Event::PointerMoved(pos));
-            harness.step();
-            for pressed in [true, false] {
-                let event = egui::Event::PointerButton { pos, button, pressed, modifiers };
-                harness.event_modifiers(event, modifiers);
-                harness.step();
-            }
-            harness.state().document().camera
-        };
-        let before = harness.state().document().camera;
-        for (x, y) in [(0.5, 0.5), (0.93, 0.93), (0.07, 0.9)] {
-            let camera = click(&mut harness, x, y);
-            let words = format!("focus {:.3}{note}", camera.focus_distance.unwrap());
-            assert!(painted(&harness, &words), "{stage} at {x}, {y}: {words}");
-            assert_eq!((camera.look_from, camera.look_at), (before.look_from, before.look_at));
-        }
-    }
 }

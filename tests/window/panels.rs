@@ -1,6 +1,6 @@
 //! Every control of the panels.
 
-use crate::common::{SMALL, control, has_samples, open, painted, send, until};
+use crate::common::{SMALL, control, has_samples, open, send, until};
 use eframe::egui::{self, Key};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
@@ -73,25 +73,6 @@ fn check_boxes_and_lists_do_what_they_say() {
     harness.get_by_label("Reset stop").click();
     harness.run_steps(2);
     assert!(harness.state().document().stop.noise.is_some());
-}
-
-#[test]
-fn panels_can_be_made_wider_up_to_a_limit() {
-    let harness = open(SMALL);
-    let mut sides: Vec<(f32, f64)> = harness
-        .root()
-        .children_recursive()
-        .filter(|node| node.accesskit_node().role() == egui::accesskit::Role::Splitter)
-        .filter(|node| node.rect().height() > node.rect().width())
-        .map(|node| {
-            let [least, most] =
-                [node.accesskit_node().min_numeric_value(), node.accesskit_node().max_numeric_value()];
-            (node.rect().left(), most.unwrap() / least.unwrap())
-        })
-        .collect();
-    sides.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let [(_, left), (_, right)] = sides[..] else { panic!("{sides:?}") };
-    assert!((left - 380.0 / 190.0).abs() < 1e-3 && (right - 420.0 / 190.0).abs() < 1e-3, "{left} {right}");
 }
 
 #[test]
@@ -216,106 +197,4 @@ fn every_control_changes_something() {
         assert_ne!(state_of(&mut harness), before, "{role:?} {name}");
         harness = opened();
     }
-}
-
-#[test]
-fn controls_take_no_value_that_cannot_be() {
-    let mut harness = open("--stage defocus --size 32x18");
-    let values = [0.0, -1.0, 1e-300, 180.0, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-    let names =
-        ["Field of view", "Defocus angle", "Focus distance", "Look from x", "Up y", "Width", "Depth", "Seed"];
-    for name in names {
-        for value in values {
-            control(&harness, name).set_value_accesskit(value);
-            harness.run_steps(2);
-            let document = harness.state().document();
-            let refused = document.job(1).err().map(|error| error.to_string());
-            // No up vector that cannot be is put in place of another, but it is refused in words.
-            let is_told = |reason: &String| name == "Up y" && reason.starts_with("vup is");
-            assert!(refused.as_ref().is_none_or(is_told), "{name} {value}: {refused:?}");
-        }
-    }
-    for name in ["Samples", "Time"] {
-        control(&harness, name).click();
-        harness.run_steps(2);
-    }
-    for name in ["Samples limit", "Time limit", "Error limit"] {
-        for value in values {
-            control(&harness, name).set_value_accesskit(value);
-            harness.run_steps(2);
-            let stop = harness.state().document().stop;
-            assert!(stop.samples.is_none_or(|samples| samples >= 1), "{name} {value}: {stop:?}");
-            assert!(
-                stop.seconds.is_none_or(|seconds| (0.1..=1e6).contains(&seconds)),
-                "{name} {value}: {stop:?}"
-            );
-            assert!(stop.noise.is_none_or(|noise| (1e-6..=1.0).contains(&noise)), "{name} {value}: {stop:?}");
-        }
-    }
-}
-
-#[test]
-fn a_control_has_one_tooltip() {
-    let mut harness = open("--stage defocus --size 32x18");
-    for (name, help) in [
-        ("Look from x", "Position of the eye, scene units (look_from)"),
-        ("Width", "Width, pixels"),
-        ("Field of view", "From the lower to the upper edge, degrees (vfov)"),
-        ("Device", "What traces."),
-    ] {
-        let at = control(&harness, name).rect().center();
-        harness.event(egui::Event::PointerMoved(at));
-        harness.run_steps(60);
-        let shown: Vec<String> = harness
-            .get_all_by_role(egui::Role::Tooltip)
-            .flat_map(|tip| tip.children_recursive().filter_map(|node| node.value()).collect::<Vec<_>>())
-            .collect();
-        assert!(shown.len() == 1 && shown[0].starts_with(help), "{name}: {shown:?}");
-    }
-}
-
-/// The panel of a packet's lanes: refill takes fewer steps than waiting, and another picture gets another packet.
-#[test]
-fn a_packet_takes_fewer_steps_with_refill() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    send(&mut harness, Command::Packet);
-    until(&mut harness, "the steps of a packet", |window| window.packet_steps().is_some());
-    harness.run_steps(2);
-    let [plain, refilled] = harness.state().packet_steps().expect("recorded");
-    assert!(refilled > 0 && refilled < plain, "{refilled} {plain}");
-    assert!(harness.query_by_label_contains(&format!("{refilled} steps")).is_some());
-    let heading = format!("With refill, a lane starts its next path at once: {refilled} steps");
-    assert!(painted(&harness, &heading));
-    harness.state_mut().document_mut().settings.max_depth = 1;
-    until(&mut harness, "a packet of camera rays", |window| {
-        window.packet_steps().is_some_and(|[plain, refilled]| plain == refilled)
-    });
-    send(&mut harness, Command::Packet);
-    harness.run_steps(2);
-    assert!(harness.state().packet_steps().is_none());
-}
-
-#[test]
-fn the_lanes_and_the_code_have_buttons_that_close_them() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    for (command, close) in [(Command::Packet, "Close"), (Command::Code, "Close window")] {
-        send(&mut harness, command);
-        harness.run_steps(5);
-        harness.get_by_label(close).click();
-        harness.run_steps(5);
-        assert!(harness.query_by_label(close).is_none(), "{command:?}");
-        let remembered = harness.state_mut().remembered_mut();
-        assert!(!remembered.has_packet && !remembered.has_code, "{command:?}");
-    }
-}
-
-#[test]
-fn a_button_copies_the_picture_as_a_command() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    control(&harness, "Copy as command").click_accesskit();
-    harness.run_steps(3);
-    assert_eq!(harness.state().performed(), Some(Command::CopyCommand));
 }

@@ -3,7 +3,6 @@
 use crate::common::{SMALL, control, has_samples, middle, open, send, until};
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
 
 /// A window with the paths of the pixel in the middle of the picture.
@@ -57,37 +56,6 @@ fn buttons_and_the_list_go_through_the_rays_of_a_path() {
     }
     press(&mut harness, "Ray 2");
     assert_eq!(rays(&harness)[0], 2);
-}
-
-#[test]
-fn a_ray_is_explained_in_numbers() {
-    let harness = listed();
-    for name in ["throughput", "position", "normal", "distance", "attenuation"] {
-        assert!(harness.query_all_by_label(name).next().is_some(), "{name}");
-    }
-}
-
-#[test]
-fn the_next_ray_is_that_of_the_first_path_if_none_is_open() {
-    let mut harness = listed();
-    press(&mut harness, "Path of sample 0");
-    assert_eq!(harness.state().explained_ray(), None);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(30);
-    assert_eq!(harness.state().explained_ray().map(|[ray, _]| ray), Some(1));
-    assert!(is_open(&harness, 0));
-}
-
-#[test]
-fn paths_of_an_earlier_camera_are_told_to_be_so() {
-    let mut harness = listed();
-    let is_told = |harness: &Harness<'_, Window>| {
-        harness.query_all_by_label_contains("Listed with an earlier camera").next().is_some()
-    };
-    assert!(!is_told(&harness));
-    harness.state_mut().document_mut().camera.vfov_degrees += 1.0;
-    harness.run_steps(3);
-    assert!(is_told(&harness));
 }
 
 #[test]

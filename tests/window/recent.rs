@@ -1,7 +1,7 @@
 //! The files that were opened or saved last, and the picture on the clipboard.
 
 use crate::common::{SMALL, control, copied, has_samples, open, save, send, until};
-use eframe::egui::{self, Key, Modifiers};
+use eframe::egui::{self};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;
@@ -45,32 +45,6 @@ fn files_are_opened_again_from_the_menu() {
 }
 
 #[test]
-fn files_are_opened_again_from_the_palette() {
-    let directory = tempfile::tempdir().unwrap();
-    let (mut harness, paths) = saved(&directory, &["one.png", "two.png"]);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
-    harness.run_steps(3);
-    harness.get_by_label("Command").type_text("one.png");
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
-    assert_eq!(harness.state().performed(), Some(Command::Recent(1)));
-    opens(&mut harness, &paths[0]);
-}
-
-#[test]
-fn a_file_that_is_gone_is_dropped_from_the_list() {
-    let directory = tempfile::tempdir().unwrap();
-    let (mut harness, paths) = saved(&directory, &["one.png", "two.png"]);
-    std::fs::remove_file(&paths[1]).unwrap();
-    send(&mut harness, Command::Recent(0));
-    let told = format!("{} is no longer there; the list drops it", paths[1].display());
-    assert!(harness.state().messages().contains(&told), "{:?}", harness.state().messages());
-    assert_eq!(harness.state_mut().remembered_mut().recent, paths[..1]);
-    assert_eq!(harness.state().document().stage(), Some(&Stage::ALL[0]), "what was shown stays");
-}
-
-#[test]
 fn the_picture_is_copied_as_it_is_saved() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("same.png");
@@ -87,15 +61,4 @@ fn the_picture_is_copied_as_it_is_saved() {
     let mine: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
     assert_eq!(image.size, [32, 18]);
     assert!(mine == image::open(&path).unwrap().to_rgb8().into_raw(), "not what is saved");
-}
-
-#[test]
-fn in_a_text_field_the_copied_text_is_that_of_the_field() {
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
-    harness.run_steps(3);
-    harness.event(egui::Event::Copy);
-    harness.step();
-    assert!(copied(&mut harness, Duration::from_millis(500)).is_none());
 }

@@ -44,27 +44,6 @@ fn settings_are_remembered() {
 }
 
 #[test]
-fn settings_are_written_soon_and_by_several_windows() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("settings.json");
-    let mut first = remembering("--stage metal --size 16x9", &path);
-    until(&mut first, "the settings are written", |_| path.exists());
-    let mut second = remembering("--stage glass-schlick --size 16x9", &path);
-    send(&mut first, Command::AddBookmark);
-    until(&mut first, "the bookmark is written", |_| {
-        fs::read_to_string(&path).unwrap().contains("10.5 view 1")
-    });
-    send(&mut second, Command::AddBookmark);
-    for harness in [&mut second, &mut first] {
-        harness.state_mut().on_exit(None);
-    }
-    let mut third = remembering("--stage metal --size 16x9", &path);
-    let names: Vec<String> =
-        third.state_mut().remembered_mut().bookmarks.iter().map(|bookmark| bookmark.name.clone()).collect();
-    assert_eq!(names, ["11.4 view 1", "10.5 view 1"]);
-}
-
-#[test]
 fn settings_that_cannot_be_read_or_written_are_told_of() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("settings.json");

@@ -1,13 +1,13 @@
 //! What a window keeps for the next one: the film of a long render, and what it shows.
 
-use crate::common::{drag_from, has_samples, middle, opened, save, send, until};
+use crate::common::{has_samples, opened, save, send, until};
 use eframe::App;
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-use weekender::app::{Command, Show, Window};
+use std::time::Duration;
+use weekender::app::{Command, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::{Film, checkpoint};
 use weekender::output::OutputFormat;
@@ -129,84 +129,6 @@ fn the_film_of_a_window_that_is_gone_is_offered_and_goes_on() {
 }
 
 #[test]
-fn later_keeps_an_offer_and_discard_asks_once_more() {
-    let state = tempfile::tempdir().unwrap();
-    let mut first = window(state.path(), ENDLESS);
-    until_film(&mut first, state.path());
-    drop(first);
-    let mut next = kept_in(state.path(), ENDLESS, Duration::from_secs(3600));
-    until_offered(&mut next);
-    next.get_by_label("Close the recovered pictures").click();
-    next.run_steps(3);
-    assert!(!next.state().has_offer());
-    drop(next);
-    let mut next = kept_in(state.path(), ENDLESS, Duration::from_secs(3600));
-    until_offered(&mut next);
-    next.get_by_label_contains("Discard: 11.4").click();
-    next.run_steps(3);
-    assert!(next.state().has_offer() && files(state.path(), "exr").len() == 1, "not yet");
-    next.get_by_label_contains("Discard for good: 11.4").click();
-    next.run_steps(3);
-    assert!(!next.state().has_offer());
-    assert_eq!(files(state.path(), "exr"), <[PathBuf; 0]>::default());
-}
-
-#[test]
-fn a_damaged_film_is_named_and_not_opened() {
-    let state = tempfile::tempdir().unwrap();
-    let mut first = window(state.path(), ENDLESS);
-    until_film(&mut first, state.path());
-    drop(first);
-    let [film] = files(state.path(), "exr").try_into().unwrap();
-    let mut bytes = fs::read(&film).unwrap();
-    let last = bytes.len() - 100;
-    bytes[last] ^= 1;
-    fs::write(&film, bytes).unwrap();
-    let mut next = kept_in(state.path(), ENDLESS, Duration::from_secs(3600));
-    until_offered(&mut next);
-    next.get_by_label_contains("Open 11.4").click();
-    let name = film.file_name().unwrap().to_str().unwrap();
-    until(&mut next, "the fault", |window| {
-        window.messages().iter().any(|text| text.starts_with("Not opened") && text.contains(name))
-    });
-    next.run_steps(3);
-    assert!(next.state().has_offer() && film.exists(), "it is not lost silently");
-    assert!(next.query_all_by_label_contains("is damaged").next().is_some());
-    assert!(next.get_by_label_contains("Open 11.4").accesskit_node().is_disabled(), "it would fail again");
-}
-
-#[test]
-fn a_short_render_leaves_no_film_and_its_picture_comes_back() {
-    let state = tempfile::tempdir().unwrap();
-    let long = Duration::from_secs(3600);
-    let mut first = kept_in(state.path(), "--stage glass-schlick --size 64x36 --vfov 31 --samples 70", long);
-    first.state_mut().document_mut().settings.seed = 5;
-    let at = middle(&first);
-    until(&mut first, "a picture", has_samples(1));
-    drag_from(&mut first, at, eframe::egui::vec2(30.0, 10.0));
-    send(&mut first, Command::Show(Show::Luminance));
-    send(&mut first, Command::Brighter);
-    let mine = first.state().document().clone();
-    close(first);
-    assert_eq!(files(state.path(), "exr"), <[PathBuf; 0]>::default());
-
-    let mut next = kept_in(state.path(), "", long);
-    let found = next.state().document();
-    assert_eq!((found.title(), found.stop), (mine.title(), mine.stop));
-    assert_eq!((found.camera, found.settings), (mine.camera, mine.settings));
-    assert!(found.job(1).unwrap() == mine.job(1).unwrap());
-    assert_eq!(next.state().show(), Show::Luminance);
-    send(&mut next, Command::Undo);
-    assert_eq!(next.state().document().camera, mine.camera, "there is nothing to undo");
-    send(&mut next, Command::Fresh);
-    assert_eq!(next.state().document().name(), "three-spheres");
-    assert_eq!(next.state().show(), Show::Picture);
-    close(next);
-    // It was shown last.
-    assert_eq!(kept_in(state.path(), "", long).state().document().name(), "three-spheres");
-}
-
-#[test]
 fn the_film_of_a_long_render_goes_on_in_the_next_window() {
     let state = tempfile::tempdir().unwrap();
     let mut first = window(state.path(), ENDLESS);
@@ -223,46 +145,6 @@ fn the_film_of_a_long_render_goes_on_in_the_next_window() {
     until(&mut next, &told, |window| window.messages().contains(&told));
     assert_uninterrupted(&mut next, samples);
     assert!(next.state().messages().iter().all(|text| !text.contains("not")));
-}
-
-#[test]
-fn who_asks_for_a_picture_gets_it_and_the_film_of_the_session_is_not_lost() {
-    let state = tempfile::tempdir().unwrap();
-    let mut first = window(state.path(), ENDLESS);
-    until_film(&mut first, state.path());
-    close(first);
-    for arguments in ["--stage metal --size 32x18", "--scene book --size 32x18", "--fresh"] {
-        let other = kept_in(state.path(), arguments, Duration::from_secs(3600));
-        assert_ne!(other.state().document().name(), "glass-schlick", "{arguments}");
-        assert!(state.path().join("session.exr").exists(), "{arguments}");
-    }
-    close(kept_in(state.path(), "--stage metal --size 32x18", Duration::from_secs(3600)));
-    let mut next = window(state.path(), "");
-    assert_eq!(next.state().document().stage().unwrap().id, "metal", "it was closed last");
-    until_offered(&mut next);
-    assert!(next.query_all_by_label_contains("Open 11.4").next().is_some());
-}
-
-#[test]
-fn what_cannot_be_shown_again_is_said_and_the_usual_picture_opens() {
-    let state = tempfile::tempdir().unwrap();
-    let usual = crate::common::window("").document().name();
-    for note in ["{", r#"{"software": "Weekender 9", "origin": {"Stage": "radiosity"}, "is_changed": true}"#]
-    {
-        fs::write(state.path().join("session.json"), note).unwrap();
-        let next = window(state.path(), "");
-        assert_eq!(next.state().document().name(), usual, "{note}");
-        let said = next.state().messages();
-        assert!(said.iter().any(|text| text.starts_with("What was shown last cannot")), "{note}: {said:?}");
-        drop(next);
-        // It is left as it is, and not tried at each start.
-        let again = window(state.path(), "");
-        assert!(again.state().messages().is_empty(), "{note}: {:?}", again.state().messages());
-        drop(again);
-        let [left] = files(state.path(), "json").try_into().unwrap();
-        assert_eq!(fs::read_to_string(&left).unwrap(), note);
-        fs::remove_file(left).unwrap();
-    }
 }
 
 #[test]
@@ -286,71 +168,4 @@ fn changes_that_were_traced_for_seconds_are_offered_after_a_crash() {
     assert_eq!(next.state().document().title(), mine.title());
     next.run_steps(3);
     assert!(!next.state().has_offer());
-}
-
-#[test]
-fn a_film_is_not_written_before_its_time_and_a_place_that_cannot_be_is_said() {
-    let state = tempfile::tempdir().unwrap();
-    let mut short = kept_in(state.path(), ENDLESS, Duration::from_secs(3600));
-    until(&mut short, "samples", has_samples(64));
-    let begin = Instant::now();
-    while begin.elapsed() < 2 * SOON {
-        short.step();
-    }
-    assert_eq!(files(state.path(), "exr"), <[PathBuf; 0]>::default());
-    close(short);
-    assert_eq!(files(state.path(), "exr"), <[PathBuf; 0]>::default());
-    let file = state.path().join("file");
-    fs::write(&file, "").unwrap();
-    let mut without = window(&file.join("deeper"), ENDLESS);
-    let said = without.state().messages();
-    assert!(said.iter().any(|text| text.starts_with("Nothing is autosaved")), "{said:?}");
-    until(&mut without, "samples", has_samples(64));
-    close(without);
-}
-
-#[test]
-fn undo_brings_a_film_back_from_another_picture_but_not_after_a_new_start() {
-    let state = tempfile::tempdir().unwrap();
-    let mut harness = window(state.path(), ENDLESS);
-    until_film(&mut harness, state.path());
-    let [film] = files(state.path(), "exr").try_into().unwrap();
-    // So many that no new film has more of them when the window looks.
-    until(&mut harness, "samples", |_| film_of(&film).sample_count() > 20_000);
-    // The window shows another picture for less than the film took.
-    send(&mut harness, Command::NextStage);
-    let samples = film_of(&film).sample_count();
-    send(&mut harness, Command::Undo);
-    let is_told = |window: &Window| window.messages().iter().any(|text| text.starts_with("Continuing with"));
-    until(&mut harness, "the film", is_told);
-    assert_uninterrupted(&mut harness, samples);
-    send(&mut harness, Command::Restart);
-    until(&mut harness, "a new film", |window| window.status().samples_per_pixel > 0);
-    let begin = Instant::now();
-    while begin.elapsed() < SOON / 2 {
-        harness.step();
-    }
-    assert_eq!(held(harness.state()), 0, "it began without samples");
-}
-
-#[test]
-fn what_is_opened_does_not_replace_the_film_of_the_picture_that_was_shown() {
-    let state = tempfile::tempdir().unwrap();
-    let mut first = window(state.path(), ENDLESS);
-    until_film(&mut first, state.path());
-    drop(first);
-    let mut next = window(state.path(), &ENDLESS.replace("glass-schlick", "metal"));
-    until(&mut next, "its own film", |_| files(state.path(), "exr").len() == 2);
-    until_offered(&mut next);
-    next.run_steps(20);
-    next.get_by_label_contains("Open 11.4").click();
-    until(&mut next, "the picture", |window| window.document().stage().unwrap().id == "glass-schlick");
-    next.run_steps(3);
-    assert_eq!(files(state.path(), "exr").len(), 2);
-    close(next);
-    let mut last = window(state.path(), "--fresh");
-    until_offered(&mut last);
-    let metal = weekender::stages::Stage::find("metal").unwrap();
-    let name = format!("Open {} {}", metal.section, metal.title);
-    assert!(last.query_all_by_label_contains(&name).next().is_some(), "{name}");
 }

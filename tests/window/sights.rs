@@ -57,23 +57,6 @@ fn every_stage_shows_what_to_look_for_and_escape_returns() {
 }
 
 #[test]
-fn a_sight_ends_when_undo_returns_to_another_stage() {
-    let mut harness = open("--stage glass-schlick");
-    until(&mut harness, "a picture", has_samples(1));
-    let fitting = harness.state().picture_rect();
-    send(&mut harness, Command::PreviousStage);
-    assert_ne!(harness.state().document().stage().unwrap().id, "glass-schlick");
-    send(&mut harness, Command::ShowMe);
-    assert!(harness.state().has_sight());
-    send(&mut harness, Command::Undo);
-    assert_eq!(harness.state().document().stage().unwrap().id, "glass-schlick");
-    assert!(!harness.state().has_sight() && !harness.state().is_comparing());
-    assert_eq!(harness.state().show(), Show::Picture);
-    harness.run_steps(4);
-    assert_eq!(harness.state().picture_rect(), fitting);
-}
-
-#[test]
 fn a_sight_ends_with_its_stage_and_with_its_view() {
     let mut harness = open("--stage glass-refract");
     until(&mut harness, "a picture", has_samples(1));
@@ -95,66 +78,4 @@ fn a_sight_ends_with_its_stage_and_with_its_view() {
     harness.key_press(Key::Escape);
     harness.run_steps(4);
     assert_eq!(harness.state().show(), Show::Picture);
-}
-
-#[test]
-fn a_sight_is_seen_by_the_stages_camera() {
-    let mut harness = open("--stage metal");
-    until(&mut harness, "a picture", has_samples(1));
-    let home = harness.state().document().camera;
-    harness.state_mut().document_mut().camera.vfov_degrees = 33.0;
-    harness.run_steps(2);
-    let own = harness.state().document().camera;
-    send(&mut harness, Command::ShowMe);
-    assert_eq!(harness.state().document().camera, home);
-    let told = harness.state().messages();
-    assert!(told.iter().any(|text| text.contains("seen by the stage's camera")), "{told:?}");
-    send(&mut harness, Command::ShowMe);
-    assert_eq!(harness.state().document().camera, own);
-    // Who moves the camera meanwhile keeps it.
-    send(&mut harness, Command::ShowMe);
-    harness.state_mut().document_mut().camera.vfov_degrees = 44.0;
-    harness.run_steps(2);
-    send(&mut harness, Command::ShowMe);
-    assert_eq!(harness.state().document().camera.vfov_degrees, 44.0);
-}
-
-#[test]
-fn an_exposure_chosen_during_a_sight_stays() {
-    let mut harness = open("--stage metal");
-    until(&mut harness, "a picture", has_samples(1));
-    send(&mut harness, Command::ShowMe);
-    send(&mut harness, Command::Brighter);
-    assert!(harness.state().has_sight());
-    send(&mut harness, Command::ShowMe);
-    assert!(!harness.state().has_sight());
-    assert_eq!(harness.state().disabled_reason(Command::NoExposure), None, "there still is an exposure");
-}
-
-#[test]
-fn a_sight_returns_to_the_comparison_that_was_shown() {
-    let mut harness = open("--stage glass-schlick");
-    until(&mut harness, "a picture", has_samples(1));
-    harness.key_press(Key::X);
-    harness.run_steps(4);
-    until(&mut harness, "the other picture", |window| window.has_other_picture());
-    let is_difference = |harness: &Harness<'_, Window>| {
-        harness.state().is_comparing() && harness.query_all_by_label("Difference").count() > 0
-    };
-    assert!(is_difference(&harness));
-    harness.key_press(Key::H);
-    harness.run_steps(4);
-    assert!(harness.state().has_sight());
-    harness.key_press(Key::H);
-    harness.run_steps(4);
-    assert!(is_difference(&harness) && !harness.state().has_sight());
-}
-
-#[test]
-fn without_a_stage_there_is_nothing_to_look_for() {
-    let mut harness = open("--scene field:100 --size 32x18");
-    assert!(harness.state().disabled_reason(Command::ShowMe).is_some());
-    harness.key_press(Key::H);
-    harness.run_steps(4);
-    assert!(!harness.state().has_sight());
 }

@@ -1,17 +1,14 @@
 //! Pictures that are kept in slots.
 
-use crate::common::{
-    SMALL, control, copied, has_samples, open, open_sized, painted, save, send, until, until_painted,
-};
+use crate::common::{SMALL, control, has_samples, open, painted, save, send, until, until_painted};
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::time::Duration;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::compare::{Side, compare_sides, told};
-use weekender::film::{key, to_byte};
+use weekender::film::to_byte;
 use weekender::heat::HeatScale;
-use weekender::output::{Encoding, OutputFormat, read_description};
+use weekender::output::{Encoding, OutputFormat};
 use weekender::progressive::{Phase, luminance};
 use weekender::stages::Transfer;
 
@@ -179,61 +176,6 @@ fn a_slot_is_wiped_and_subtracted_like_another_stage() {
     assert_eq!(harness.state().looked(), None);
 }
 
-#[test]
-fn pictures_of_different_sizes_are_not_subtracted() {
-    let mut harness = finished(4);
-    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
-    send(&mut harness, Command::Slot(SlotCommand::Difference));
-    until(&mut harness, "a difference", |window| window.has_other_picture());
-    harness.state_mut().document_mut().settings.width = 40;
-    harness.run_steps(3);
-    assert!(!harness.state().is_comparing());
-    let told = harness.state().messages();
-    let reason = "slot 1 is 32x18 and the picture is 40x18";
-    assert!(told.iter().any(|text| text.contains(reason)), "{told:?}");
-    for command in [Command::Slot(SlotCommand::Difference), Command::Slot(SlotCommand::OnlyNoise)] {
-        assert!(
-            harness.state().disabled_reason(command).unwrap().starts_with("Slot 1 is 32x18"),
-            "{command:?}"
-        );
-    }
-    // It can be looked at, at its own size.
-    let aspect = |harness: &Harness<'_, Window>| {
-        let size = harness.state().picture_rect().size();
-        (f64::from(size.x / size.y) * 18.0).round()
-    };
-    assert_eq!(aspect(&harness), 40.0);
-    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
-    assert_eq!(aspect(&harness), 32.0);
-}
-
-/// The strip takes room from the picture, which must not change its size because of that.
-#[test]
-fn pictures_keep_their_size_while_slots_are_in_use() {
-    let mut harness = open_sized("--stage glass-schlick --samples 1", [700.0, 500.0]);
-    harness.state_mut().remembered_mut().sizing = weekender::app::Sizing::Viewport;
-    let wait = |harness: &mut Harness<'_, Window>| {
-        for _ in 0..40 {
-            std::thread::sleep(Duration::from_millis(10));
-            harness.step();
-        }
-    };
-    send(&mut harness, Command::Size(weekender::app::Sizing::Viewport));
-    wait(&mut harness);
-    until(&mut harness, "the end", is_done);
-    wait(&mut harness);
-    let (size, height) = (harness.state().document().size(), harness.state().picture_rect().height());
-    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
-    wait(&mut harness);
-    assert_eq!(harness.state().document().size(), size);
-    assert!(harness.state().picture_rect().height() <= height);
-    send(&mut harness, Command::NextStage);
-    wait(&mut harness);
-    until(&mut harness, "the next stage", is_done);
-    assert_eq!(harness.state().document().size(), size);
-    assert_eq!(harness.state().disabled_reason(Command::Slot(SlotCommand::Wipe)), None);
-}
-
 /// The words of the verdict, once it is there.
 fn verdict(harness: &mut Harness<'_, Window>) -> (String, String) {
     send(harness, Command::Slot(SlotCommand::OnlyNoise));
@@ -302,98 +244,4 @@ fn a_render_goes_on_from_a_slot() {
     let told = "The live picture is this one, and it has no fewer samples";
     until(&mut harness, told, |window| window.messages().iter().any(|text| text == told));
     assert_eq!(harness.state().status().samples_per_pixel, 12);
-}
-
-#[test]
-fn what_is_shown_is_saved_and_copied() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut harness = finished(8);
-    let kept = mean(&mut harness);
-    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
-    change(&mut harness);
-    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
-    let path = directory.path().join("slot.png");
-    save(&mut harness, Command::Save(OutputFormat::Png), &path);
-    let saved = image::open(&path).unwrap().to_rgb8();
-    assert_eq!(saved.get_pixel(AT[0], AT[1]).0, in_8_bits(kept, 0.0));
-    let description = read_description(&path).unwrap();
-    assert_eq!(description.get(key::SAMPLES), Some("8"));
-    assert!(description.get(key::CAMERA).unwrap().contains("vfov 90 degrees"), "{description:?}");
-    assert!(description.get(key::BACKEND).unwrap().starts_with("cpu"), "{description:?}");
-    harness.state_mut().send(Command::CopyPicture);
-    let picture = copied(&mut harness, Duration::from_secs(60)).unwrap();
-    let [red, green, blue, _] = picture[(AT[0] as usize, AT[1] as usize)].to_array();
-    assert_eq!([red, green, blue], in_8_bits(kept, 0.0));
-    let told = harness.state().messages();
-    assert!(told.iter().any(|text| text.starts_with("Copied the picture: 32x18, 8 samples")), "{told:?}");
-}
-
-#[test]
-fn the_strip_lists_names_and_deletes() {
-    for size in [[1280.0, 800.0], [800.0, 600.0]] {
-        let mut harness = open_sized(&format!("{SMALL} --samples 4"), size);
-        harness.run_steps(3);
-        until(&mut harness, "the end", is_done);
-        let height = harness.state().picture_rect().height();
-        assert!(harness.query_by_label("Slot 1").is_none() && harness.query_by_label("Flip").is_none());
-        keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
-        harness.run_steps(3);
-        assert!(harness.state().picture_rect().height() <= height);
-        let strip = harness.get_by_label("Slot 1").rect();
-        assert!(strip.is_positive() && strip.bottom() < size[1], "{strip:?}");
-        assert!(harness.query_by_label_contains("32x18, 4 samples").is_some());
-        // The name.
-        harness.get_by_label("Name of slot 1").focus();
-        harness.run_steps(2);
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-        harness.step();
-        harness.event(eframe::egui::Event::Text("before".to_owned()));
-        harness.run_steps(2);
-        assert_eq!(harness.state().slot(ONE).unwrap().0, "before");
-        harness.key_press(Key::Escape);
-        harness.run_steps(2);
-        // A click looks, another one returns.
-        harness.get_by_label("Slot 1").click();
-        harness.run_steps(3);
-        assert_eq!(harness.state().looked(), Some(ONE));
-        assert!(harness.state().disabled_reason(Command::Slot(SlotCommand::Keep)).is_some());
-        harness.get_by_label("Slot 1").click();
-        harness.run_steps(3);
-        assert_eq!(harness.state().looked(), None);
-        send(&mut harness, Command::Slot(SlotCommand::Delete));
-        assert!(harness.state().slot(ONE).is_none() && harness.query_by_label("Slot 1").is_none());
-        send(&mut harness, Command::Slot(SlotCommand::BringBack));
-        assert_eq!(harness.state().slot(ONE).unwrap().0, "before");
-        // The menu lists slots in use.
-        control(&harness, "Slots").click();
-        harness.run_steps(3);
-        assert!(harness.query_by_label("Look at slot 1: before").is_some());
-        assert!(harness.query_by_label_contains("Look at slot 2").is_none());
-    }
-}
-
-#[test]
-fn nine_slots_are_enough_to_fill() {
-    let mut harness = finished(2);
-    for number in SlotNumber::ALL {
-        send(&mut harness, Command::Slot(SlotCommand::Keep));
-        // A picture is kept once its film has come from another thread.
-        until(&mut harness, "the next slot", |window| window.slot(number).is_some());
-    }
-    assert!(
-        harness
-            .state()
-            .disabled_reason(Command::Slot(SlotCommand::Keep))
-            .unwrap()
-            .starts_with("All nine slots")
-    );
-    change(&mut harness);
-    harness.state_mut().document_mut().stop = weekender::progressive::Stop::at_samples(4);
-    until(&mut harness, "more samples", has_samples(4));
-    send(&mut harness, Command::Slot(SlotCommand::KeepIn(TWO)));
-    until(&mut harness, "another picture", |window| {
-        window.slot(TWO).is_some_and(|(_, samples)| samples == 4)
-    });
-    send(&mut harness, Command::Slot(SlotCommand::BringBack));
-    assert_eq!(harness.state().slot(TWO).unwrap().1, 2, "the replaced picture");
 }

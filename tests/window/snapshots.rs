@@ -1,12 +1,16 @@
-//! Snapshots of the whole window.
+//! Snapshots of the whole window. `UPDATE_SNAPSHOTS=1` takes them anew; look at them before you commit them.
 
-use crate::common::{has_samples, send, until, window};
-use eframe::egui;
+use crate::common::{has_samples, middle, send, until, window};
+use crate::objects::{click, middle_sphere, on_screen, spheres};
+use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use weekender::app::{Command, Theme, Window};
+use weekender::progressive::Phase;
 
-/// A picture of the whole window. Numbers that change from run to run are covered.
-fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
+type Act = fn(&mut Harness<'static, Window>);
+
+/// A picture of the whole window after `act`. Numbers that change from run to run are covered.
+fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32, act: Act) {
     let mut harness = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(scale)
@@ -18,30 +22,78 @@ fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
         );
     send(&mut harness, Command::Theme(theme));
     until(&mut harness, "the end", has_samples(64));
-    until(&mut harness, "the stop", |window| {
-        matches!(window.status().phase, weekender::progressive::Phase::Done(_))
-    });
-    harness.run_steps(10);
+    until(&mut harness, "the stop", |window| matches!(window.status().phase, Phase::Done(_)));
+    act(&mut harness);
+    harness.run_steps(60);
     let status_height = if size[0] < 900.0 { 74.0 } else { 33.0 };
-    let status =
-        egui::Rect::from_min_max(egui::pos2(0.0, size[1] - status_height), egui::pos2(size[0], size[1]));
-    harness.mask(status);
+    harness.mask(egui::Rect::from_min_max(egui::pos2(0.0, size[1] - status_height), size.into()));
     // Fonts and edges differ slightly between adapters.
     let options = egui_kittest::SnapshotOptions::new().threshold(2.0).max_failed_pixels(400_usize);
     harness.snapshot_options(name, &options);
 }
 
+const LARGE: [f32; 2] = [1280.0, 800.0];
+const SMALL: [f32; 2] = [1000.0, 640.0];
+
+fn press(harness: &mut Harness<'_, Window>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run_steps(5);
+}
+
 #[test]
 fn the_dark_window_looks_as_it_did() {
-    snapshot("window_dark", Theme::Dark, [1280.0, 800.0], 1.0);
+    snapshot("window_dark", Theme::Dark, LARGE, 1.0, |_| {});
 }
 
 #[test]
 fn the_light_window_looks_as_it_did() {
-    snapshot("window_light", Theme::Light, [1280.0, 800.0], 1.0);
+    snapshot("window_light", Theme::Light, LARGE, 1.0, |_| {});
 }
 
 #[test]
 fn at_twice_the_font_size_it_looks_as_it_did() {
-    snapshot("window_twice_the_font", Theme::Dark, [640.0, 400.0], 2.0);
+    snapshot("window_twice_the_font", Theme::Dark, [640.0, 400.0], 2.0, |_| {});
+}
+
+#[test]
+fn a_wipe_looks_as_it_did() {
+    snapshot("window_wipe", Theme::Dark, SMALL, 1.0, |harness| {
+        press(harness, Modifiers::NONE, Key::C);
+        until(harness, "the other picture", |window| {
+            window.has_other_picture() && window.status().phase.is_over()
+        });
+    });
+}
+
+#[test]
+fn paths_look_as_they_did() {
+    snapshot("window_paths", Theme::Light, SMALL, 1.0, |harness| {
+        let at = middle(harness);
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run_steps(2);
+        send(harness, Command::ListPaths);
+        until(harness, "the paths", |window| window.listed_paths() == 16);
+    });
+}
+
+#[test]
+fn a_selected_sphere_looks_as_it_did() {
+    snapshot("window_sphere", Theme::Dark, SMALL, 1.0, |harness| {
+        let sphere = middle_sphere(harness);
+        let at = on_screen(harness, spheres(harness)[sphere].center);
+        click(harness, at, Modifiers::NONE);
+    });
+}
+
+#[test]
+fn the_palette_looks_as_it_did() {
+    snapshot("window_palette", Theme::Light, SMALL, 1.0, |harness| {
+        press(harness, Modifiers::COMMAND, Key::P);
+        harness.event(egui::Event::Text("film".to_owned()));
+    });
+}
+
+#[test]
+fn a_presentation_looks_as_it_did() {
+    snapshot("window_present", Theme::Dark, SMALL, 1.0, |harness| press(harness, Modifiers::NONE, Key::F5));
 }

@@ -1,11 +1,10 @@
 //! The list of stages with small pictures.
 
-use crate::common::{has_samples, open, open_sized, opened, send, until, window};
+use crate::common::open_sized;
 use eframe::egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use std::path::Path;
-use weekender::app::{Command, Window};
+use weekender::app::Window;
 use weekender::stages::Stage;
 
 fn rows(harness: &Harness<'_, Window>) -> usize {
@@ -15,36 +14,6 @@ fn rows(harness: &Harness<'_, Window>) -> usize {
 
 fn name(stage: &Stage) -> String {
     format!("{} {}", stage.section, stage.title)
-}
-
-fn files(directory: &Path) -> usize {
-    std::fs::read_dir(directory.join("thumbnails")).map_or(0, Iterator::count)
-}
-
-#[test]
-fn small_pictures_come_when_there_is_nothing_else_to_do_and_are_kept() {
-    let directory = tempfile::tempdir().unwrap();
-    for run in 0..2 {
-        let mut window = window("--stage metal --size 32x18 --samples 64");
-        window.show_thumbnails(Some(directory.path().to_owned()));
-        let mut harness = opened(window);
-        until(&mut harness, "all pictures", |window| window.thumbnail_count() == Stage::ALL.len());
-        assert_eq!(files(directory.path()), Stage::ALL.len(), "run {run}");
-    }
-}
-
-#[test]
-fn a_busy_program_makes_them_only_for_an_open_list() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut window = window("--stage metal --size 32x18 --samples 4000000000");
-    window.show_thumbnails(Some(directory.path().to_owned()));
-    let mut harness = opened(window);
-    until(&mut harness, "samples", has_samples(1000));
-    harness.run_steps(30);
-    assert_eq!((harness.state().thumbnail_count(), files(directory.path())), (0, 0));
-    harness.key_press(Key::O);
-    harness.run_steps(5);
-    until(&mut harness, "all pictures", |window| window.thumbnail_count() == Stage::ALL.len());
 }
 
 #[test]
@@ -97,14 +66,4 @@ fn a_stage_is_found_by_typing() {
     harness.run_steps(5);
     assert_eq!(harness.state().document().stage().unwrap().id, "glass-schlick");
     assert_eq!(rows(&harness), 0, "the list has closed");
-}
-
-#[test]
-fn the_list_brings_the_panels_back() {
-    let mut harness = open("--stage metal --size 32x18");
-    send(&mut harness, Command::Panels);
-    assert!(harness.query_by_label("Choose a stage").is_none());
-    send(&mut harness, Command::Stages);
-    harness.run_steps(10);
-    assert!(rows(&harness) > 8);
 }

@@ -77,22 +77,6 @@ fn the_earlier_stage_is_left_of_the_divider() {
     }
 }
 
-/// Glass with and without Schlick's formula differs at the rim of the left ball, so a wipe begins there.
-#[test]
-fn a_wipe_begins_where_the_stages_differ() {
-    let mut harness = open("--stage glass-schlick --size 160x90 --samples 64");
-    until(&mut harness, "a picture", has_samples(16));
-    send(&mut harness, Command::Wipe);
-    until(&mut harness, "a divider on the left ball", |window| window.divider() < 0.45);
-    let at = harness.state().divider();
-    assert!(at > 0.05, "{at}");
-    // It is placed once: a drag stays.
-    let rect = harness.state().picture_rect();
-    drag_from(&mut harness, rect.lerp_inside(vec2(at, 0.5)), vec2((0.8 - at) * rect.width(), 0.0));
-    harness.run_steps(30);
-    assert!((harness.state().divider() - 0.8).abs() < 0.02);
-}
-
 /// The sky is the same in both stages, so their difference is nothing there.
 #[test]
 fn the_difference_from_another_stage_is_shown_when_that_is_traced() {

@@ -82,39 +82,3 @@ fn section(ui: &mut Ui, group: Option<Group>) {
     });
     ui.add_space(6.0);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::{Drawings, part};
-    use egui_kittest::kittest::Queryable;
-    use std::cell::Cell;
-
-    #[test]
-    fn keys_and_mouse_are_listed_in_columns_where_there_is_room() {
-        let mut drawings = Drawings::default();
-        for [width, height] in [[716.0, 1200.0], [716.0, 300.0], [655.0, 1200.0], [500.0, 300.0]] {
-            let dialog = part([width, height + 60.0], |ui| _ = super::ui(ui, height));
-            drawings.add(&format!("{width} points wide, {height} high"), &dialog);
-        }
-        drawings.keep("help_sizes");
-    }
-
-    #[test]
-    fn it_stays_until_it_is_closed() {
-        let is_closed = Cell::new(false);
-        let mut dialog = part([716.0, 400.0], |ui| {
-            is_closed.set(matches!(super::ui(ui, 300.0), Outcome::Close));
-        });
-        dialog.run_steps(2);
-        assert!(!is_closed.get());
-        dialog.get_by_label("Close").click();
-        dialog.step();
-        let mut seen = is_closed.get();
-        for _ in 0..2 {
-            dialog.step();
-            seen |= is_closed.get();
-        }
-        assert!(seen);
-    }
-}

@@ -116,36 +116,8 @@ mod tests {
     use crate::app::tests::{facts_of, part, rest_at};
     use crate::output::OutputFormat;
     use eframe::egui;
-    use std::path::Path;
 
     const PNG: Purpose = Purpose::Save(OutputFormat::Png);
-
-    /// Names a file in the system's dialog.
-    fn choose(dialogs: &mut Dialogs, path: &Path) -> Option<Result<(Purpose, PathBuf), &'static str>> {
-        dialogs.browsed.answer(&Context::default()).give((PNG, Chosen::Path(path.to_owned())));
-        dialogs.browsed()
-    }
-
-    #[test]
-    fn a_file_from_the_systems_dialog_closes_the_box_unless_it_has_to_ask() {
-        let directory = tempfile::tempdir().unwrap();
-        let [bare, named] = ["a", "a.png"].map(|name| directory.path().join(name));
-        let mut dialogs = Dialogs::default();
-        dialogs.open(Dialog::Path(PathBox::new(PNG, "a", None)));
-        assert_eq!(choose(&mut dialogs, &bare), Some(Ok((PNG, named.clone()))));
-        assert!(!dialogs.is_open());
-        std::fs::write(&named, "").unwrap();
-        assert_eq!(choose(&mut dialogs, &bare), None);
-        assert!(matches!(dialogs.open, Some(Dialog::Path(_))), "it asks whether to replace the file");
-    }
-
-    #[test]
-    fn a_file_from_the_systems_dialog_closes_no_other_dialog() {
-        let mut dialogs = Dialogs::default();
-        dialogs.open(Dialog::Help);
-        assert_eq!(choose(&mut dialogs, Path::new("a.png")), Some(Ok((PNG, "a.png".into()))));
-        assert!(dialogs.is_open());
-    }
 
     #[test]
     fn without_a_dialog_of_the_system_the_box_stays_and_the_user_is_told() {

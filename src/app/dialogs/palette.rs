@@ -189,12 +189,8 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Bookmark;
-    use crate::app::tests::{Drawings, alone, dressed, facts_of, rest_at};
+
     use crate::stages::Stage;
-    use eframe::egui::pos2;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     fn found(text: &str) -> Vec<Command> {
         let all = Command::all().into_iter().map(|command| (command, command.name()));
@@ -217,133 +213,6 @@ mod tests {
     }
 
     #[test]
-    fn beginnings_count_more_than_what_is_within_words() {
-        let help = "What it does with light";
-        // From the best to the worst.
-        let names = ["Light", "Light theme", "The light theme", "Zoom", "Flights"];
-        let ranks = names.map(|name| rank("light", name, help));
-        assert_eq!(ranks, [Some(0), Some(1), Some(2), Some(6), Some(5)]);
-        assert_eq!(rank("theme li", "The light theme", help), Some(3), "in any order");
-        assert_eq!(rank("tlt", "The light theme", help), Some(4), "initials");
-        assert_eq!(rank("oes", "Zoom", help), Some(7), "within a word of the help");
-        assert_eq!(rank("lightning", "The light theme", help), None);
-        assert_eq!(rank("LIGHT  ", "Light theme", help), Some(1), "neither case nor spaces matter");
-        assert_eq!(rank("", "Zoom", help), Some(1));
-    }
-
-    #[test]
-    fn what_is_enabled_comes_first_among_equals() {
-        let all = || [Command::ZoomOut, Command::ZoomIn].into_iter().map(|command| (command, command.name()));
-        let first = |is_enabled: fn(Command) -> bool| matching("zoom", all(), is_enabled)[0].0;
-        assert_eq!(
-            (first(|_| true), first(|command| command == Command::ZoomIn)),
-            (Command::ZoomOut, Command::ZoomIn)
-        );
-    }
-
-    struct Dialog {
-        palette: Palette,
-        facts: Facts,
-        commands: Vec<Command>,
-        is_open: bool,
-    }
-
-    fn dialog() -> Harness<'static, Dialog> {
-        let facts = facts_of("--stage glass-schlick --size 32x18 --samples 4");
-        let (palette, commands) = (Palette::default(), Vec::new());
-        let draw = |ui: &mut Ui, Dialog { palette, facts, commands, is_open }: &mut Dialog| {
-            *is_open &= matches!(palette.ui(ui, 200.0, facts, commands), Outcome::Stay);
-        };
-        dressed([500.0, 300.0]).build_ui_state(draw, Dialog { palette, facts, commands, is_open: true })
-    }
-
-    fn press(dialog: &mut Harness<'_, Dialog>, key: Key, times: usize) {
-        for _ in 0..times {
-            dialog.key_press(key);
-        }
-        dialog.run_steps(3);
-    }
-
-    #[test]
-    fn the_palette_shows_what_was_typed_and_what_is_found() {
-        alone("dialogs::palette::tests::the_palette_shows_what_was_typed_and_what_is_found", || {
-            let mut drawings = Drawings::default();
-            let mut dialog = dialog();
-            drawings.add("all commands", &dialog);
-            for (text, down) in
-                [("zoom", 1), ("undo", 0), ("panel", 2), ("wipe", 0), ("light theme", 0), ("xyzzy", 0)]
-            {
-                dialog.state_mut().palette = Palette { text: text.to_owned(), chosen: 0 };
-                dialog.run_steps(3);
-                press(&mut dialog, Key::ArrowDown, down);
-                drawings.add(text, &dialog);
-            }
-            dialog.state_mut().palette = Palette::default();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 30);
-            drawings.add("thirty further", &dialog);
-            press(&mut dialog, Key::ArrowUp, 28);
-            drawings.add("twenty-eight back", &dialog);
-            rest_at(&mut dialog, pos2(100.0, 150.0));
-            drawings.add("the pointer is at another command", &dialog);
-            drawings.keep("palette_parts");
-        });
-    }
-
-    #[test]
-    fn enter_and_a_click_give_the_command() {
-        alone("dialogs::palette::tests::enter_and_a_click_give_the_command", || {
-            let mut dialog = dialog();
-            dialog.state_mut().palette.text = "zoom".to_owned();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 5);
-            press(&mut dialog, Key::ArrowUp, 1);
-            let facts = &dialog.state().facts;
-            let is_enabled = |command| facts.disabled_reason(command).is_none();
-            let found = matching("zoom", listed(facts), is_enabled);
-            let expected = found[5.min(found.len() - 1) - 1].0;
-            press(&mut dialog, Key::Enter, 1);
-            assert_eq!(std::mem::take(&mut dialog.state_mut().commands), [expected]);
-            assert!(!dialog.state().is_open);
-            dialog.state_mut().is_open = true;
-            let name = Command::ZoomOut.name();
-            dialog.get_all_by_label_contains(&name).next().unwrap().click();
-            dialog.run_steps(3);
-            assert_eq!(std::mem::take(&mut dialog.state_mut().commands), [Command::ZoomOut]);
-            assert!(!dialog.state().is_open);
-            dialog.state_mut().is_open = true;
-            press(&mut dialog, Key::ArrowDown, 1);
-            dialog.get_by_label("Command").type_text("in");
-            dialog.run_steps(3);
-            assert_ne!(dialog.state().palette.text, "zoom");
-            assert_eq!(dialog.state().palette.chosen, 0, "another text begins at its first command");
-            dialog.state_mut().palette.text = "xyzzy".to_owned();
-            press(&mut dialog, Key::Enter, 1);
-            assert!(dialog.state().is_open && dialog.state().commands.is_empty(), "nothing is found");
-        });
-    }
-
-    #[test]
-    fn after_typing_enter_runs_the_best_match() {
-        alone("dialogs::palette::tests::after_typing_enter_runs_the_best_match", || {
-            let mut dialog = dialog();
-            dialog.run_steps(3);
-            press(&mut dialog, Key::ArrowDown, 3);
-            assert_eq!(dialog.state().palette.chosen, 3);
-            dialog.get_by_label("Command").type_text("o");
-            dialog.run_steps(3);
-            assert_eq!(dialog.state().palette.text, "o");
-            let facts = &dialog.state().facts;
-            let is_enabled = |command| facts.disabled_reason(command).is_none();
-            let found = matching("o", listed(facts), is_enabled);
-            assert!(found.len() > 4, "the place chosen before is there, too");
-            let best = found[0].0;
-            press(&mut dialog, Key::Enter, 1);
-            assert_eq!(dialog.state().commands, [best]);
-        });
-    }
-
-    #[test]
     fn the_palette_begins_with_what_is_typed_in_the_frame_that_opens_it() {
         let text = |letters: &str| egui::Event::Text(letters.to_owned());
         let events = vec![text("zo"), egui::Event::PointerGone, text("om")];
@@ -353,26 +222,5 @@ mod tests {
             opened = Palette::typed(ui.ctx());
         });
         assert_eq!((opened.text.as_str(), opened.chosen), ("zoom", 0));
-    }
-
-    #[test]
-    fn bookmarks_and_recent_files_are_found_by_their_own_names() {
-        let mut facts = facts_of("--stage glass-schlick --size 32x18");
-        facts.model.remembered.recent = ["/of/a.png", "/of/b.exr"].map(std::path::PathBuf::from).to_vec();
-        let camera = facts.document().camera;
-        facts.model.remembered.bookmarks =
-            ["my first view", "my second view"].map(|name| Bookmark::new(name.to_owned(), &camera)).to_vec();
-        for (text, command) in [
-            ("b.exr", Command::Recent(1)),
-            ("go to my second view", Command::Bookmark(1)),
-            ("my first", Command::Bookmark(0)),
-        ] {
-            let found = matching(text, listed(&facts), |_| true);
-            assert_eq!(found.first().map(|(command, _)| *command), Some(command), "{text}");
-        }
-        assert!(listed(&facts).any(|(command, _)| command == Command::Palette));
-        assert!(
-            matching("", listed(&facts), |_| true).iter().all(|(command, _)| *command != Command::Palette)
-        );
     }
 }

@@ -81,22 +81,3 @@ impl Purpose {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::Drawings;
-
-    #[test]
-    fn every_purpose_has_its_words_and_its_endings() {
-        let mut texts = Drawings::default();
-        let formats = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr].map(Purpose::Save);
-        let further = [Purpose::SaveCrop, Purpose::SaveScene, Purpose::SaveFlight, Purpose::SavePlot];
-        for purpose in formats.into_iter().chain(further).chain([Purpose::Open, Purpose::ReferenceFilm]) {
-            let (title, button, endings) = (purpose.title(), purpose.button(), purpose.endings().join(" "));
-            let named = ["a", "a.b", "a.PNG", "a.exr"].map(|name| purpose.with_ending(name.into()));
-            texts.tell(&format!("{title} ({button}): {endings}; saves: {}; {named:?}", purpose.is_saving()));
-        }
-        texts.keep("purposes");
-    }
-}

@@ -1,7 +1,6 @@
 //! Tests of the keyboard.
 
 use super::*;
-use crate::app::model::slots::SlotNumber;
 
 const KEYBOARD: Keyboard = Keyboard {
     had_focus: false,
@@ -16,38 +15,6 @@ const KEYBOARD: Keyboard = Keyboard {
     has_sight: false,
     is_presenting: false,
 };
-
-/// The commands of a key that types `key` and is at the place of `physical_key` on the keyboard.
-fn commands(key: Key, physical_key: Option<Key>, modifiers: Modifiers) -> Vec<Command> {
-    let pressed = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
-    let input = egui::RawInput { events: vec![pressed], ..egui::RawInput::default() };
-    let mut commands = Vec::new();
-    let _ = egui::Context::default().run_ui(input, |ui| {
-        take_keys(ui.ctx(), &KEYBOARD, &mut commands);
-    });
-    commands
-}
-
-#[test]
-fn some_commands_have_a_second_key() {
-    for (key, modifiers, command) in [
-        (Key::Questionmark, Modifiers::SHIFT, Command::Help),
-        (Key::Y, Modifiers::COMMAND, Command::Redo),
-        (Key::Backspace, Modifiers::NONE, Command::DeleteSphere),
-    ] {
-        assert_eq!(commands(key, None, modifiers), [command]);
-    }
-}
-
-#[test]
-fn a_digit_with_alt_is_known_by_its_place() {
-    let place = Some(Key::Num1);
-    let of_first = |command: fn(SlotNumber) -> SlotCommand| [Command::Slot(command(SlotNumber::ALL[0]))];
-    let shift_alt = Modifiers::SHIFT | Modifiers::ALT;
-    assert_eq!(commands(Key::Exclamationmark, place, shift_alt), of_first(SlotCommand::KeepIn));
-    assert_eq!(commands(Key::Exclamationmark, place, Modifiers::ALT), of_first(SlotCommand::Look));
-    assert!(commands(Key::Exclamationmark, place, Modifiers::SHIFT).is_empty());
-}
 
 fn key(key: Key, modifiers: Modifiers) -> egui::Event {
     egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
@@ -121,15 +88,6 @@ fn escape_leaves_one_thing_after_the_other() {
 }
 
 #[test]
-fn a_remote_control_goes_through_a_presentation() {
-    let presenting = Keyboard { is_presenting: true, ..KEYBOARD };
-    for (key, command) in REMOTE {
-        assert_eq!(commands_in(&presenting, key), [command]);
-        assert_ne!(commands_in(&KEYBOARD, key), [command], "{key:?}");
-    }
-}
-
-#[test]
 fn each_press_counts_and_a_dialog_gets_the_keys_that_follow() {
     let context = egui::Context::default();
     let plain = |pressed| key(pressed, Modifiers::NONE);
@@ -158,31 +116,6 @@ fn a_control_with_the_keyboard_keeps_its_own_keys() {
             let expected = if is_focused && pressed != Key::F { vec![] } else { vec![command] };
             let found = taken(vec![key(pressed, Modifiers::NONE)], &KEYBOARD, &context).0;
             assert_eq!(found, expected, "{pressed:?}");
-        }
-    }
-}
-
-#[test]
-fn an_open_menu_has_the_keys_that_are_pressed_alone() {
-    let (context, id) = (egui::Context::default(), egui::Id::unique("a menu"));
-    for (pressed, modifiers, expected) in [
-        (Key::L, Modifiers::NONE, vec![]),
-        (Key::X, Modifiers::NONE, vec![]),
-        (Key::PageDown, Modifiers::NONE, vec![]),
-        (Key::Questionmark, Modifiers::NONE, vec![]),
-        (Key::Backspace, Modifiers::NONE, vec![]),
-        (Key::Escape, Modifiers::NONE, vec![]),
-        (Key::Y, Modifiers::COMMAND, vec![Command::Redo]),
-        (Key::P, Modifiers::COMMAND, vec![Command::Palette]),
-    ] {
-        for is_presenting in [false, true] {
-            let keyboard = Keyboard { is_presenting, has_selection: true, ..KEYBOARD };
-            egui::Popup::open_id(&context, id);
-            let found = taken(vec![key(pressed, modifiers)], &keyboard, &context);
-            assert_eq!(found, (expected.clone(), false), "{pressed:?}");
-            egui::Popup::close_all(&context);
-            let (commands, _) = taken(vec![key(pressed, modifiers)], &keyboard, &context);
-            assert_eq!(commands.len(), 1, "{pressed:?}");
         }
     }
 }
@@ -235,78 +168,4 @@ fn held_keys_fly_as_fast_as_the_scene_is_large() {
     assert_eq!(flown(&[(Key::D, none)], Modifiers::ALT), None);
     assert_eq!(flown(&[(Key::D, Modifiers::COMMAND)], none), None, "D is still held after Ctrl+D");
     assert_eq!(flown(&[(Key::F, none)], none), None);
-}
-
-#[test]
-fn what_is_typed_before_and_after_tab_comes_in_frames_of_its_own() {
-    let text = |text: &str| egui::Event::Text(text.to_owned());
-    let tab = || key(Key::Tab, Modifiers::NONE);
-    let moved = || egui::Event::PointerMoved(egui::Pos2::ZERO);
-    let released = egui::Event::Key {
-        key: Key::Tab,
-        physical_key: None,
-        pressed: false,
-        repeat: false,
-        modifiers: Modifiers::NONE,
-    };
-    let frames = |events: Vec<egui::Event>| {
-        let (mut late, mut next, mut frames) = (Vec::new(), events, Vec::new());
-        loop {
-            part_at_tab(&mut late, &mut next);
-            frames.push(std::mem::take(&mut next));
-            if late.is_empty() {
-                return frames;
-            }
-        }
-    };
-    assert_eq!(frames(vec![]), [Vec::<egui::Event>::new()]);
-    assert_eq!(frames(vec![moved(), text("6"), text("4")]), [vec![moved(), text("6"), text("4")]]);
-    assert_eq!(frames(vec![moved(), tab(), released.clone()]), [vec![moved(), tab(), released.clone()]]);
-    assert_eq!(
-        frames(vec![text("6"), tab(), released.clone(), text("3"), text("6"), tab(), tab(), moved()]),
-        [
-            vec![text("6")],
-            vec![tab(), released],
-            vec![text("3"), text("6")],
-            vec![tab()],
-            vec![tab(), moved()]
-        ]
-    );
-}
-
-#[test]
-fn every_digit_with_alt_is_known_by_its_place() {
-    let typed = |place| commands(Key::Quote, Some(place), Modifiers::ALT);
-    assert_eq!(typed(Key::Num0), [Command::Slot(SlotCommand::LookLive)]);
-    assert_eq!(typed(Key::Num9), [Command::Slot(SlotCommand::Look(SlotNumber::ALL[8]))]);
-    // Other keys are known by what they type.
-    assert!(typed(Key::M).is_empty());
-    assert_eq!(commands(Key::M, Some(Key::Num9), Modifiers::NONE), [Command::Slot(SlotCommand::Keep)]);
-}
-
-#[test]
-fn a_key_that_was_pressed_with_ctrl_flies_when_it_is_pressed_again() {
-    let context = egui::Context::default();
-    let before = Camera { look_from: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, ..Camera::BOOK };
-    let pressed = |pressed, modifiers| egui::Event::Key {
-        key: Key::D,
-        physical_key: None,
-        pressed,
-        repeat: false,
-        modifiers,
-    };
-    let (none, ctrl) = (Modifiers::NONE, Modifiers::COMMAND);
-    let has_moved = |events: Vec<egui::Event>| {
-        let input = egui::RawInput { events, ..egui::RawInput::default() };
-        let (mut camera, mut has_moved) = (before, false);
-        let _ = context.run_ui(input, |ui| has_moved = fly(ui.ctx(), &mut camera));
-        has_moved
-    };
-    let held = egui::Event::ModifiersChanged;
-    assert!(!has_moved(vec![held(ctrl), pressed(true, ctrl)]));
-    assert!(!has_moved(vec![held(none)]), "Ctrl was released first");
-    assert!(!has_moved(vec![pressed(false, none)]));
-    assert!(has_moved(vec![pressed(true, none)]));
-    assert!(has_moved(vec![]), "it is held");
-    assert!(!has_moved(vec![pressed(false, none)]));
 }

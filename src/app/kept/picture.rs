@@ -94,7 +94,7 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::film::{Film, PixelSum};
     use crate::stages::Stage;
-    use std::sync::mpsc::channel;
+
     use std::time::{Duration, Instant};
 
     /// A kept picture of this grey.
@@ -137,24 +137,5 @@ mod tests {
         assert!(picture.shown(&a).is_some() && picture.shown(&b).is_none(), "the one looked at last stays");
         assert_eq!(grey(&mut picture, &a, &View::Exposed(2.0)), 128, "twice as bright twice");
         assert_eq!(picture.held.len(), 2);
-    }
-
-    #[test]
-    fn one_picture_at_a_time_is_resolved() {
-        let (mut picture, [a, b]) = (KeptPicture::default(), [16, 64].map(kept));
-        let context = Context::default();
-        let (open, gate) = channel::<()>();
-        picture.run(move || _ = gate.recv());
-        for kept in [&a, &a, &b] {
-            picture.follow(&context, kept, &View::Picture);
-            assert_eq!(picture.waiting.strong_count(), 1);
-        }
-        let (answer, answers) = channel();
-        picture.run(move || answer.send(()).unwrap());
-        drop(open);
-        answers.recv().unwrap();
-        let resolved = [picture.answers.take(), picture.answers.take()]
-            .map(|resolved| resolved.and_then(|(of, ..)| of.upgrade()).map(|kept| kept.number()));
-        assert_eq!(resolved, [Some(a.number()), None], "the other one is asked for when this one is there");
     }
 }

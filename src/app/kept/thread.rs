@@ -53,14 +53,4 @@ mod tests {
         kept.run(|| panic!("on purpose"));
         assert_eq!(worker(&kept), first);
     }
-
-    #[test]
-    fn work_is_done_here_if_the_thread_is_gone() {
-        let here = thread::current().id();
-        assert_ne!(worker(&KeptThread::default()), here);
-        let (gone, _) = channel::<Work>();
-        for sender in [None, Some(gone)] {
-            assert_eq!(worker(&KeptThread { sender: sender.into() }), here);
-        }
-    }
 }

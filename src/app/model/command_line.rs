@@ -184,25 +184,6 @@ mod tests {
     }
 
     #[test]
-    fn the_command_names_a_device_other_than_the_cpu() {
-        let document = Document::new(Origin::of_stage(&Stage::ALL[0]));
-        let line = |device, adapter| document.command_line(4, device, adapter);
-        let cpu = line("cpu", None);
-        assert!(!cpu.contains("--device") && !cpu.contains("--adapter"), "{cpu}");
-        let gpu = line("gpu", Some("llvmpipe (LLVM)"));
-        assert!(gpu.contains(" --device=gpu --adapter=") && gpu.contains("llvmpipe (LLVM)"), "{gpu}");
-    }
-
-    #[test]
-    fn the_command_names_every_device_but_the_cpu() {
-        let document = Document::new(Origin::of_stage(&Stage::ALL[0]));
-        for device in ["gpu", "cpu,gpu", "reference"] {
-            let line = document.command_line(4, device, None);
-            assert!(line.contains(&format!(" --device={device} ")), "{line}");
-        }
-    }
-
-    #[test]
     fn names_are_quoted_where_a_shell_needs_it() {
         assert_eq!(quoted("a-b.toml"), "a-b.toml");
         assert_eq!(quoted("13,2,3"), "13,2,3");

@@ -33,15 +33,4 @@ mod tests {
             assert!(figure.panels.iter().any(|panel| panel.stage.id == stage.id), "{url}: {}", stage.id);
         }
     }
-
-    #[test]
-    fn characters_of_a_path_do_not_end_it() {
-        for (path, expected) in [
-            ("/a/b?c#d.html", "file:///a/b%3Fc%23d.html"),
-            ("/a/%23.html", "file:///a/%2523.html"),
-            ("C:\\books\\index.html", "file:///C:/books/index.html"),
-        ] {
-            assert_eq!(url(Path::new(path), None), expected);
-        }
-    }
 }

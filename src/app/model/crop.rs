@@ -45,28 +45,3 @@ impl Crop {
         format!("{width}x{height} at {x},{y}")
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_crop_holds_both_corners() {
-        for (a, b) in [([2, 9], [5, 3]), ([5, 3], [2, 9]), ([5, 9], [2, 3])] {
-            let crop = Crop::between(a, b);
-            assert_eq!((crop.first, crop.size, crop.last()), ([2, 3], [4, 7], [5, 9]));
-        }
-        assert_eq!(Crop::between([7, 7], [7, 7]).words(), "1x1 at 7,7");
-    }
-
-    #[test]
-    fn a_crop_stays_in_the_picture() {
-        let crop = Crop { first: [2, 3], size: [4, 7] };
-        assert_eq!(crop.moved([3, -1], [32, 18]).first, [5, 2]);
-        assert_eq!(crop.moved([-3, 99], [32, 18]).first, [0, 11]);
-        assert_eq!(crop.moved([1, 1], [3, 5]).first, [0, 0], "a picture that is too small");
-        assert_eq!(crop.within([32, 18]), Some(crop));
-        assert_eq!(crop.within([4, 18]), Some(Crop { size: [2, 7], ..crop }));
-        assert_eq!(crop.within([2, 18]), None);
-    }
-}

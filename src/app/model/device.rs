@@ -180,16 +180,6 @@ mod tests {
     }
 
     #[test]
-    fn the_command_lines_options_are_kept() {
-        let cpu =
-            CpuOptions { lanes: Some(1), threads: Some(1), low_priority: true, ..CpuOptions::default() };
-        let options = DeviceOptions::of(&BackendChoice::Cpu(cpu));
-        assert_eq!(Device::Cpu.backend(&options, None, None), BackendChoice::Cpu(cpu));
-        let changed = Device::Cpu.backend(&options, Some(4), None);
-        assert_eq!(changed, BackendChoice::Cpu(CpuOptions { lanes: Some(4), ..cpu }));
-    }
-
-    #[test]
     fn each_device_takes_its_options() {
         let cpu = CpuOptions { threads: Some(3), ..CpuOptions::default() };
         let long = std::time::Duration::from_secs(9);
@@ -213,19 +203,5 @@ mod tests {
         let cores = core_count();
         let threads = if cores > 2 { Some(cores - 1) } else { None };
         assert_eq!(usual, BackendChoice::Reference { threads });
-    }
-
-    #[test]
-    fn the_kernel_of_the_command_line_is_kept() {
-        let cpu = CpuOptions { isa: Some(Isa::Portable), general: true, ..CpuOptions::default() };
-        let options = DeviceOptions::of(&BackendChoice::Cpu(cpu));
-        for device in [Device::Cpu, Device::Both] {
-            let (BackendChoice::Cpu(found) | BackendChoice::Both(found, _)) =
-                device.backend(&options, None, None)
-            else {
-                panic!("no CPU")
-            };
-            assert_eq!((found.isa, found.general), (Some(Isa::Portable), true));
-        }
     }
 }

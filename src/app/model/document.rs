@@ -213,16 +213,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pinhole_has_no_focus() {
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let before = document.clone();
-        document.camera.focus_distance = Some(2.0);
-        assert!(document.has_same_film(&before));
-        document.camera.defocus_angle_degrees = 1.0;
-        assert!(!document.has_same_film(&before));
-    }
-
-    #[test]
     fn the_recipe_has_the_samples_at_which_the_render_stops() {
         let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         let usual = document.origin.recipe.samples_per_pixel;
@@ -288,63 +278,6 @@ mod tests {
             // A size that followed the viewport stays.
             assert_eq!(document.size(), if index == 0 { size } else { usual.size() });
         }
-    }
-
-    #[test]
-    fn equal_documents_share_what_is_equal() {
-        let (first, mut second) = (metal(), metal());
-        assert!(!second.has_same_film(&first));
-        second.share_with(&first);
-        assert!(second.has_same_film(&first) && !second.has_changed_scene());
-        let (first, mut second) = (edited(&first), edited(&metal()));
-        second.share_with(&first);
-        assert!(second.has_same_film(&first) && second.has_changed_scene());
-        let mut other = Document::new(Origin::of_stage(Stage::find("metal-fuzzy").unwrap()));
-        let before = other.clone();
-        other.share_with(&first);
-        assert!(other == before);
-    }
-
-    #[test]
-    fn only_what_is_equal_is_shared() {
-        let recipe = Stage::find("metal").unwrap().recipe();
-        let of_file =
-            |recipe: &Recipe| Document::new(Origin::new(recipe.clone(), Source::File("a.toml".into())));
-        // The same picture from elsewhere.
-        let mut file = of_file(&recipe);
-        file.share_with(&metal());
-        assert_eq!(file.origin.source, Source::File("a.toml".into()));
-        assert!(!file.has_changed_scene());
-        // The same file, which holds another camera by now.
-        let camera = Camera { vfov_degrees: 33.0, ..recipe.camera };
-        let newer = Recipe { camera, ..recipe.clone() };
-        let mut document = of_file(&newer);
-        document.share_with(&of_file(&recipe));
-        assert_eq!(document.origin.recipe, newer);
-        // Equal changed scenes under other rules.
-        let rules = Rules { antialiasing: false, ..recipe.rules };
-        let mut aliased = edited(&of_file(&Recipe { rules, ..recipe }));
-        aliased.share_with(&edited(&metal()));
-        assert_eq!(*aliased.job(1).unwrap().rules(), rules);
-        // Changed scenes of one picture that differ.
-        let mut scene = metal().scene().clone();
-        scene.spheres[0].radius *= 2.0;
-        let mut larger = metal();
-        larger.checked = Arc::new(CheckedScene::new(Arc::new(scene.clone()), *larger.rules()));
-        larger.share_with(&edited(&metal()));
-        assert_eq!(larger.scene(), &scene);
-    }
-
-    #[test]
-    fn a_reset_gives_a_file_its_own_size_again() {
-        let recipe = Stage::find("metal").unwrap().recipe();
-        let mut document = Document::new(Origin::new(recipe, Source::File("a.toml".into())));
-        assert_eq!((document.size(), document.has_own_size), ([480, 270], true));
-        document.has_own_size = false;
-        document.set_size([64, 36]);
-        assert!(document.is_changed());
-        document.reset();
-        assert_eq!((document.size(), document.has_own_size), ([480, 270], true));
     }
 
     #[test]

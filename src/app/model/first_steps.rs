@@ -49,23 +49,3 @@ impl FirstSteps {
         self.done = [false; 3];
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_steps_are_over_once_all_were_tried() {
-        let mut steps = FirstSteps::default();
-        for (tried, step) in [Step::Leaf, Step::Orbit, Step::Change].into_iter().enumerate() {
-            assert!(!steps.has(step) && !steps.has_all() && !steps.is_over);
-            steps.note(step);
-            assert_eq!(Step::ALL.iter().filter(|step| steps.has(**step)).count(), tried + 1);
-            assert!(steps.has(step));
-        }
-        assert!(steps.has_all() && steps.is_over);
-        steps.forget();
-        assert!(!Step::ALL.iter().any(|step| steps.has(*step)), "they are shown again");
-        assert!(steps.is_over, "but not by themselves");
-    }
-}

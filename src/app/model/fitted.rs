@@ -73,30 +73,4 @@ mod tests {
         assert_eq!(wide.part(), [0.0, 0.21875, 1.0, 0.78125]);
         assert_eq!((wide.pixel([0, 0]), wide.pixel([45, 45])), (None, Some([80, 45])));
     }
-
-    #[test]
-    fn pictures_of_one_shape_cover_each_other() {
-        for (theirs, mine) in [([1037, 583], [640, 360]), ([640, 360], [1037, 583]), ([32, 18], [32, 18])] {
-            let fitted = Fitted::new(theirs, mine);
-            assert_eq!(fitted.part(), [0.0, 0.0, 1.0, 1.0], "{theirs:?} in {mine:?}");
-            assert_eq!(fitted.pixel([0, 0]).map(|at| at.map(|at| at < 2)), Some([true; 2]));
-            let last = fitted.pixel(mine.map(|length| length - 1)).unwrap();
-            assert!((0..2).all(|axis| last[axis] < theirs[axis] && last[axis] + 2 >= theirs[axis]));
-        }
-        let same = Fitted::new([32, 18], [32, 18]);
-        assert_eq!((same.pixel([7, 9]), same.words().as_str()), (Some([7, 9]), ""));
-    }
-
-    #[test]
-    fn only_a_whole_row_or_column_beside_the_picture_is_a_bar() {
-        let row = Fitted::new([4, 3], [4, 4]);
-        assert_eq!(row.part(), [0.0, 0.125, 1.0, 0.875]);
-        assert_eq!(row.words(), ", scaled from 4x3, with bars");
-        let column = Fitted::new([3, 4], [4, 4]);
-        assert_eq!(column.part(), [0.125, 0.0, 0.875, 1.0]);
-        // All but half a column.
-        let rounded = Fitted::new([640, 360], [1037, 583]);
-        assert_eq!((rounded.part(), rounded.is_exact()), ([0.0, 0.0, 1.0, 1.0], false));
-        assert_eq!(rounded.words(), ", scaled from 640x360");
-    }
 }

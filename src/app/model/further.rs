@@ -74,15 +74,6 @@ mod tests {
     }
 
     #[test]
-    fn the_next_error_is_round() {
-        for (error, next) in [(0.002, 0.001), (0.00199, 0.001), (0.001, 5e-4), (0.005, 0.002), (0.0003, 1e-4)]
-        {
-            assert_eq!(next_round(error), next, "{error}");
-        }
-        assert_eq!(next_round(1e-6), 0.0);
-    }
-
-    #[test]
     fn a_render_goes_on_to_the_next_end_of_its_kind() {
         let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
         let further = document.further(&done(EndReason::NoiseTarget, 0.00195)).unwrap();
@@ -100,20 +91,6 @@ mod tests {
         assert_eq!(document.further(&Status { phase: Phase::Tracing, ..Status::default() }), None);
         let tiny = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(tiny.further(&done(EndReason::Samples, 0.0)), None, "nothing in it is random");
-    }
-
-    #[test]
-    fn the_other_ends_stay_when_a_render_goes_on() {
-        let all = Stop { samples: Some(100), seconds: Some(10.0), noise: Some(0.002) };
-        for (reason, expected) in [
-            (EndReason::NoiseTarget, Stop { noise: Some(0.001), ..all }),
-            (EndReason::Samples, Stop { samples: Some(200), ..all }),
-            (EndReason::TimeLimit, Stop { seconds: Some(20.0), ..all }),
-        ] {
-            let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
-            document.stop = all;
-            assert_eq!(document.further(&done(reason, 0.00195)).unwrap().stop, expected, "{reason:?}");
-        }
     }
 
     #[test]
@@ -142,16 +119,5 @@ mod tests {
             let found = document.further(&status).map(|further| further.words);
             assert_eq!(found.as_deref(), words, "{stop:?} {:?}", status.phase);
         }
-    }
-
-    #[test]
-    fn more_samples_are_offered_where_any_two_of_them_can_differ() {
-        let is_offered = |id| {
-            let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-            document.stop = Stop::at_samples(100);
-            document.further(&done(EndReason::Samples, 0.01)).is_some()
-        };
-        // Samples are spread over a pixel, paths are traced, or neither.
-        assert_eq!(["antialiased", "sky", "normals"].map(is_offered), [true, true, false]);
     }
 }

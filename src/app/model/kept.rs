@@ -148,32 +148,6 @@ mod tests {
     }
 
     #[test]
-    fn a_thumbnail_is_the_picture_made_small() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let mut wide = film(512, 100, 64);
-        wide.halves_mut()[0].iter_mut().enumerate().for_each(|(pixel, sum)| {
-            if pixel % 512 < 256 {
-                *sum = PixelSum([16 << 16; 3]);
-            }
-        });
-        let Thumbnail { size, rgb8 } = Thumbnail::of(&wide, &document);
-        assert_eq!((size, rgb8.len()), ([128, 25], 3 * 128 * 25));
-        // Radiances 1/16 and 1/4, whose roots are 1/4 and 1/2.
-        assert_eq!([0, 3 * 63, 3 * 64, 3 * 127].map(|at| rgb8[at]), [64, 64, 128, 128]);
-        assert_eq!(Thumbnail::of(&film(3, 2, 256), &document).size, [3, 2]);
-        assert_eq!(Thumbnail::of(&film(16_000, 1, 256), &document).size, [128, 1]);
-    }
-
-    #[test]
-    fn a_comparison_takes_memory() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let kept = Kept::new(document, film(4, 2, 1), Arc::default(), None);
-        assert_eq!(kept.bytes(), 8 * 24);
-        assert_eq!(kept.means().means.len(), 8);
-        assert_eq!(kept.bytes(), 8 * 24 + 8 * 12, "three numbers of 4 bytes per pixel");
-    }
-
-    #[test]
     fn a_pixel_of_a_kept_picture_is_found_by_its_column_and_row() {
         let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         let mut film = film(4, 2, 1);
@@ -183,28 +157,6 @@ mod tests {
         let found = [[3, 0], [0, 1], [3, 1]].map(|at| (kept.mean(at).unwrap()[0] / unit).round());
         assert_eq!(found, [4.0, 5.0, 8.0]);
         assert_eq!([kept.mean([4, 0]), kept.mean([0, 2])], [None, None]);
-    }
-
-    #[test]
-    fn no_two_kept_pictures_have_the_same_name() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let [first, second] =
-            [(); 2].map(|()| Kept::new(document.clone(), film(4, 2, 1), Arc::default(), None));
-        assert!(first.id != second.id && first.number() != second.number());
-        let number = second.number();
-        let renamed = second.with_id(first.id.clone());
-        assert_eq!((renamed.id, renamed.number), (first.id, number));
-    }
-
-    #[test]
-    fn a_thumbnail_has_the_transfer_of_the_rows_that_it_shows() {
-        // Linear in the upper half and the square root in the lower one: a quarter becomes 64 or 128.
-        let document = Document::new(Origin::of_stage(Stage::find("gamut").unwrap()));
-        for (height, rows) in [(4, [1, 2]), (512, [63, 64])] {
-            let Thumbnail { size, rgb8 } = Thumbnail::of(&film(1, height, 64), &document);
-            assert_eq!(size, [1, height.min(128)]);
-            assert_eq!(rows.map(|row| rgb8[3 * row]), [64, 128], "{height} rows");
-        }
     }
 
     #[test]

@@ -18,8 +18,6 @@ pub mod origin;
 pub mod presentation;
 pub mod reload;
 pub mod remembered;
-#[cfg(test)]
-mod saved_fields;
 pub mod session;
 pub mod show;
 pub mod sizing;
@@ -71,37 +69,5 @@ impl Model {
     pub fn backend(&self) -> BackendChoice {
         let Remembered { device, lanes, threads, .. } = self.remembered;
         device.backend(&self.devices, lanes, threads)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::device::Device;
-    use super::*;
-    use crate::app::tests::facts_of;
-
-    #[test]
-    fn the_backend_has_the_chosen_lanes_and_threads() {
-        let mut model = facts_of("--stage metal --size 16x9").model;
-        (model.remembered.lanes, model.remembered.threads) = (Some(4), Some(2));
-        let BackendChoice::Cpu(options) = model.backend() else { panic!("not the CPU") };
-        assert_eq!((options.lanes, options.threads), (Some(4), Some(2)));
-        model.remembered.device = Device::Reference;
-        assert_eq!(model.backend(), BackendChoice::Reference { threads: Some(2) });
-    }
-
-    #[test]
-    fn there_are_panels_unless_they_are_hidden_or_in_a_presentation() {
-        let mut model = facts_of("--stage metal --size 16x9").model;
-        let presentation = Presentation { was_full_screen: false, has_captions: true, is_blank: false };
-        for (has_panels, presentation, expected) in [
-            (true, None, true),
-            (false, None, false),
-            (true, Some(presentation), false),
-            (false, Some(presentation), false),
-        ] {
-            (model.remembered.has_panels, model.presentation) = (has_panels, presentation);
-            assert_eq!(model.has_panels(), expected);
-        }
     }
 }

@@ -169,14 +169,6 @@ mod tests {
     }
 
     #[test]
-    fn a_noisy_picture_without_an_error_estimate_ends_with_its_samples() {
-        let mut recipe = Stage::find("book").unwrap().recipe();
-        recipe.settings.estimate_error = false;
-        recipe.samples_per_pixel = 12;
-        assert_eq!(Origin::new(recipe, Source::Embedded).usual_stop(), Stop::at_samples(12));
-    }
-
-    #[test]
     fn a_recipe_is_known_by_its_spheres_and_its_rules() {
         let (stage, sky) = (Stage::find("metal").unwrap(), Stage::find("sky").unwrap());
         let builtin = Recipe::builtin("metals").unwrap();
@@ -207,28 +199,6 @@ mod tests {
         let mut moved = builtin.clone();
         moved.camera.vfov_degrees = 33.0;
         assert_eq!(Origin::guess(&moved, None).recipe, builtin);
-    }
-
-    #[test]
-    fn a_built_in_scene_that_is_also_a_stage_is_opened_as_that() {
-        let origin = Origin::of_builtin(Recipe::builtin("three-spheres").unwrap());
-        assert_eq!(origin.source, Source::Stage(Stage::find("three-spheres").unwrap()));
-        // The stage of this name has other spheres.
-        let other = Recipe { name: "metal".to_owned(), ..Recipe::builtin("two-spheres").unwrap() };
-        let origin = Origin::of_builtin(other.clone());
-        assert_eq!((origin.source, origin.recipe), (Source::Builtin, other));
-    }
-
-    #[test]
-    fn only_paths_that_differ_within_a_pixel_are_traced_until_the_noise_is_low() {
-        for (id, expected) in [
-            ("sky", Stop::at_samples(1)),
-            ("normals", Stop::at_samples(1)),
-            ("antialiased", Stop::at_samples(64)),
-            ("diffuse", Stop { noise: Some(Stop::NOISE), ..Stop::default() }),
-        ] {
-            assert_eq!(Origin::of_stage(Stage::find(id).unwrap()).usual_stop(), expected, "{id}");
-        }
     }
 
     #[test]

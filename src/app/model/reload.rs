@@ -68,19 +68,4 @@ mod tests {
         let reloaded = moved.reloaded(other);
         assert_eq!((reloaded.settings.max_depth, reloaded.size()), (7, [64, 36]), "the size was not changed");
     }
-
-    #[test]
-    fn a_picture_that_follows_the_viewport_goes_on_following_it() {
-        let recipe = Stage::find("metal").unwrap().recipe();
-        let mut document = Document::new(Origin::new(recipe.clone(), Source::File("a.toml".into())));
-        document.has_own_size = false;
-        let mut other = recipe;
-        (other.settings.width, other.settings.height) = (64, 36);
-        // The second size happens to be that of the file as it was.
-        for size in [[160, 90], [480, 270]] {
-            document.set_size(size);
-            let reloaded = document.reloaded(other.clone());
-            assert_eq!((reloaded.size(), reloaded.has_own_size), (size, false));
-        }
-    }
 }

@@ -197,17 +197,6 @@ mod tests {
         }
     }
 
-    #[cfg(unix)]
-    #[test]
-    fn a_directory_that_is_not_unicode_does_not_keep_settings_from_being_stored() {
-        use std::os::unix::ffi::OsStrExt;
-        let path = PathBuf::from(std::ffi::OsStr::from_bytes(b"/of/\xff"));
-        let remembered = Remembered { has_plot: true, directory: Some(path), ..Remembered::default() };
-        let text = serde_json::to_string(&remembered).unwrap();
-        let found: Remembered = serde_json::from_str(&text).unwrap();
-        assert_eq!((found.has_plot, found.directory), (true, None));
-    }
-
     #[test]
     fn the_newest_files_are_remembered_once() {
         let mut remembered = Remembered::default();
@@ -216,37 +205,5 @@ mod tests {
         }
         let expected = [4, 9, 8, 7, 6, 5, 3, 2].map(|number| PathBuf::from(format!("/of/{number}.png")));
         assert_eq!(remembered.recent, expected);
-    }
-
-    #[test]
-    fn a_relative_path_is_remembered_as_an_absolute_one() {
-        let absolute = std::env::current_dir().unwrap().join("a.png");
-        let mut remembered = Remembered::default();
-        for path in [Path::new("a.png"), absolute.as_path(), Path::new("a.png")] {
-            remembered.note_recent(path);
-            assert_eq!(remembered.recent, std::slice::from_ref(&absolute));
-        }
-    }
-
-    #[test]
-    fn lanes_and_threads_that_this_machine_has_stay() {
-        let cores = device::core_count();
-        for (threads, expected) in [(0, None), (1, Some(1)), (cores, Some(cores)), (cores + 1, None)] {
-            let strange = Remembered { threads: Some(threads), ..Remembered::default() };
-            assert_eq!(strange.mended().threads, expected, "{threads} of {cores}");
-        }
-        let counts = device::lane_counts();
-        for lanes in &counts {
-            let mended = Remembered { lanes: Some(*lanes), ..Remembered::default() }.mended();
-            assert_eq!((mended.lanes, mended.lanes_in_use()), (Some(*lanes), *lanes));
-        }
-        assert!(counts.contains(&Remembered::default().lanes_in_use()));
-    }
-
-    #[test]
-    fn of_too_many_files_the_newest_stay() {
-        let names = |count: usize| (0..count).map(|number| PathBuf::from(format!("/of/{number}.png")));
-        let long = Remembered { recent: names(12).collect(), ..Remembered::default() };
-        assert_eq!(long.mended().recent, names(RECENT_LIMIT).collect::<Vec<_>>());
     }
 }

@@ -48,21 +48,3 @@ impl fmt::Display for SlotNumber {
         self.0.fmt(formatter)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slots_are_numbered_from_one_to_nine() {
-        for (index, number) in SlotNumber::ALL.into_iter().enumerate() {
-            let digit = u8::from(number);
-            assert_eq!((usize::from(digit), number.index()), (index + 1, index));
-            assert_eq!((SlotNumber::try_from(digit), number.to_string()), (Ok(number), digit.to_string()));
-        }
-        for digit in [0_u8, 10] {
-            let reason = format!("there is no slot {digit}, only 1 to 9");
-            assert_eq!(SlotNumber::try_from(digit), Err(reason));
-        }
-    }
-}

@@ -1,21 +1,14 @@
 //! Tests of the left panel.
 
 use super::*;
-use crate::app::model::Model;
-use crate::app::model::device::Device;
-use crate::app::model::origin::Origin;
 use crate::app::model::remembered::Bookmark;
 use crate::app::model::sizing::Sizing;
-use crate::app::model::viewpoint::Viewpoint;
 use crate::app::spheres::Spheres;
-use crate::app::tests::{Case, Drawings, alone, dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of};
 use crate::output::OutputFormat;
 use crate::progressive::Stop;
-use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SIZE_LIMIT};
-use crate::stages::Stage;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
-use glam::DVec3;
 
 struct Panel {
     facts: Facts,
@@ -53,132 +46,6 @@ fn control<'h>(harness: &'h Harness<'_, Panel>, name: &'h str) -> Node<'h> {
 fn press(harness: &mut Harness<'_, Panel>, name: &str) {
     control(harness, name).click();
     harness.run_steps(3);
-}
-
-fn draw(drawings: &mut Drawings, harness: &mut Harness<'_, Panel>, name: &str) {
-    leave(harness);
-    drawings.add(name, harness);
-}
-
-#[test]
-fn stages_have_the_controls_that_they_need() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage glass-schlick --size 32x18");
-    for id in
-        ["glass-schlick", "ppm-tiny", "red-sphere", "normals", "antialiased", "gamut", "defocus", "book"]
-    {
-        let document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-        harness.state_mut().facts.model.document = document;
-        draw(&mut drawings, &mut harness, id);
-    }
-    harness.state_mut().facts.invalid = Some("look_from is look_at".to_owned());
-    draw(&mut drawings, &mut harness, "invalid");
-    drawings.add("of a new user", &panel_of("--stage defocus --size 32x18", true));
-    drawings.keep("panel_stages");
-}
-
-#[test]
-fn a_selected_sphere_has_the_controls_of_its_material() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage metal-fuzzy --size 32x18");
-    for id in ["metal-fuzzy", "glass-schlick", "gamut", "normals-world", "red-sphere"] {
-        let document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-        let count = document.scene().spheres.len();
-        harness.state_mut().facts.model.document = document;
-        for sphere in 0..count {
-            harness.state_mut().facts.model.selected = Some(sphere);
-            draw(&mut drawings, &mut harness, &format!("{id} {sphere}"));
-        }
-    }
-    drawings.keep("panel_spheres");
-}
-
-#[test]
-fn settings_are_shown_and_can_be_reset_where_they_were_changed() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage defocus --size 32x18");
-    harness.state_mut().facts.model.remembered.sizing = Sizing::Book;
-    draw(&mut drawings, &mut harness, "as it was");
-    let changes: [Case<Model>; 11] = [
-        ("three limits", |model| {
-            model.document.stop = Stop { samples: Some(100), seconds: Some(2.5), noise: Some(0.001) };
-        }),
-        ("one half", |model| model.document.settings.estimate_error = false),
-        ("no limit", |model| model.document.stop = Stop::default()),
-        ("another camera", |model| model.document.camera.vfov_degrees = 77.0),
-        ("a pinhole", |model| model.document.camera.defocus_angle_degrees = 0.0),
-        ("the size of the book", |model| model.document.has_own_size = false),
-        ("the size of the viewport", |model| model.remembered.sizing = Sizing::Viewport),
-        ("GPU", |model| model.remembered.device = Device::Gpu),
-        ("both", |model| model.remembered.device = Device::Both),
-        ("reference", |model| model.remembered.device = Device::Reference),
-        ("lanes and threads", |model| {
-            let remembered = &mut model.remembered;
-            (remembered.lanes, remembered.threads, remembered.device) = (Some(8), Some(3), Device::Cpu);
-        }),
-    ];
-    for (name, change) in changes {
-        change(&mut harness.state_mut().facts.model);
-        draw(&mut drawings, &mut harness, name);
-    }
-    drawings.keep("panel_settings");
-}
-
-#[test]
-fn bookmarks_are_listed_with_what_can_be_done_to_them() {
-    let mut drawings = Drawings::default();
-    let mut harness = panel("--stage defocus --size 32x18");
-    let camera = harness.state().facts.document().camera;
-    for side in Viewpoint::ALL {
-        let bookmark = Bookmark::new(format!("the {side:?}"), &side.camera(&camera, camera.vup));
-        harness.state_mut().facts.model.remembered.bookmarks.push(bookmark);
-    }
-    harness.state_mut().facts.model.document.camera = Viewpoint::Top.camera(&camera, camera.vup);
-    draw(&mut drawings, &mut harness, "six, of which the second is here");
-    for name in ["Right", "Top", "Back"] {
-        let menu = format!("Change the {name}");
-        harness.get_by_label(&menu).click_accesskit();
-        harness.run_steps(3);
-        draw(&mut drawings, &mut harness, &menu);
-        harness.key_press(egui::Key::Escape);
-        harness.run_steps(3);
-    }
-    drawings.keep("panel_bookmarks");
-}
-
-#[test]
-fn lists_show_what_can_be_chosen() {
-    alone("panels::tests::lists_show_what_can_be_chosen", || {
-        let mut drawings = Drawings::default();
-        let mut harness = panel("--stage metal-fuzzy --size 32x18");
-        harness.state_mut().facts.model.selected = Some(2);
-        draw(&mut drawings, &mut harness, "closed");
-        for name in ["Material", "Device", "Sampler"] {
-            press(&mut harness, name);
-            draw(&mut drawings, &mut harness, name);
-            drawings.add_tips_of(&mut harness, &["CPU", "GPU", "Both", "f64"]);
-            harness.key_press(egui::Key::Escape);
-            harness.run_steps(3);
-        }
-        drawings.keep("panel_lists");
-    });
-}
-
-#[test]
-fn every_control_has_its_tip() {
-    let mut drawings = Drawings::default();
-    for (words, selected) in [
-        ("--stage defocus --size 32x18", None),
-        ("--stage ppm-tiny", None),
-        ("--stage metal-fuzzy --size 32x18", Some(2)),
-        ("--stage normals --size 32x18", Some(0)),
-    ] {
-        let mut harness = panel(words);
-        harness.state_mut().facts.model.selected = selected;
-        draw(&mut drawings, &mut harness, words);
-        drawings.add_tips(&mut harness);
-    }
-    drawings.keep("panel_tips");
 }
 
 #[test]
@@ -222,26 +89,6 @@ fn buttons_give_their_commands() {
 }
 
 #[test]
-fn a_click_on_a_heading_or_beside_it_folds_the_group() {
-    let mut harness = panel("--stage defocus --size 32x18");
-    for (name, inside) in [("Camera", "Field of view"), ("Output", "Width")] {
-        for (beside, is_open) in [(0.0, false), (60.0, true)] {
-            let pos = harness.get_by_label(name).rect().center() + egui::vec2(beside, 0.0);
-            let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
-            harness.event(egui::Event::PointerMoved(pos));
-            for pressed in [true, false] {
-                harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-                harness.run_steps(1);
-            }
-            harness.run_steps(10);
-            let is_seen = harness.query_all_by_label(inside).next().is_some();
-            assert_eq!(is_seen, is_open, "{name}, {beside} points beside it");
-        }
-    }
-    assert!(harness.state().facts.document().camera == facts_of("--stage defocus").document().camera);
-}
-
-#[test]
 fn numbers_have_their_limits() {
     let mut harness = panel("--stage metal-fuzzy --size 32x18");
     harness.state_mut().facts.model.document.stop =
@@ -264,84 +111,4 @@ fn numbers_have_their_limits() {
     let largest = *camera::POSITIONS.end();
     assert_eq!(set("Look from y", 1e300).camera.look_from.y, largest);
     assert_eq!(set("Up z", -1e300).camera.vup.z, -largest);
-}
-
-/// The box in which the number of this name is typed, not the slider beside it.
-fn number<'h>(harness: &'h Harness<'_, Panel>, name: &'h str) -> Node<'h> {
-    let mut named = harness.get_all_by_label(name);
-    named.find(|node| node.accesskit_node().role() == egui::Role::SpinButton).unwrap()
-}
-
-/// Compares the limits of numbers and how far an arrow key or a drag over one point changes them.
-fn assert_numbers(harness: &mut Harness<'_, Panel>, expected: &[(&str, [f64; 2], f64)]) {
-    harness.run_steps(3);
-    for (name, [least, most], step) in expected {
-        let node = number(harness, name).accesskit_node();
-        for (what, found, expected) in [
-            ("least", node.min_numeric_value(), least),
-            ("most", node.max_numeric_value(), most),
-            ("step", node.numeric_value_step(), step),
-        ] {
-            let found = found.unwrap_or_else(|| panic!("{name} has no {what}"));
-            assert!(
-                (found - expected).abs() <= 1e-9 * expected.abs(),
-                "{name}, {what}: {found}, not {expected}"
-            );
-        }
-    }
-}
-
-#[test]
-fn numbers_end_at_the_limits_of_scenes_and_move_in_steps_that_suit_their_size() {
-    const PLACES: [f64; 2] = [-1e18, 1e18];
-    // From (-2, 2, 1) to (0, 0, -1).
-    let far = 12.0_f64.sqrt();
-    let mut harness = panel("--stage defocus --size 32x18");
-    assert_numbers(
-        &mut harness,
-        &[
-            ("Look from x", PLACES, 0.005 * far),
-            ("Look at z", PLACES, 0.005 * far),
-            ("Up y", PLACES, 0.01),
-            // Of 20 degrees.
-            ("Field of view", [0.01, 179.0], 0.2),
-            // Of 10 degrees, but the slider has only 30.
-            ("Defocus angle", [0.0, 178.9], 0.06),
-            ("Focus distance", [1e-18, 1e19], 0.034),
-            ("Depth", [1.0, f64::from(DEPTH_LIMIT)], 0.2),
-            ("Seed", [0.0, 4_294_967_295.0], 0.05),
-            ("Width", [1.0, f64::from(SIZE_LIMIT)], 2.0),
-            ("Height", [1.0, f64::from(SIZE_LIMIT)], 2.0),
-            ("Samples limit", [1.0, SAMPLE_LIMIT as f64], 1.0),
-            ("Time limit", [0.1, 1e6], 0.5),
-            ("Error limit", [1e-6, 1.0], 1e-4),
-        ],
-    );
-    let camera = &mut harness.state_mut().facts.model.document.camera;
-    (camera.defocus_angle_degrees, camera.look_at) = (0.0, camera.look_from + DVec3::X * 1e-9);
-    assert_numbers(
-        &mut harness,
-        &[("Defocus angle", [0.0, 178.9], 0.001), ("Look from x", PLACES, 1e-4), ("Look at z", PLACES, 1e-4)],
-    );
-    // Of a golden sphere at (1, 0, -1), seen from (0, 0, 0).
-    let mut harness = panel("--stage metal-fuzzy --size 32x18");
-    let gold = DVec3::new(1.0, 0.0, -1.0);
-    harness.state_mut().facts.model.selected = sphere_at(&harness, gold);
-    assert_numbers(
-        &mut harness,
-        &[
-            ("Centre x", PLACES, 0.003 * 2.0_f64.sqrt()),
-            ("Radius", [1e-18, 1e18], 0.005),
-            ("Albedo red", [0.0, 1.0], 0.005),
-            ("Fuzz", [0.0, f64::MAX], 0.002),
-        ],
-    );
-    let mut harness = panel("--stage glass-refract --size 32x18");
-    harness.state_mut().facts.model.selected = sphere_at(&harness, DVec3::new(-1.0, 0.0, -1.0));
-    assert_numbers(&mut harness, &[("Refraction index", [1e-9, 1e9], 0.0044)]);
-}
-
-/// The sphere with this centre.
-fn sphere_at(harness: &Harness<'_, Panel>, center: DVec3) -> Option<usize> {
-    harness.state().facts.document().scene().spheres.iter().position(|sphere| sphere.center == center)
 }

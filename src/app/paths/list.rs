@@ -175,8 +175,8 @@ fn triple(v: [f64; 3]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::paths::tests::{listed, take};
-    use crate::app::tests::{Drawings, dressed, leave};
+    use crate::app::paths::tests::listed;
+    use crate::app::tests::{dressed, leave};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -184,40 +184,6 @@ mod tests {
     fn panel(document: &Document, paths: Paths) -> Harness<'_, Paths> {
         let draw = move |ui: &mut Ui, paths: &mut Paths| paths.ui(ui, document);
         dressed([270.0, 900.0]).build_ui_state(draw, paths)
-    }
-
-    #[test]
-    fn the_list_explains_the_ray_that_is_chosen() {
-        let mut drawings = Drawings::default();
-        for id in ["metal-fuzzy", "glass-schlick", "red-sphere", "ppm-tiny"] {
-            let (document, paths) = listed(id, [16, 9]);
-            let mut harness = panel(&document, paths);
-            drawings.add(id, &harness);
-            for ray in ["the second ray", "the third ray"] {
-                harness.state_mut().step(true);
-                harness.run_steps(3);
-                drawings.add(ray, &harness);
-            }
-            harness.state_mut().select(Some(15));
-            harness.run_steps(3);
-            drawings.add("the last path", &harness);
-            harness.state_mut().select(None);
-            harness.run_steps(3);
-            drawings.add("no path", &harness);
-        }
-        let (document, paths) = listed("metal", [16, 9]);
-        let mut moved = document.clone();
-        moved.camera.vfov_degrees += 1.0;
-        let mut harness = panel(&moved, paths);
-        drawings.add("listed with an earlier camera", &harness);
-        drawings.add_tips(&mut harness);
-        harness.state_mut().forget();
-        harness.run_steps(3);
-        drawings.add("none", &harness);
-        harness.state_mut().is_waiting = true;
-        harness.run_steps(3);
-        drawings.add("they are being recorded", &harness);
-        drawings.keep("paths_in_the_panel");
     }
 
     #[test]
@@ -243,36 +209,5 @@ mod tests {
         assert_eq!(press("Path of the sample before").0, None, "there is none before the first");
         press("Clear paths");
         assert_eq!(harness.state().len(), 0);
-    }
-
-    #[test]
-    fn another_number_of_paths_is_listed() {
-        let (document, paths) = listed("metal", [16, 9]);
-        let mut harness = panel(&document, paths);
-        for (typed, count) in [(5.0, 5), (1e6, 64), (0.0, 1)] {
-            leave(&mut harness);
-            harness.get_by_label("Paths listed").set_value_accesskit(typed);
-            harness.run_steps(3);
-            assert!(harness.state().is_waiting, "{typed}");
-            take(harness.state_mut());
-            assert_eq!(harness.state().len(), count);
-            assert_eq!(harness.state().listed.as_ref().map(|listed| listed.pixel), Some([16, 9]));
-        }
-    }
-
-    #[test]
-    fn another_number_of_paths_is_listed_with_the_camera_of_the_list() {
-        let (document, paths) = listed("metal", [16, 9]);
-        let mut moved = document.clone();
-        moved.camera.vfov_degrees += 1.0;
-        let mut harness = panel(&moved, paths);
-        leave(&mut harness);
-        harness.get_by_label("Paths listed").set_value_accesskit(5.0);
-        harness.run_steps(3);
-        assert!(harness.state().is_waiting);
-        take(harness.state_mut());
-        assert_eq!(harness.state().len(), 5);
-        let camera = harness.state().listed.as_ref().map(|listed| listed.document.camera);
-        assert_eq!(camera, Some(document.camera), "the camera has moved, but the paths stay where they are");
     }
 }

@@ -206,14 +206,6 @@ mod tests {
     use crate::stages::Stage;
 
     #[test]
-    fn a_place_is_found_again_at_another_size() {
-        assert_eq!(at_same_place([5, 7], [[32, 18], [32, 18]]), [5, 7]);
-        assert_eq!(at_same_place([31, 0], [[32, 18], [320, 180]]), [315, 5]);
-        assert_eq!(at_same_place([315, 5], [[320, 180], [32, 18]]), [31, 0]);
-        assert_eq!(at_same_place([31, 17], [[32, 18], [1, 1]]), [0, 0]);
-    }
-
-    #[test]
     fn paths_that_were_forgotten_meanwhile_are_not_listed() {
         let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         let mut paths = Paths::default();
@@ -245,31 +237,6 @@ mod tests {
         paths.list(&document, [3, 2], &context);
         take(&mut paths);
         assert_eq!((paths.len(), paths.fault.as_ref()), (16, None));
-    }
-
-    #[test]
-    fn as_many_paths_are_listed_as_the_picture_has_samples() {
-        let (context, pixel) = (egui::Context::default(), [16, 9]);
-        for (stage, samples, count) in
-            [("red-sphere", None, 1), ("metal", None, 16), ("metal", Some(4), 4), ("metal", Some(100), 16)]
-        {
-            let (mut document, _) = listed(stage, pixel);
-            document.stop.samples = samples.or(document.stop.samples);
-            let mut paths = Paths::default();
-            paths.list(&document, pixel, &context);
-            take(&mut paths);
-            assert_eq!(paths.len(), count, "{stage} {samples:?}");
-        }
-        // The render goes on to more samples.
-        let (mut document, mut paths) = listed("red-sphere", pixel);
-        document.stop.samples = Some(2);
-        paths.follow(&document, &context);
-        assert!(paths.is_waiting);
-        take(&mut paths);
-        assert_eq!(paths.len(), 2);
-        let number = paths.number;
-        paths.follow(&document, &context);
-        assert_eq!((paths.number, paths.is_waiting), (number, false));
     }
 
     /// A small picture of a stage with the paths of one of its pixels.
@@ -311,24 +278,6 @@ mod tests {
         assert_eq!(paths.position(), None);
         paths.step(true);
         assert_eq!((paths.selected, at(&paths)), (Some(0), Some(1)));
-    }
-
-    #[test]
-    fn a_new_list_begins_with_its_first_path_and_the_same_pixel_keeps_its_choice() {
-        let (document, mut paths) = listed("metal", [16, 9]);
-        assert_eq!((paths.is_new, paths.selected, paths.len()), (true, Some(0), 16));
-        paths.is_new = false;
-        paths.select(Some(9));
-        paths.count = 4;
-        paths.list(&document, [16, 9], &egui::Context::default());
-        assert!(paths.is_waiting);
-        take(&mut paths);
-        assert_eq!((paths.is_new, paths.selected, paths.len()), (false, Some(3), 4), "as many as there are");
-        paths.list(&document, [5, 9], &egui::Context::default());
-        take(&mut paths);
-        assert_eq!((paths.is_new, paths.selected, paths.is_waiting), (true, Some(0), false));
-        paths.forget();
-        assert_eq!((paths.len(), paths.position()), (0, None));
     }
 
     #[test]

@@ -2,15 +2,11 @@
 
 use super::*;
 use crate::app::model::crop::Crop;
-use crate::app::model::kept_view::ShownSlots;
-use crate::app::model::view::Other;
 use crate::app::tests::{until, window};
-use crate::kept;
+
 use crate::progressive::Stop;
-use crate::stages::Stage;
-use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, ViewportId, vec2};
+use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, vec2};
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 /// A window in which most commands have something to do.
 pub(super) fn prepared() -> Window {
@@ -25,146 +21,6 @@ pub(super) fn prepared() -> Window {
     view.crop = Some(Some(Crop { first: [1, 2], size: [3, 4] }));
     window.seconds_before = Some(5.0);
     window
-}
-
-/// What can be seen of a window, by name. Scenes are told by the title.
-fn seen(window: &Window) -> BTreeMap<String, String> {
-    let mut seen: BTreeMap<String, String> = kept::fields(&window.model)
-        .into_iter()
-        .filter(|(path, _)| !path.contains("document.origin") && !path.contains("document.checked"))
-        .collect();
-    for (name, value) in [
-        ("title", window.document().title()),
-        ("dialog", window.dialogs.is_open().to_string()),
-        ("copy", window.pending_copy.to_string()),
-        ("seconds", format!("{:?}", window.seconds_before)),
-        ("flight", window.flight.is_some().to_string()),
-        ("sight", window.sight.is_some().to_string()),
-        ("panel", format!("{:?}", window.panel)),
-    ] {
-        seen.insert(name.to_owned(), value);
-    }
-    seen
-}
-
-/// What a command changes, says, and asks of the system.
-fn done(context: &Context, window: &mut Window, command: Command) -> String {
-    let (before, told) = (seen(window), window.messages());
-    let output = context.run_ui(RawInput::default(), |ui| window.perform(ui.ctx(), command));
-    let after = seen(window);
-    let mut text = format!("{}\n", command.name());
-    let mut paths: Vec<&String> = before.keys().chain(after.keys()).collect();
-    paths.sort();
-    paths.dedup();
-    for path in paths {
-        let [old, new] = [&before, &after].map(|seen| seen.get(path).map_or("nothing", String::as_str));
-        if old != new {
-            text.push_str(&format!("  {path}: {old} -> {new}\n"));
-        }
-    }
-    for words in window.messages().iter().filter(|words| !told.contains(words)) {
-        text.push_str(&format!("  says {words}\n"));
-    }
-    for command in &output.platform_output.commands {
-        text.push_str(&format!("  asks for {command:?}\n"));
-    }
-    for command in output.viewport_output.get(&ViewportId::ROOT).into_iter().flat_map(|root| &root.commands) {
-        text.push_str(&format!("  asks for {command:?}\n"));
-    }
-    text
-}
-
-/// Commands for slots, devices and the companion depend on more than this.
-#[test]
-fn every_command_does_what_it_says() {
-    let context = Context::default();
-    let is_told = |command: &Command| {
-        !matches!(
-            command,
-            Command::Slot(_)
-                | Command::Device(_)
-                | Command::SwitchDevice
-                | Command::Companion
-                | Command::Extreme(_)
-                | Command::Stage(_)
-        )
-    };
-    let mut commands: Vec<Command> = Command::all().into_iter().filter(is_told).collect();
-    commands.extend([Command::Bookmark(1), Command::Bookmark(9), Command::Recent(0), Command::Recent(1)]);
-    commands.push(Command::Stage(&Stage::ALL[3]));
-    let mut text = String::new();
-    for command in commands {
-        text.push_str(&done(&context, &mut prepared(), command));
-    }
-    text.push_str("\nOne after the other\n");
-    let mut window = prepared();
-    for command in [
-        Command::AddBookmark,
-        Command::AddBookmark,
-        Command::Crop,
-        Command::Crop,
-        Command::Darker,
-        Command::NoExposure,
-        Command::Wipe,
-        Command::WipeDifference,
-        Command::BookArithmetic,
-        Command::WipeDifference,
-        Command::WipeDifference,
-        Command::Show(Show::Normals),
-        Command::Brighter,
-        Command::Panels,
-        Command::Plot,
-        Command::Plot,
-        Command::Controls,
-        Command::Gizmo,
-        Command::Panels,
-        Command::Gizmo,
-        Command::Flights,
-        Command::Bookmark(0),
-        Command::FirstSteps,
-        Command::FirstSteps,
-        Command::FullScreen,
-        Command::Present,
-        Command::Panels,
-        Command::Blank,
-        Command::Blank,
-        Command::Blank,
-        Command::Fit,
-        Command::Controls,
-        Command::Present,
-        Command::FullScreen,
-        Command::ShowMe,
-        Command::ShowMe,
-        Command::ResetAll,
-        Command::Fresh,
-    ] {
-        text.push_str(&done(&context, &mut window, command));
-    }
-    kept::check("commands_done", &text);
-}
-
-#[test]
-fn a_difference_is_from_the_stage_once_the_books_arithmetic_was_left() {
-    let context = Context::default();
-    for leave in [Command::Show(Show::Picture), Command::BookArithmetic, Command::WipeDifference] {
-        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
-        let is_by_book = |window: &Window| match window.model.view.compared(window.document()) {
-            Some(Other::ByTheBook(..)) => Some(true),
-            Some(_) => Some(false),
-            None => None,
-        };
-        window.perform(&context, Command::BookArithmetic);
-        if leave == Command::WipeDifference {
-            window.perform(&context, Command::WipeDifference);
-        }
-        assert_eq!(is_by_book(&window), Some(true), "{leave:?}");
-        window.perform(&context, leave);
-        assert_eq!(is_by_book(&window), None, "{leave:?}");
-        window.perform(&context, Command::WipeDifference);
-        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
-        window.perform(&context, Command::NextStage);
-        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
-    }
 }
 
 #[test]
@@ -217,18 +73,6 @@ fn the_companion_opens_at_the_stage_once_it_is_written() {
 }
 
 #[test]
-fn a_command_ends_the_wait_for_slots_that_were_shown() {
-    let mut window = prepared();
-    for (command, is_enabled) in [(Command::Redo, false), (Command::Darker, true)] {
-        assert_eq!(window.disabled_reason(command).is_none(), is_enabled);
-        window.recovery.shown_slots = Some(ShownSlots::default());
-        window.perform(&Context::default(), command);
-        assert_eq!(window.recovery.shown_slots.is_none(), is_enabled, "{command:?}");
-        assert_eq!(window.performed(), Some(command));
-    }
-}
-
-#[test]
 fn a_view_that_a_picture_has_not_is_left() {
     let mut window = prepared();
     for (show, is_left) in [(Show::Picture, false), (Show::Normals, false), (Show::Difference, true)] {
@@ -242,30 +86,6 @@ fn a_view_that_a_picture_has_not_is_left() {
 }
 
 #[test]
-fn a_command_is_no_part_of_a_move_of_the_camera() {
-    let mut window = prepared();
-    window.changes.note_move();
-    window.perform(&Context::default(), Command::Darker);
-    assert!(!window.changes.is_moving());
-}
-
-#[test]
-fn what_is_asked_for_while_all_panels_are_hidden_is_shown() {
-    let (mut window, context) = (prepared(), Context::default());
-    let panels = |window: &Window| {
-        let remembered = &window.model.remembered;
-        [remembered.has_panels, remembered.has_controls]
-    };
-    for command in [Command::Controls, Command::Stages] {
-        window.model.remembered.has_panels = false;
-        window.perform(&context, command);
-        assert_eq!(panels(&window), [true; 2], "{command:?}");
-    }
-    window.perform(&context, Command::Controls);
-    assert_eq!(panels(&window), [true, false], "it was to be seen");
-}
-
-#[test]
 fn a_bookmark_is_named_after_its_picture() {
     for (words, name) in
         [("--stage glass-schlick", "11.4 view 1"), ("--scene touching-spheres", "touching-spheres view 1")]
@@ -273,22 +93,6 @@ fn a_bookmark_is_named_after_its_picture() {
         let mut window = window(&format!("weekender {words} --size 16x9 --device cpu"));
         window.perform(&Context::default(), Command::AddBookmark);
         assert_eq!(window.model.remembered.bookmarks[0].name, name);
-    }
-}
-
-#[test]
-fn going_from_stage_to_stage_is_a_first_step_while_the_card_is_shown() {
-    for (command, has_card, is_noted) in [
-        (Command::NextStage, true, true),
-        (Command::PreviousStage, true, true),
-        (Command::NextStage, false, false),
-        (Command::Stage(&Stage::ALL[3]), true, false),
-    ] {
-        let mut window = prepared();
-        window.model.has_first_steps = has_card;
-        window.perform(&Context::default(), command);
-        let steps = &window.model.remembered.first_steps;
-        assert_eq!(steps.has(Step::Leaf), is_noted, "{command:?} {has_card}");
     }
 }
 

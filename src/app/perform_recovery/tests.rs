@@ -1,11 +1,8 @@
 //! Tests of what a window leaves and goes on with.
 
 use super::*;
-use crate::app::model::kept::Kept;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::tests::{until, window};
 use crate::film::Film;
-use crate::progressive::ReferenceMeans;
 use std::time::Duration;
 
 fn film(samples: u64) -> SavedFilm {
@@ -85,35 +82,6 @@ fn with_another_seed(window: &Window) -> Document {
 }
 
 #[test]
-fn what_is_left_is_the_film_of_the_picture_on_the_screen() {
-    let directory = tempfile::tempdir().unwrap();
-    let (mut window, files) = finished(directory.path());
-    let document = window.document().clone();
-    std::fs::write(files.film(), "the film of another picture").unwrap();
-    let other = Saved { document: with_another_seed(&window), samples: 100 };
-    window.recovery.autosave.holds(Some(other));
-    // Earlier windows have traced longer than a test takes.
-    window.seconds_before = Some(1e6);
-    assert!(window.leave_film(&files, &document));
-    let left = crate::saved::resume(files.film(), &document.job(1).unwrap());
-    let left = left.map_err(|error| error.to_string()).unwrap();
-    assert_eq!(left.film.sample_count(), 4);
-    let seconds = left.seconds.unwrap();
-    assert!((1e6..1.5e6).contains(&seconds), "all samples count, each once: {seconds}");
-}
-
-#[test]
-fn a_film_that_is_soon_traced_again_is_not_left() {
-    let directory = tempfile::tempdir().unwrap();
-    let (mut window, files) = finished(directory.path());
-    window.recovery = Recovery::new(Duration::from_secs(3600));
-    std::fs::write(files.film(), "the film of another picture").unwrap();
-    let document = window.document().clone();
-    window.recovery.autosave.holds(Some(Saved { document: document.clone(), samples: 4 }));
-    assert!(!window.leave_film(&files, &document) && !files.has_film());
-}
-
-#[test]
 fn only_a_film_of_the_same_picture_that_is_ahead_goes_on() {
     for (is_same, samples, goes_on) in [(true, 5, true), (true, 4, false), (false, 100, false)] {
         let directory = tempfile::tempdir().unwrap();
@@ -124,97 +92,5 @@ fn only_a_film_of_the_same_picture_that_is_ahead_goes_on() {
         window.recovery.autosave.holds(Some(Saved { document, samples }));
         window.write_recovery(&Context::default());
         assert_eq!(window.recovery.resuming.is_some(), goes_on, "{is_same} {samples}");
-    }
-}
-
-#[test]
-fn a_fresh_start_shows_the_usual_picture_and_keeps_what_was_loaded_and_kept() {
-    let mut window = window("weekender --stage metal --size 16x9 --device cpu");
-    let reference = ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]], identity: None };
-    let one = SlotNumber::ALL[0];
-    let kept = Arc::new(Kept::new(window.document().clone(), film(3).film, Arc::default(), None));
-    window.model.view.reference = Some(Arc::new(reference));
-    window.model.view.slots.put(one, Slot { name: String::new(), kept });
-    window.model.view.look(Some(one));
-    window.model.view.tone.exposure = 2.0;
-    window.model.is_paused = true;
-    let fitting = window.viewport.placement.zoom();
-    window.viewport.placement.zoom_by(2.0);
-    assert_ne!(window.viewport.placement.zoom(), fitting);
-    window.start_fresh();
-    assert_eq!(window.viewport.placement.zoom(), fitting);
-    assert!(window.slot(one).is_some() && window.model.view.reference.is_some());
-    assert_eq!((window.looked(), window.model.view.tone.exposure, window.is_paused()), (None, 0.0, false));
-    assert_eq!(window.document().title(), Document::new(Origin::usual()).title());
-}
-
-#[test]
-fn a_stop_that_is_asked_for_replaces_that_of_the_last_window() {
-    for (asked, samples) in [(None, 4), (Some(Stop::at_samples(7)), 7)] {
-        let directory = tempfile::tempdir().unwrap();
-        keeping(directory.path()).end_in_order();
-        let mut next = window("weekender --stage metal --size 16x9 --device cpu");
-        next.begin_recovery(directory.path(), true, (asked, u64::MAX));
-        assert_eq!(next.document().stage().map(|stage| stage.id), Some("glass-schlick"));
-        assert_eq!(next.document().stop, Stop::at_samples(samples));
-    }
-}
-
-#[test]
-fn a_picture_that_cannot_be_shown_again_stays_on_the_card_with_its_fault() {
-    let directory = tempfile::tempdir().unwrap();
-    let note = r#"{ "title": "mine", "is_changed": true }"#;
-    std::fs::write(directory.path().join("window-1-1.json"), note).unwrap();
-    let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-    let mut window = keeping(directory.path());
-    let document = window.document().clone();
-    let arrival = Arrival { opened: None, restored: Some(Err("its stage is unknown".to_owned())) };
-    window.take_arrival(arrival, left, Part::Picture);
-    assert_eq!(window.messages(), ["Not opened: its stage is unknown"]);
-    assert!(*window.document() == document);
-    let [row] = window.recovery.left[0].rows().collect::<Vec<_>>().try_into().ok().unwrap();
-    assert_eq!((row.part, row.fault.as_deref()), (Part::Picture, Some("its stage is unknown")));
-}
-
-#[test]
-fn a_picture_that_cannot_be_rendered_does_not_replace_the_last_that_could() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut window = keeping(directory.path());
-    let session = Session::of(window.document(), &ViewState::default(), false);
-    window.recovery.files.as_ref().unwrap().write_note(&session).unwrap();
-    window.model.document.camera.vfov_degrees = 0.0;
-    assert!(window.document().job(1).is_err());
-    window.end_in_order();
-    let left = std::fs::read(directory.path().join("session.json")).unwrap();
-    assert_eq!(serde_json::from_slice::<Session>(&left).unwrap(), session);
-}
-
-#[test]
-fn zoom_and_pan_are_noted_of_the_live_picture_alone() {
-    let directory = tempfile::tempdir().unwrap();
-    let (mut window, _files) = finished(directory.path());
-    assert_eq!(window.framing(), None, "it fits");
-    window.viewport.placement.zoom_by(1.5);
-    assert_eq!(window.framing().map(|framing| framing.size), Some([16, 9]));
-    let one = SlotNumber::ALL[0];
-    let kept = Arc::new(Kept::new(window.document().clone(), film(3).film, Arc::default(), None));
-    window.model.view.slots.put(one, Slot { name: String::new(), kept });
-    window.model.view.look(Some(one));
-    assert_eq!(window.framing(), None);
-}
-
-#[test]
-fn a_film_that_is_still_being_read_is_not_written_over() {
-    for is_read in [true, false] {
-        let directory = tempfile::tempdir().unwrap();
-        let (mut window, files) = finished(directory.path());
-        window.recovery = Recovery::new(Duration::ZERO);
-        std::fs::write(files.film(), "the film of the last window").unwrap();
-        let path = files.film().to_owned();
-        window.recovery.files = Some(files);
-        window.recovery.resuming = is_read.then(|| window.document().clone());
-        window.write_recovery(&Context::default());
-        window.recovery.autosave.finish();
-        assert_eq!(std::fs::read(path).unwrap() == b"the film of the last window", is_read);
     }
 }

@@ -193,16 +193,11 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::Origin;
+
     use crate::app::model::presentation::Presentation;
-    use crate::app::tests::{Case, Drawings, dressed, facts_of, part};
-    use crate::progressive::{EndReason, Phase, Status, Stop};
-    use crate::stress::shown_cases;
+    use crate::app::tests::{dressed, facts_of};
+
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
 
     #[derive(Default)]
     struct Screen {
@@ -222,97 +217,6 @@ mod tests {
         };
         let screen = Screen { facts: Some(facts), ..Screen::default() };
         dressed(size).build_ui_state(draw, screen)
-    }
-
-    fn shows_keys(harness: &Harness<'_, Screen>) -> bool {
-        harness.query_by_label_contains("Escape: end").is_some()
-    }
-
-    #[test]
-    fn captions_and_progress_on_every_screen() {
-        let mut drawings = Drawings::default();
-        for size in [[1280.0, 720.0], [800.0, 720.0], [320.0, 90.0]] {
-            drawings.add(&format!("{size:?}"), &presented("--stage glass-schlick --size 32x18", size));
-        }
-        let mut harness = presented("--stage book --size 32x18 --samples 64", [1280.0, 720.0]);
-        drawings.add("the longest text", &harness);
-        let changes: [Case<Facts>; 7] = [
-            ("a quarter", |facts| {
-                facts.status = Arc::new(Status { samples_per_pixel: 16, ..Status::default() });
-            }),
-            ("the end", |facts| {
-                let phase = Phase::Done(EndReason::Samples);
-                facts.status = Arc::new(Status { samples_per_pixel: 64, phase, ..Status::default() });
-            }),
-            ("without an end", |facts| facts.model.document.stop = Stop::default()),
-            ("its sight", |facts| facts.has_sight = true),
-            ("edited", |facts| {
-                let document = &mut facts.model.document;
-                let scene = Arc::clone(document.checked.scene());
-                document.checked = Arc::new(CheckedScene::new(scene, *document.rules()));
-            }),
-            ("an extreme scene", |facts| {
-                let case = shown_cases().iter().find(|case| case.watch.is_some()).unwrap();
-                facts.model.document = Document::new(Origin::of_case(case));
-            }),
-            ("without captions", |facts| {
-                facts.model.presentation =
-                    Some(Presentation { was_full_screen: false, has_captions: false, is_blank: false });
-            }),
-        ];
-        for (name, change) in changes {
-            harness.state_mut().facts.iter_mut().for_each(change);
-            harness.run_steps(2);
-            drawings.add(name, &harness);
-        }
-        drawings.add("no stage", &presented("--scene field:20 --size 32x18", [1280.0, 720.0]));
-        drawings.keep("present");
-    }
-
-    #[test]
-    fn the_keys_fade_after_eight_seconds_and_come_back_with_the_next_presentation() {
-        let mut drawings = Drawings::default();
-        let mut harness = presented("--stage metal --size 32x18", [1280.0, 720.0]);
-        let context = harness.ctx.clone();
-        let now = || context.input(|input| input.time);
-        harness.state_mut().presenter.begin(&context);
-        let begin = now();
-        for (name, age, is_told) in [
-            ("new", 0.25, true),
-            ("before they fade", 8.0, true),
-            ("half faded", 9.0, true),
-            ("nearly gone", 9.75, true),
-            ("gone", 10.0, false),
-        ] {
-            while now() < begin + age {
-                harness.step();
-            }
-            assert_eq!((shows_keys(&harness), now() - begin), (is_told, age));
-            drawings.add(name, &harness);
-        }
-        harness.state_mut().presenter.begin(&context);
-        harness.run_steps(4);
-        assert!(shows_keys(&harness));
-        drawings.keep("present_keys");
-    }
-
-    #[test]
-    fn words_in_the_picture_are_enlarged_and_a_blank_screen_is_black() {
-        let mut drawings = Drawings::default();
-        let words = |ui: &mut Ui| {
-            let context = ui.ctx().clone();
-            enlarge(&context, ui.style_mut());
-            ui.label("body");
-            ui.label(RichText::new("small").small());
-            ui.label(RichText::new("heading").heading());
-        };
-        for size in [[1280.0, 720.0], [320.0, 200.0]] {
-            drawings.add(&format!("{size:?}"), &part(size, words));
-        }
-        let black = part([320.0, 200.0], |ui| blank(ui.ctx()));
-        drawings.add("blank", &black);
-        assert_eq!(black.output().platform_output.cursor_icon, CursorIcon::None);
-        drawings.keep("present_words");
     }
 
     #[test]

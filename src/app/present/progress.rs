@@ -75,7 +75,7 @@ impl Progress {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-    use crate::progressive::EndReason;
+
     use std::time::Duration;
 
     fn status(samples: u64, rmse: f64) -> Status {
@@ -98,48 +98,5 @@ mod tests {
         let seconds = Stop { seconds: Some(4.0), ..noise };
         assert_eq!(share(seconds), Some(0.75));
         assert_eq!(share(Stop { noise: Some(0.01), ..noise }), Some(1.0));
-    }
-
-    #[test]
-    fn the_numbers_are_told() {
-        let words = |stop, is_paused| Progress::from(&status(32, 0.006), stop, is_paused).words;
-        assert_eq!(words(Stop::at_samples(1280), false), "32 of 1\u{a0}280 samples per pixel");
-        let stop = Stop { noise: Some(0.003), seconds: Some(4.0), ..Stop::default() };
-        assert_eq!(words(stop, true), "paused: 32 samples per pixel, 3 of 4 s, error 0.0060 of 0.003");
-        let mut done = status(0, 0.0);
-        done.phase = Phase::Done(EndReason::Samples);
-        let done = Progress::from(&done, stop, false);
-        assert_eq!(done.share, Some(1.0));
-        assert_eq!(done.words, "done: 0 samples per pixel, 3 of 4 s, error – of 0.003");
-    }
-
-    #[test]
-    fn a_pause_is_told_first_and_an_unknown_error_is_no_progress() {
-        let (samples, noise) = (Stop::at_samples(128), Stop { noise: Some(0.003), ..Stop::default() });
-        let (done, failed) = (Phase::Done(EndReason::Stopped), Phase::Failed("no memory".to_owned()));
-        for (phase, is_paused, share, begin) in [
-            (Phase::Idle, false, 0.25, "32 of"),
-            (Phase::Preparing, false, 0.25, "32 of"),
-            (Phase::Tracing, true, 0.25, "paused: 32 of"),
-            (done.clone(), false, 1.0, "done: 32 of"),
-            (done, true, 1.0, "paused: 32 of"),
-            (failed, false, 0.25, "failed: 32 of"),
-        ] {
-            let status = Status { phase, ..status(32, 0.006) };
-            let found = Progress::from(&status, samples, is_paused);
-            assert_eq!(found.share, Some(share), "{found:?}");
-            assert!(found.words.starts_with(begin), "{found:?}");
-        }
-        let told = "32 samples per pixel, error – of 0.003";
-        let unknown = Progress::from(&Status { error: None, ..status(32, 0.0) }, noise, false);
-        assert_eq!((unknown.share, unknown.words.as_str()), (Some(0.0), told));
-        let begun = Progress::from(&status(0, 0.001), noise, false);
-        assert_eq!(begun.share, Some(0.0), "an error of no samples says nothing");
-        let both = Stop { noise: Some(0.0012), ..samples };
-        assert_eq!(
-            Progress::from(&status(32, 0.006), both, false).share,
-            Some(0.25),
-            "the samples end first"
-        );
     }
 }

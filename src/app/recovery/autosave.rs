@@ -232,8 +232,6 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::app::tests::{sleep_after, until, window};
     use crate::app::window::Window;
-    use crate::film::key;
-    use crate::recipe::file;
 
     #[test]
     fn slow_writing_takes_a_small_share_of_the_time() {
@@ -249,19 +247,6 @@ mod tests {
         };
         assert_eq!(wait_after(0), 60.0);
         assert_eq!(wait_after(10), 200.0, "20 times as long as writing took");
-    }
-
-    #[test]
-    fn a_film_that_takes_long_to_write_is_waited_for() {
-        let mut autosave = Autosave::new(Duration::ZERO);
-        let (sender, outcome) = channel();
-        let document = Document::new(Origin::usual());
-        autosave.under_way = Some(UnderWay { document, begun: Instant::now(), outcome });
-        assert_eq!(autosave.take_outcome(), None);
-        assert!(autosave.under_way.is_some() && autosave.saved().is_none());
-        sender.send(Ok(7)).unwrap();
-        assert_eq!(autosave.take_outcome(), None);
-        assert_eq!((autosave.under_way.is_some(), autosave.saved().unwrap().samples), (false, 7));
     }
 
     #[test]
@@ -316,27 +301,6 @@ mod tests {
     }
 
     #[test]
-    fn a_film_is_long_if_all_its_samples_together_took_long() {
-        let window = finished(&Context::default());
-        let (document, status) = (window.document(), window.status());
-        let autosave = Autosave::new(Duration::from_secs(3600));
-        let is_long = |document: &Document, status: &Status, before: Option<f64>| {
-            autosave.is_long(document, &window.main, status, before)
-        };
-        let traced = |seconds| Status { trace: Duration::from_secs(seconds), ..status.clone() };
-        assert!(is_long(document, &traced(3600), Some(0.0)) && !is_long(document, &traced(3599), Some(0.0)));
-        assert!(
-            is_long(document, &traced(600), Some(3000.0)) && !is_long(document, &traced(600), Some(2999.0))
-        );
-        assert!(is_long(document, &traced(0), None), "nobody knows how long it took");
-        let mut other = document.clone();
-        other.settings.seed += 1;
-        assert!(!is_long(&other, &traced(3600), None), "it has no film yet");
-        let none = Status { samples_per_pixel: 0, ..traced(3600) };
-        assert!(!is_long(document, &none, None));
-    }
-
-    #[test]
     fn a_film_is_not_written_again_before_its_time() {
         let (context, directory) = (Context::default(), tempfile::tempdir().unwrap());
         let (window, path) = (finished(&context), directory.path().join("film.exr"));
@@ -357,23 +321,5 @@ mod tests {
             assert!(samples == 4 || sleep <= hour, "it is looked at again");
         }
         assert!(autosave.due >= begin + hour);
-    }
-
-    #[test]
-    fn a_film_of_changed_spheres_does_not_say_that_it_is_the_stage() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("film.exr");
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        document.give_size([4, 2]);
-        let changed = Document { checked: Document::new(Origin::usual()).checked, ..document.clone() };
-        let mut film = Film::new(4, 2, 2);
-        film.record(0..3, 0).unwrap();
-        for (document, stage) in [(&document, Some("metal")), (&changed, None)] {
-            write_film(&path, &film, (document, &Status::default()), None).unwrap();
-            let read = checkpoint::load(&path).unwrap();
-            assert_eq!(read.description.get(key::STAGE), stage);
-            let recipe = file::parse(read.description.recipe(), "kept").unwrap();
-            assert_eq!((recipe.samples_per_pixel, &recipe.scene), (3, document.checked.scene()));
-        }
     }
 }

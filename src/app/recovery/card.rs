@@ -95,7 +95,7 @@ mod tests {
     use crate::app::model::slots::SlotNumber;
     use crate::app::recovery::{RecoveryFiles, write_film};
     use crate::app::slot_files::Entry;
-    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::app::tests::dressed;
     use crate::film::Film;
     use crate::progressive::Status;
     use crate::stages::Stage;
@@ -163,26 +163,6 @@ mod tests {
     }
 
     #[test]
-    fn the_card_in_all_its_states() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut drawings = Drawings::default();
-        let mut harness = offered(left_in(directory.path()));
-        drawings.add("offered", &harness);
-        harness.get_by_label_contains("Discard: 2 kept").click();
-        harness.run_steps(2);
-        leave(&mut harness);
-        drawings.add("doubted", &harness);
-        harness.state_mut().is_busy = true;
-        harness.run_steps(2);
-        drawings.add("busy", &harness);
-        harness.state_mut().is_busy = false;
-        harness.state_mut().over = Rect::from_min_max(egui::pos2(20.0, 30.0), egui::pos2(220.0, 330.0));
-        harness.run_steps(3);
-        drawings.add("in a small viewport", &harness);
-        drawings.keep("recovered");
-    }
-
-    #[test]
     fn each_part_is_opened_or_discarded_by_itself() {
         let directory = tempfile::tempdir().unwrap();
         let mut harness = offered(left_in(directory.path()));
@@ -207,21 +187,6 @@ mod tests {
         harness.run_steps(2);
         for name in ["Open my picture", "Discard: my picture"] {
             assert!(harness.get_by_label(name).accesskit_node().is_disabled(), "{name}");
-        }
-    }
-
-    #[test]
-    fn the_files_are_named_in_the_tips() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut harness = offered(left_in(directory.path()));
-        let path = harness.state().left[1].path(Part::Picture).display().to_string();
-        for (button, tip) in [
-            ("Open my picture", format!("Show it in this window: {path}")),
-            ("Discard: my picture", format!("Delete {path}; asks once more")),
-        ] {
-            let at = harness.get_by_label(button).rect().center();
-            rest_at(&mut harness, at);
-            assert!(harness.query_by_label(&tip).is_some(), "{tip}");
         }
     }
 }

@@ -223,30 +223,6 @@ fn ago(age: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::document::Document;
-    use crate::app::model::origin::{Origin, Source};
-    use crate::app::recovery::write_film;
-    use crate::film::Film;
-    use crate::progressive::Status;
-    use crate::recipe::Recipe;
-
-    #[test]
-    fn ages_are_short() {
-        let (hour, day) = (3600, 86_400);
-        let words = [59, 60, hour - 1, hour, 2 * day - 1, 2 * day, 3 * day - 1, 3 * day]
-            .map(|seconds| ago(Duration::from_secs(seconds)));
-        let expected = [
-            "just now",
-            "1 min ago",
-            "59 min ago",
-            "1 h ago",
-            "47 h ago",
-            "2 days ago",
-            "2 days ago",
-            "3 days ago",
-        ];
-        assert_eq!(words, expected);
-    }
 
     #[test]
     fn what_nothing_is_lost_with_is_not_offered() {
@@ -267,70 +243,6 @@ mod tests {
         assert_eq!(left.rows().map(|row| row.part).collect::<Vec<_>>(), [Part::Picture]);
     }
 
-    #[cfg(unix)]
-    #[test]
-    fn kept_pictures_that_cannot_be_listed_are_named_and_stay() {
-        let directory = tempfile::tempdir().unwrap();
-        let folder = directory.path().join("window-1-1.slots");
-        // A link to itself: the system refuses to open it.
-        std::os::unix::fs::symlink(&folder, &folder).unwrap();
-        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-        for _ in 0..2 {
-            let [row] = left.rows().collect::<Vec<_>>().try_into().ok().unwrap();
-            let fault = row.fault.unwrap();
-            assert_eq!((row.part, row.title.as_str()), (Part::Slots, "Kept pictures"));
-            assert!(fault.starts_with(&format!("cannot list {}: ", folder.display())), "{fault}");
-            left.settle(Part::Slots);
-            left.count_kept();
-        }
-        assert!(folder.is_symlink() && left.kept().is_empty());
-    }
-
-    #[test]
-    fn kept_pictures_are_deleted_with_their_folder() {
-        let directory = tempfile::tempdir().unwrap();
-        let folder = directory.path().join("window-1-1.slots");
-        std::fs::create_dir(&folder).unwrap();
-        for name in ["1.exr", "1.json", "2.exr", "slots.json"] {
-            std::fs::write(folder.join(name), "{}").unwrap();
-        }
-        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-        assert_eq!(left.kept().len(), 2);
-        left.settle(Part::Slots);
-        assert!(!folder.exists() && left.rows().next().is_none());
-    }
-
-    #[test]
-    fn a_film_that_is_not_of_the_noted_picture_is_offered_by_itself() {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("window-1-1.exr"), "a film").unwrap();
-        let note = directory.path().join("window-1-1.json");
-        std::fs::write(&note, r#"{ "title": "x", "is_changed": true, "has_film": true }"#).unwrap();
-        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-        let parts = |left: &Left| left.rows().map(|row| row.part).collect::<Vec<_>>();
-        assert_eq!(parts(&left), [Part::Film]);
-        left.separate();
-        assert_eq!(parts(&left), [Part::Film, Part::Picture]);
-        left.settle(Part::Film);
-        assert!(note.exists(), "the picture is still to be opened");
-        drop(left);
-        let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-        assert_eq!(parts(&left), [Part::Picture]);
-    }
-
-    #[test]
-    fn the_newest_files_come_first() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name);
-        for (name, age) in [("window-1-1.exr", 200), ("window-2-1.exr", 100), ("window-3-1.exr", 300)] {
-            let file = std::fs::File::create(at(name)).unwrap();
-            file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
-        }
-        let left = RecoveryFiles::left_in(directory.path());
-        let films: Vec<_> = left.iter().map(|files| files.film().to_owned()).collect();
-        assert_eq!(films, ["window-2-1.exr", "window-1-1.exr", "window-3-1.exr"].map(at));
-    }
-
     #[test]
     fn damaged_files_are_named_until_they_are_deleted() {
         let directory = tempfile::tempdir().unwrap();
@@ -347,25 +259,5 @@ mod tests {
         all[0].settle(Part::Picture);
         drop(all);
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
-    }
-
-    #[test]
-    fn a_film_is_named_after_its_scene_unless_a_note_knows_better() {
-        let directory = tempfile::tempdir().unwrap();
-        let recipe = Recipe { name: "mine".to_owned(), ..Stage::find("metal").unwrap().recipe() };
-        let mut document = Document::new(Origin::new(recipe, Source::Embedded));
-        document.give_size([4, 2]);
-        let mut film = Film::new(4, 2, 2);
-        film.record(0..1, 0).unwrap();
-        let path = directory.path().join("window-1-1.exr");
-        write_film(&path, &film, (&document, &Status::default()), None).unwrap();
-        for (has_film, title) in [(false, "mine"), (true, "noted")] {
-            let note = format!(r#"{{ "title": "noted", "has_film": {has_film} }}"#);
-            std::fs::write(path.with_extension("json"), note).unwrap();
-            let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
-            let [row] = left.rows().collect::<Vec<_>>().try_into().ok().unwrap();
-            assert_eq!((row.part, row.title.as_str(), row.fault), (Part::Film, title, None));
-            assert_eq!(row.about, "1 sample per pixel, 4x2, just now");
-        }
     }
 }

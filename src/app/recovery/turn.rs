@@ -16,17 +16,3 @@ pub fn turn(directory: &Path) -> Option<File> {
 fn turn_within(directory: &Path, patience: Duration) -> Option<File> {
     lock_path(&directory.join("session.lock"), patience)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_window_at_a_time_has_its_turn_and_the_others_do_not_wait_for_ever() {
-        let directory = tempfile::tempdir().unwrap();
-        let first = turn_within(directory.path(), Duration::ZERO).unwrap();
-        assert!(turn_within(directory.path(), Duration::ZERO).is_none());
-        drop(first);
-        assert!(turn_within(directory.path(), Duration::ZERO).is_some());
-    }
-}

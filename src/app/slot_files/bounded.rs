@@ -55,39 +55,3 @@ impl<W: Write + Seek> Seek for Bounded<'_, W> {
         Ok(self.at)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::io::Cursor;
-
-    #[test]
-    fn what_is_too_long_is_counted_and_not_written() {
-        for (limit, written) in [(10, 10), (9, 8), (3, 0)] {
-            let mut file = Cursor::new(Vec::new());
-            let mut bounded = Bounded::new(&mut file, limit);
-            bounded.write_all(b"head").unwrap();
-            bounded.write_all(b"tail").unwrap();
-            bounded.seek(SeekFrom::Start(0)).unwrap();
-            bounded.write_all(b"HEAD").unwrap();
-            bounded.seek(SeekFrom::End(0)).unwrap();
-            bounded.write_all(b"..").unwrap();
-            assert_eq!((bounded.bytes(), bounded.is_over()), (10, limit < 10));
-            assert_eq!(file.into_inner(), b"HEADtail.."[..written]);
-        }
-    }
-
-    #[test]
-    fn it_goes_where_it_is_sent_whether_or_not_all_is_written() {
-        for limit in [10, 3] {
-            let mut file = Cursor::new(Vec::new());
-            let mut bounded = Bounded::new(&mut file, limit);
-            bounded.write_all(b"0123456789").unwrap();
-            let to = [SeekFrom::Current(-3), SeekFrom::Current(2), SeekFrom::End(-4), SeekFrom::Start(2)];
-            let found = to.map(|to| bounded.seek(to).unwrap());
-            assert_eq!((found, bounded.bytes()), ([7, 9, 6, 2], 10), "limit {limit}");
-            let before = bounded.seek(SeekFrom::Current(-3)).unwrap_err();
-            assert_eq!(before.kind(), io::ErrorKind::InvalidInput);
-        }
-    }
-}

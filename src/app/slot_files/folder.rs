@@ -362,6 +362,3 @@ impl Folder {
         folders.flat_map(|path| entries(&path)).filter_map(|file| Some(file.metadata().ok()?.len())).sum()
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -271,26 +271,3 @@ fn title(entry: &Entry) -> String {
         None => entry.name.clone(),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::slots::SlotNumber;
-    use std::path::Path;
-
-    #[test]
-    fn a_picture_that_does_not_fit_is_told_of_with_its_size_and_what_is_there() {
-        let folder = Folder::of(Path::new("/of"), "window-1-1");
-        let writer = Writer::new(folder, 5_000_000, Answers::default().answer(&Context::default()));
-        let [needed, limit, taken] = [3_000_000, 5_000_000, 4_000_000].map(words);
-        let told = format!(
-            "will not come back in the next window: its film takes {needed} on disk, where the kept pictures of \
-             all windows may take {limit} and already take {taken}; delete a slot, or save this one as a film"
-        );
-        for (number, title) in [(Some(SlotNumber::ALL[1]), "Slot 2 (mine)"), (None, "mine")] {
-            let (id, name) = ("1".to_owned(), "mine".to_owned());
-            let entry = Entry { number, id, name, size: [4, 2], samples: 1, has_own_size: true };
-            assert_eq!(writer.too_large(&entry, 3_000_000, 1_000_000), format!("{title} {told}"));
-        }
-    }
-}

@@ -5,8 +5,6 @@ mod folder;
 mod keeper;
 mod note;
 mod reader;
-#[cfg(test)]
-mod tests;
 
 pub use folder::{Entry, Folder, Listing};
 pub use keeper::{Keeper, News};

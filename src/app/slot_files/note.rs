@@ -74,32 +74,3 @@ impl PictureNote {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn backends_of_another_version_are_left_out() {
-        let backend = |name: &str| json!({ "name": name, "device": "x", "lanes": 8, "threads": 3 });
-        let known = BackendInfo { name: "cpu", device: "x".to_owned(), lanes: 8, threads: 3 };
-        for (name, expected) in [("cpu", Some(&known)), ("abacus", None)] {
-            let contributions = json!([[backend("abacus"), 2], [backend("cpu"), 4]]);
-            let note = json!({
-                "backend": backend(name),
-                "contributions": contributions,
-                "trace": { "secs": 3, "nanos": 0 },
-                "seconds_before": 5.0,
-            });
-            let note: PictureNote = serde_json::from_value(note).unwrap();
-            let status = note.status(6);
-            assert_eq!(status.backend.as_ref(), expected);
-            let parts: Vec<_> =
-                status.contributions.iter().map(|part| (&part.backend, part.samples_per_pixel)).collect();
-            assert_eq!(parts, [(&known, 4)]);
-            assert_eq!((status.samples_per_pixel, status.trace), (6, Duration::from_secs(3)));
-            assert_eq!(note.seconds_before, Some(5.0));
-        }
-    }
-}

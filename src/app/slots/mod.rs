@@ -135,24 +135,4 @@ mod tests {
             assert!(reopened.document == kept.document);
         }
     }
-
-    #[test]
-    fn a_slot_waits_for_one_picture_until_it_is_there() {
-        let (mut actions, context) = (SlotActions::default(), Context::default());
-        let [one, two, ..] = SlotNumber::ALL;
-        for number in [one, two, one] {
-            actions.want(number);
-        }
-        assert!(actions.is_wanted(one) && actions.is_wanted(two) && !actions.is_copying());
-        assert_eq!(actions.take_wanted(), [one, two]);
-        assert!(!actions.is_wanted(one));
-        let request = Arc::new(());
-        actions.awaited.push((one, Arc::downgrade(&request)));
-        assert!(actions.is_wanted(one) && !actions.is_wanted(two) && actions.is_copying());
-        drop(request);
-        assert!(!actions.is_wanted(one) && !actions.is_copying());
-        let (document, main) = (Document::new(Origin::usual()), Tracer::new().unwrap());
-        actions.copy(&context, two, (&document, &main), None);
-        assert!(actions.awaited.iter().all(|(number, _)| *number == two), "the first request is forgotten");
-    }
 }

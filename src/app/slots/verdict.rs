@@ -182,11 +182,6 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
-    use crate::app::tests::{Drawings, dressed};
-    use crate::film::PixelSum;
-    use crate::stages::Stage;
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn the_answer_to_an_earlier_question_is_not_shown() {
@@ -218,94 +213,5 @@ mod tests {
         assert_eq!(verdict.words(), Some(Err("nothing has done it; try again")));
         verdict.ask(&context, &kept, &screen.subject(), Default::default());
         assert_eq!(verdict.answers.wait().map(|(number, _)| number), Some(2));
-    }
-
-    /// A film of 80x48 pixels, one sample each: a quarter of white, and by so much less where `is_other`.
-    fn film(is_other: impl Fn(usize, usize) -> bool, by: f64) -> Arc<Film> {
-        let mut film = Film::new(80, 48, 1);
-        for (pixel, sum) in film.halves_mut()[0].iter_mut().enumerate() {
-            let value = if is_other(pixel % 80, pixel / 80) { 0.25 - by } else { 0.25 };
-            *sum = PixelSum([(value * f64::from(1 << 24)) as u64; 3]);
-        }
-        film.record(0..1, 0).unwrap();
-        Arc::new(film)
-    }
-
-    #[test]
-    fn the_verdict_is_told_in_a_few_words() {
-        let is_pixel = |x: usize, y: usize| (x, y) == (30, 20);
-        let is_hole = |x: usize, y: usize| (33..37).contains(&x) && (17..20).contains(&y);
-        for (other, headline, is_equal) in [
-            (film(is_pixel, 0.0), "Identical to the bit", true),
-            (film(is_pixel, 0.02), "Only noise", true),
-            (film(is_pixel, -0.5), "Cannot tell", false),
-            (film(is_hole, 0.25), "More than noise", false),
-        ] {
-            let picture = |name: &str, film: Arc<Film>| {
-                let recipe = Stage::find("metal").unwrap().recipe();
-                Picture { name: name.to_owned(), recipe, film }
-            };
-            let pictures = [picture("slot 1", film(is_pixel, 0.0)), picture("slot 2", other)];
-            let found = found(pictures).unwrap();
-            assert_eq!((found.headline, found.is_equal), (headline, is_equal), "{}", found.text);
-        }
-    }
-
-    /// The window with what was found.
-    fn shown(found: Result<Found, String>) -> Harness<'static, Verdict> {
-        let names = Some(["slot 1", "the live picture"].map(str::to_owned));
-        let verdict = Verdict { names, found: Some(found), ..Verdict::default() };
-        let draw = |ui: &mut egui::Ui, verdict: &mut Verdict| verdict.ui(ui.ctx());
-        Harness::builder().with_size([800.0, 600.0]).build_ui_state(draw, verdict)
-    }
-
-    #[test]
-    fn the_finding_in_all_its_states() {
-        let mut drawings = Drawings::default();
-        let long = "label words that are longer than a line and need another one, which begins below them ";
-        let text =
-            format!("first       slot 1\nsecond      the live picture\n{}\n\nverdict\n", long.repeat(3));
-        let found =
-            |headline, is_equal, times| Some(Ok(Found { headline, is_equal, text: text.repeat(times) }));
-        for (name, size, found) in [
-            ("awaited", [800.0, 600.0], None),
-            ("not compared", [800.0, 600.0], Some(Err("the films have different sizes".to_owned()))),
-            ("equal", [800.0, 600.0], found("Only noise", true, 1)),
-            ("not equal", [800.0, 600.0], found("More than noise", false, 1)),
-            ("long", [800.0, 600.0], found("More than noise", false, 9)),
-            ("in a small window", [420.0, 240.0], found("Only noise", true, 9)),
-        ] {
-            let names =
-                Some(["slot 1: 11.4 The complete rule, 4 samples", "the live picture"].map(str::to_owned));
-            let verdict = Verdict { names, found, ..Verdict::default() };
-            let draw = |ui: &mut egui::Ui, verdict: &mut Verdict| verdict.ui(ui.ctx());
-            let mut harness = dressed(size).build_ui_state(draw, verdict);
-            harness.run_steps(5);
-            drawings.add(name, &harness);
-        }
-        drawings.keep("only_noise");
-    }
-
-    #[test]
-    fn the_reason_is_told_where_nothing_was_found() {
-        let harness = shown(Err("the films have different sizes".to_owned()));
-        assert!(harness.query_by_label("Not compared: the films have different sizes").is_some());
-    }
-
-    #[test]
-    fn a_finding_is_copied_and_closed() {
-        let text = "verdict     equal up to noise\n".to_owned();
-        let mut harness = shown(Ok(Found { headline: "Only noise", is_equal: true, text: text.clone() }));
-        harness.get_by_label("Copy").click();
-        harness.step();
-        let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text),
-            _ => None,
-        });
-        assert_eq!(copied, Some(&text));
-        assert!(harness.state().is_open());
-        harness.get_by_label("Close").click();
-        harness.run_steps(2);
-        assert!(!harness.state().is_open());
     }
 }

@@ -232,29 +232,6 @@ mod tests {
     }
 
     #[test]
-    fn the_selected_sphere_is_shown_with_the_edits_that_wait() {
-        let mut window = window(FIELD);
-        let model = &mut window.model;
-        let edit = |sphere, radius| with_radius(&model.document, sphere, radius);
-        let edits = [edit(1, 0.125), edit(2, 0.5), edit(1, 0.0625), edit(2, 0.25)];
-        let mut spheres = Spheres::default();
-        for edit in edits {
-            spheres.edit(model, edit).unwrap();
-        }
-        let scene = Arc::clone(model.document.checked.scene());
-        for (sphere, radius) in [(1, 0.0625), (2, 0.25), (3, scene.spheres[3].radius)] {
-            model.selected = Some(sphere);
-            let selected = spheres.selected(model).unwrap();
-            assert_eq!((selected.sphere, selected.body.radius), (sphere, radius));
-            assert_eq!(selected.body.center, scene.spheres[sphere].center);
-            assert_eq!(selected.material, scene.materials[scene.spheres[sphere].material].name);
-            assert_eq!(selected.count, scene.spheres.len());
-        }
-        model.selected = None;
-        assert!(spheres.selected(model).is_none());
-    }
-
-    #[test]
     fn a_thread_makes_one_edit_at_a_time_and_none_while_a_button_is_held() {
         let mut window = window(FIELD);
         let model = &mut window.model;
@@ -291,23 +268,6 @@ mod tests {
     }
 
     #[test]
-    fn a_small_scene_changes_at_once_and_back_to_that_of_its_stage() {
-        let mut window = window("weekender --stage metal --size 16x9 --device cpu");
-        let (model, mut spheres) = (&mut window.model, Spheres::default());
-        let usual = Body::of(model.document.scene(), 1).unwrap();
-        for (radius, is_changed) in [(0.25, true), (usual.radius, false)] {
-            model.selected = None;
-            spheres.edit(model, Edit::Change(1, Body { radius, ..usual })).unwrap();
-            assert_eq!((model.document.scene().spheres[1].radius, model.selected), (radius, Some(1)));
-            assert_eq!(model.document.has_changed_scene(), is_changed, "{radius}");
-        }
-        let refused = spheres.edit(model, Edit::Change(2, Body { radius: 0.0, ..usual }));
-        assert!(refused.is_err_and(|reason| reason.contains("radius is 0")));
-        assert!(!model.document.has_changed_scene() && model.selected == Some(1));
-        assert!(spheres.queue.is_empty());
-    }
-
-    #[test]
     fn an_edit_of_a_large_scene_that_cannot_be_made_is_told_and_changes_nothing() {
         let mut window = window(FIELD);
         let edit = with_radius(window.document(), 1, 0.0);
@@ -333,17 +293,5 @@ mod tests {
         let told = spheres.follow(&context, model).unwrap_err();
         assert_eq!(told, "the program failed (on purpose)");
         assert!(!spheres.is_working && spheres.queue.is_empty());
-    }
-
-    #[test]
-    fn the_spheres_are_gone_through_in_a_circle() {
-        let mut scene = Scene::default();
-        assert_eq!([None, Some(0)].map(|selected| neighbour(&scene, selected, true)), [None, None]);
-        for _ in 0..3 {
-            scene.add_sphere(glam::DVec3::ZERO, 1.0, 0);
-        }
-        let at = [None, Some(0), Some(1), Some(2), Some(9)];
-        assert_eq!(at.map(|selected| neighbour(&scene, selected, true)), [0, 1, 2, 0, 0].map(Some));
-        assert_eq!(at.map(|selected| neighbour(&scene, selected, false)), [2, 2, 0, 1, 8].map(Some));
     }
 }

@@ -102,7 +102,7 @@ fn is_hidden(hiding: &Scene, eye: DVec3, at: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+
     use proptest::prelude::*;
 
     proptest! {
@@ -133,60 +133,5 @@ mod tests {
             let quarters: Vec<_> = outline.quarters().collect();
             prop_assert!(quarters[0][0] > middle[0] && quarters[1][1] < middle[1], "{:?}", quarters);
         }
-    }
-
-    #[test]
-    fn what_is_behind_others_is_hidden() {
-        let recipe = Recipe::builtin("three-spheres").unwrap();
-        let scene = &recipe.scene;
-        let visible = |camera: &Camera, sphere: usize| {
-            let sphere = scene.spheres[sphere];
-            let outline = Outline::new(camera, 16.0 / 9.0, sphere.center, sphere.radius, Some(scene));
-            outline.points.iter().filter(|point| point.is_visible).count()
-        };
-        let middle = (1..scene.spheres.len()).find(|index| scene.spheres[*index].center.x == 0.0).unwrap();
-        // From the front, the sphere in the middle stands before the ground; from below, the ground hides it.
-        assert_eq!(visible(&recipe.camera, middle), POINTS);
-        let below = Camera { look_from: DVec3::new(0.0, -300.0, -1.0), vup: DVec3::Z, ..recipe.camera };
-        assert_eq!(visible(&below, middle), 0);
-        // A sphere beside the line of sight hides a part of a small one behind it.
-        let mut scene = Scene::default();
-        scene.add_sphere(DVec3::new(0.0, 0.0, -4.0), 0.2, 0);
-        scene.add_sphere(DVec3::new(1.0, 0.0, -2.0), 0.95, 0);
-        let outline = Outline::new(&Camera::BOOK, 1.0, scene.spheres[0].center, 0.2, Some(&scene));
-        let visible = outline.points.iter().filter(|point| point.is_visible).count();
-        assert!(visible > POINTS / 4 && visible < 3 * POINTS / 4, "{visible}");
-    }
-
-    #[test]
-    fn the_ground_has_a_horizon_and_a_room_has_no_outline() {
-        let ground = DVec3::new(0.0, -1000.0, 0.0);
-        let camera = Camera {
-            look_from: DVec3::new(0.0, 1.0, 0.0),
-            look_at: DVec3::new(0.0, 1.0, -1.0),
-            ..Camera::BOOK
-        };
-        let outline = Outline::new(&camera, 1.0, ground, 1000.0, None);
-        assert_eq!(outline.bounds(), None, "it goes around the eye");
-        let heights =
-            outline.points.iter().filter_map(|point| point.place).filter(|[x, _]| (0.0..1.0).contains(x));
-        let heights: Vec<f64> = heights.map(|[_, y]| y).collect();
-        assert!(heights.len() > 20 && heights.iter().all(|y| (0.5..0.6).contains(y)), "{heights:?}");
-        assert!(Outline::new(&camera, 1.0, DVec3::ZERO, 1.0, None).points.is_empty(), "the eye is on it");
-        assert!(Outline::new(&camera, 1.0, DVec3::ZERO, 9.0, None).points.is_empty(), "the eye is in it");
-    }
-
-    #[test]
-    fn the_ground_hides_the_lower_half_of_a_sphere_that_is_sunk_into_it() {
-        let mut scene = Scene::default();
-        let center = DVec3::new(0.0, 0.0, -4.0);
-        scene.add_sphere(center, 0.5, 0);
-        scene.add_sphere(DVec3::new(0.0, -1000.0, 0.0), 1000.0, 0);
-        let camera = Camera { look_from: DVec3::new(0.0, 1.0, 0.0), look_at: center, ..Camera::BOOK };
-        let outline = Outline::new(&camera, 1.0, center, 0.5, Some(&scene));
-        let is_visible = [POINTS / 4, 3 * POINTS / 4].map(|index| outline.points[index].is_visible);
-        assert_eq!(is_visible, [true, false], "above and below its centre");
-        let visible = outline.points.iter().filter(|point| point.is_visible).count();
-        assert!(visible > POINTS / 4 && visible < 3 * POINTS / 4, "{visible}");
     }
 }

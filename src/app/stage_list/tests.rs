@@ -1,7 +1,7 @@
 //! Tests of the list of stages.
 
 use super::*;
-use crate::app::tests::{Drawings, dressed, facts_of, leave};
+use crate::app::tests::{dressed, facts_of};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -26,44 +26,6 @@ fn list(words: &str, height: f32) -> Harness<'static, List> {
         *room = ui.min_rect();
     };
     dressed([400.0, height]).build_ui_state(draw, list)
-}
-
-fn show(harness: &mut Harness<'_, List>, words: &str) {
-    harness.state_mut().facts = facts_of(words);
-    harness.run_steps(4);
-}
-
-#[test]
-fn the_list_opens_at_the_stage_that_is_shown_and_follows_it() {
-    let mut drawings = Drawings::default();
-    for height in [250.0, 500.0, 1000.0] {
-        let mut harness = list("--stage glass-schlick --size 32x18", height);
-        harness.run_steps(4);
-        drawings.add(&format!("{height} points high"), &harness);
-        show(&mut harness, "--stage ppm-tiny");
-        drawings.add("the first stage", &harness);
-        show(&mut harness, "--stage book");
-        drawings.add("the last stage", &harness);
-        show(&mut harness, "--scene field:20");
-        drawings.add("no stage", &harness);
-    }
-    drawings.keep("stage_list");
-}
-
-#[test]
-fn a_row_shows_that_it_can_be_clicked_and_has_a_tip() {
-    let mut drawings = Drawings::default();
-    let mut harness = list("--stage glass-schlick --size 32x18", 500.0);
-    harness.run_steps(4);
-    leave(&mut harness);
-    drawings.add("the pointer is elsewhere", &harness);
-    let names = ["metal", "glass-schlick"].map(|id| Command::Stage(Stage::find(id).unwrap()).name());
-    drawings.add_tips_of(&mut harness, &names.each_ref().map(String::as_str));
-    drawings.keep("stage_list_tips");
-    let other = Command::Stage(Stage::find("hollow-glass").unwrap());
-    harness.get_by_label(&other.name()).click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().commands, [other]);
 }
 
 /// Types letter by letter.
@@ -108,49 +70,6 @@ fn typing_leaves_the_stages_with_these_words() {
 }
 
 #[test]
-fn the_list_is_as_high_as_what_was_found() {
-    let mut harness = list("--stage sky --size 32x18", 700.0);
-    harness.run_steps(4);
-    let whole = harness.state().room;
-    assert!(whole.height() > 500.0, "{whole}");
-    type_in(&mut harness, "schl");
-    let one = harness.state().room;
-    assert!(one.top() == whole.top() && one.height() < 160.0, "{one}");
-    type_in(&mut harness, "xyzzy");
-    assert!(harness.state().room.height() < one.height());
-    (0..9).for_each(|_| harness.key_press(Key::Backspace));
-    harness.run_steps(5);
-    assert_eq!(harness.state().room, whole);
-}
-
-#[test]
-fn what_is_new_is_looked_through_if_no_name_has_the_words() {
-    assert_eq!(found("").len(), Stage::ALL.len());
-    assert_eq!(found(" SCHLICK ").first().map(|stage| stage.id), Some("glass-schlick"));
-    assert!(found("no stage has these words").is_empty());
-    for stage in Stage::ALL {
-        assert!(found(stage.title).contains(&stage) && found(stage.what_is_new).contains(&stage));
-    }
-}
-
-#[test]
-fn words_that_no_stage_has_choose_nothing() {
-    let mut harness = list("--stage sky --size 32x18", 700.0);
-    harness.run_steps(4);
-    type_in(&mut harness, "xyzzy");
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert!(listed(&harness).is_empty() && harness.state().commands.is_empty());
-    assert!(harness.query_by_label_contains("No stage has").is_some());
-    (0..5).for_each(|_| harness.key_press(Key::Backspace));
-    harness.run_steps(5);
-    assert_eq!(listed(&harness).len(), Stage::ALL.len());
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert_eq!(harness.state().commands.len(), 1);
-}
-
-#[test]
 fn arrows_go_through_the_list_as_far_as_it_goes_and_enter_chooses() {
     let last = Stage::ALL.len() - 1;
     for (words, keys, expected) in [
@@ -172,56 +91,4 @@ fn arrows_go_through_the_list_as_far_as_it_goes_and_enter_chooses() {
         let chosen = &Stage::ALL[(here + expected).min(last)];
         assert_eq!(harness.state().commands, [Command::Stage(chosen)], "{words}");
     }
-}
-
-#[test]
-fn a_page_has_eight_stages() {
-    let mut harness = list("--stage metal --size 32x18", 700.0);
-    harness.run_steps(4);
-    let here = harness.state().facts.document().stage().unwrap().index();
-    assert!(here >= 8 && here + 9 < Stage::ALL.len(), "{here}");
-    for (key, place) in [
-        (Key::PageDown, here + 8),
-        (Key::ArrowDown, here + 9),
-        (Key::PageUp, here + 1),
-        (Key::PageUp, here - 7),
-    ] {
-        harness.key_press(key);
-        harness.run_steps(4);
-        let stage = &Stage::ALL[place];
-        assert!(
-            harness.get_by_label(&Command::Stage(stage).name()).is_focused(),
-            "{key:?}: not {}",
-            stage.id
-        );
-    }
-}
-
-#[test]
-fn what_was_typed_is_forgotten_when_the_list_closes() {
-    let mut harness = list("--stage sky --size 32x18", 700.0);
-    harness.run_steps(4);
-    type_in(&mut harness, "schl");
-    assert_eq!(listed(&harness), ["glass-schlick"]);
-    harness.state_mut().is_open = false;
-    harness.run_steps(6);
-    harness.state_mut().is_open = true;
-    harness.run_steps(4);
-    assert_eq!(listed(&harness).len(), Stage::ALL.len());
-    let here = Command::Stage(harness.state().facts.document().stage().unwrap()).name();
-    assert!(harness.get_by_label(&here).is_focused(), "it opens at the stage that is shown");
-}
-
-#[test]
-fn a_stage_is_found_by_everything_in_its_headings_and_by_its_name() {
-    for stage in Stage::ALL {
-        let Stage { section, section_title, chapter_title, title, id, .. } = stage;
-        for typed in [section, section_title, chapter_title, title, id] {
-            assert!(found(&typed.to_uppercase()).contains(&stage), "{id}: {typed}");
-        }
-        let both = format!("{title} {section}");
-        assert!(found(&both).contains(&stage), "{both}");
-    }
-    let of_section: Vec<&Stage> = Stage::ALL.iter().filter(|stage| stage.section == "11.4").collect();
-    assert_eq!(found("11.4"), of_section, "all words are looked for in the names alone");
 }

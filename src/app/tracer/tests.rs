@@ -3,19 +3,7 @@
 use super::*;
 use crate::app::model::origin::Origin;
 use crate::render_cpu::CpuOptions;
-use crate::render_gpu::GpuOptions;
 use crate::stages::Stage;
-
-#[test]
-fn a_preview_stays_until_the_picture_is_clear_or_late() {
-    let picture =
-        |samples_per_pixel| Picture { run: 1, width: 1, height: 1, samples_per_pixel, rgb8: vec![0; 3] };
-    let soon = Duration::from_millis(100);
-    assert!(is_confetti(&picture(2), soon) && is_confetti(&picture(7), soon));
-    assert!(!is_confetti(&picture(8), soon));
-    let [early, late] = [499, 500].map(Duration::from_millis);
-    assert!(is_confetti(&picture(2), early) && !is_confetti(&picture(2), late));
-}
 
 #[test]
 fn passes_are_short_while_something_moves_and_few_during_a_pause() {
@@ -81,23 +69,6 @@ fn wish<'a>(document: &'a Document, backend: &'a BackendChoice, is_moving: bool)
 }
 
 #[test]
-fn a_move_waits_for_the_picture_of_what_it_has_begun() {
-    let ([first, second], backend) = (["metal", "metal-fuzzy"].map(small), cpu());
-    let mut tracer = Tracer::new().unwrap();
-    let mut traced = |document: &Document, is_moving: bool, is_pictured: bool| {
-        if is_pictured {
-            tracer.started.as_mut().unwrap().is_pictured = true;
-        }
-        tracer.want(&wish(document, &backend, is_moving)).unwrap();
-        [&first, &second].map(|document| tracer.is_of(document))
-    };
-    assert_eq!(traced(&first, true, false), [true, false]);
-    assert_eq!(traced(&second, true, false), [true, false], "nothing of the first has been seen");
-    assert_eq!(traced(&second, false, false), [false, true], "the move has ended");
-    assert_eq!(traced(&first, true, true), [true, false], "the second has been seen");
-}
-
-#[test]
 fn a_preview_is_followed_by_the_picture_and_a_first_look_once_it_has_been_seen() {
     let (document, backend) = (small("metal"), cpu());
     let want = wish(&document, &backend, false);
@@ -119,33 +90,6 @@ fn a_preview_is_followed_by_the_picture_and_a_first_look_once_it_has_been_seen()
         assert!(!tracer.is_of(&document));
         tracer.want(&want).unwrap();
         assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
-    }
-}
-
-#[test]
-fn a_large_picture_is_looked_at_first_on_a_cpu_unless_it_is_there_at_another_size() {
-    let mut large = small("book");
-    large.give_size([1600, 900]);
-    let mut tracer = Tracer::new().unwrap();
-    let has_look =
-        |tracer: &Tracer, backend: &BackendChoice| tracer.first_look(&wish(&large, backend, false)).is_some();
-    let (options, gpu) = (CpuOptions::default(), GpuOptions::default());
-    for (backend, expected) in [
-        (cpu(), true),
-        (BackendChoice::Reference { threads: None }, true),
-        (BackendChoice::Gpu(gpu.clone()), false),
-        (BackendChoice::Both(options, gpu), false),
-    ] {
-        assert_eq!(has_look(&tracer, &backend), expected, "{backend:?}");
-    }
-    let mut resized = large.clone();
-    resized.set_size([16, 9]);
-    let mut moved = resized.clone();
-    moved.camera.vfov_degrees += 1.0;
-    for (document, expected) in [(resized, false), (moved, true)] {
-        let texture = Texture::new([1, 1], &[0; 3], None);
-        tracer.shown = Some(Shown { texture, samples: 1, divisor: 1, document, run: 0 });
-        assert_eq!(has_look(&tracer, &cpu()), expected);
     }
 }
 

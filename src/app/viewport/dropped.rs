@@ -28,29 +28,3 @@ fn words_for_files(files: &[egui::HoveredFile]) -> Option<String> {
         ),
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::{Drawings, part};
-    use eframe::egui::pos2;
-
-    #[test]
-    fn files_over_the_window_are_named() {
-        let mut drawings = Drawings::default();
-        let room = Rect::from_min_max(pos2(20.0, 10.0), pos2(420.0, 290.0));
-        let mut harness = part([440.0, 300.0], |ui| paint_drop(ui, room));
-        for (name, files) in [
-            ("no file", vec![]),
-            ("a file", vec![Some("/of/a.png".into())]),
-            ("two files", vec![Some("/of/b.png".into()), Some("/of/a.png".into())]),
-            ("a file without a name", vec![None]),
-        ] {
-            let file = |path| egui::HoveredFile { path, ..egui::HoveredFile::default() };
-            harness.input_mut().hovered_files = files.into_iter().map(file).collect();
-            harness.run_steps(1);
-            drawings.add(name, &harness);
-        }
-        drawings.keep("dropped_files");
-    }
-}

@@ -152,34 +152,10 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::surfaces::Surfaces;
-    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::app::tests::dressed;
     use crate::stages::Stage;
-    use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
+    use eframe::egui::{Event, Modifiers, PointerButton, pos2};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::{NodeT, Queryable};
-
-    #[test]
-    fn the_ends_lie_as_the_scene_is_seen() {
-        let at = |side: Viewpoint| {
-            let found = ends(&Camera::BOOK, pos2(100.0, 100.0));
-            found.iter().find(|end| end.side == side).map(|end| (end.at, end.depth)).unwrap()
-        };
-        assert_eq!(at(Viewpoint::Right), (pos2(100.0 + LENGTH, 100.0), 0.0));
-        assert_eq!(at(Viewpoint::Top), (pos2(100.0, 100.0 - LENGTH), 0.0));
-        assert_eq!(at(Viewpoint::Front), (pos2(100.0, 100.0), 1.0));
-        assert_eq!(at(Viewpoint::Back), (pos2(100.0, 100.0), -1.0));
-    }
-
-    #[test]
-    fn of_two_ends_the_one_in_front_is_meant() {
-        let found = ends(&Camera::BOOK, pos2(100.0, 100.0));
-        assert_eq!(front(&found, pos2(101.0, 99.0)).map(|end| end.side), Some(Viewpoint::Front));
-        assert_eq!(front(&found, pos2(100.0 - LENGTH, 100.0)).map(|end| end.side), Some(Viewpoint::Left));
-        assert!(front(&found, pos2(115.0, 85.0)).is_none());
-        let top = pos2(100.0, 100.0 - LENGTH);
-        let near = |down: f32| front(&found, top - vec2(0.0, END + down)).map(|end| end.side);
-        assert_eq!((near(0.9), near(1.1)), (Some(Viewpoint::Top), None), "an end can be missed by a point");
-    }
 
     struct Axes {
         document: Document,
@@ -216,54 +192,6 @@ mod tests {
     const MIDDLE: Pos2 = pos2(390.0 - MARGIN - LENGTH - END - 3.0, 290.0 - MARGIN - LENGTH - END - 3.0);
 
     #[test]
-    fn the_axes_are_drawn_in_their_corner_and_turn_with_the_camera() {
-        let mut drawings = Drawings::default();
-        let behind = Camera { look_from: -ABOVE.look_from, ..ABOVE };
-        for (name, camera) in
-            [("from above", ABOVE), ("from behind", behind), ("along an axis", Camera::BOOK)]
-        {
-            drawings.add(name, &axes(camera, ROOM));
-        }
-        for (name, room) in [
-            ("just enough room", Rect::from_min_size(ROOM.min, LEAST_ROOM)),
-            ("too narrow", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.5, 0.0))),
-            ("too low", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.0, 0.5))),
-        ] {
-            drawings.add(name, &axes(ABOVE, room));
-        }
-        drawings.keep("axes");
-    }
-
-    #[test]
-    fn what_is_under_the_pointer_is_named_and_can_be_clicked() {
-        let mut harness = axes(ABOVE, ROOM);
-        let mut drawings = Drawings::default();
-        drawings.add("the pointer is elsewhere", &harness);
-        for end in ends(&ABOVE, MIDDLE) {
-            rest_at(&mut harness, end.at);
-            drawings.add(end.side.name(), &harness);
-            assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::PointingHand);
-            for pressed in [true, false] {
-                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-                harness.event(Event::PointerButton { pos: end.at, button, pressed, modifiers });
-            }
-            harness.run_steps(2);
-            assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::ViewFrom(end.side)]);
-        }
-        rest_at(&mut harness, MIDDLE + vec2(20.0, 14.0));
-        drawings.add("between the ends", &harness);
-        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
-        rest_at(&mut harness, MIDDLE - vec2(0.0, LENGTH + END + 15.0));
-        drawings.add("beside the disc", &harness);
-        assert_ne!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
-        leave(&mut harness);
-        harness.key_press(Key::Tab);
-        harness.run_steps(3);
-        drawings.add("the keyboard is at the first end", &harness);
-        drawings.keep("axes_pointer");
-    }
-
-    #[test]
     fn a_drag_orbits_about_what_is_looked_at() {
         let mut harness = axes(ABOVE, ROOM);
         for from in [MIDDLE, ends(&ABOVE, MIDDLE)[1].at] {
@@ -287,35 +215,5 @@ mod tests {
             assert_eq!((touch.is_move, touch.is_orbit, touch.pivot), (true, true, Some(ABOVE.look_at)));
             assert!(harness.state().commands.is_empty(), "a drag is no click");
         }
-    }
-
-    #[test]
-    fn a_drag_of_a_view_from_the_top_turns_about_what_is_up_in_the_scene() {
-        let top =
-            Camera { look_from: glam::DVec3::new(0.0, 3.0, -1.0), vup: glam::DVec3::NEG_Z, ..Camera::BOOK };
-        let mut harness = axes(top, ROOM);
-        let modifiers = Modifiers::NONE;
-        harness.event(Event::PointerMoved(MIDDLE));
-        harness.event(Event::PointerButton {
-            pos: MIDDLE,
-            button: PointerButton::Primary,
-            pressed: true,
-            modifiers,
-        });
-        harness.event(Event::PointerMoved(MIDDLE + vec2(20.0, -5.0)));
-        harness.run_steps(1);
-        let [right, down] = angles(vec2(20.0, -5.0));
-        let upright = navigation::upright(&top, top.look_at, glam::DVec3::Y);
-        let expected = navigation::orbit(&upright, top.look_at, right, down);
-        let found = harness.state().document.camera;
-        assert!(found.look_from.distance(expected.look_from) < 1e-9, "{found:?}");
-        assert_eq!(found.vup, glam::DVec3::Y);
-    }
-
-    #[test]
-    fn the_axes_can_be_used_without_a_pointer() {
-        let harness = axes(ABOVE, ROOM);
-        let found = |name: &str| !harness.get_by_label(name).accesskit_node().is_disabled();
-        assert!(found("Axes") && Viewpoint::ALL.iter().all(|side| found(side.name())));
     }
 }

@@ -37,30 +37,3 @@ pub(super) fn paint_scale(ui: &Ui, painter: &Painter, rect: Rect, scale: &HeatSc
         painter.text(at, Align2::CENTER_TOP, name, font.clone(), ui.visuals().text_color());
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::{Drawings, dressed};
-
-    #[test]
-    fn each_scale_has_its_legend_as_large_as_its_letters() {
-        let rect = Rect::from_min_max(pos2(40.0, 30.0), pos2(460.0, 230.0));
-        let mut drawings = Drawings::default();
-        for (name, scale, letters) in [
-            ("errors", HeatScale::ERROR, 11.0),
-            ("differences", HeatScale::DIFFERENCE, 11.0),
-            ("rays", HeatScale::RAYS, 11.0),
-            ("occupancy", HeatScale::OCCUPANCY, 11.0),
-            ("luminances", HeatScale::luminance([-8.0, 4.0]), 11.0),
-            ("luminances in large letters", HeatScale::luminance([-8.0, 4.0]), 16.5),
-        ] {
-            let legend = dressed([500.0, 260.0]).build_ui(|ui| {
-                ui.style_mut().text_styles.get_mut(&TextStyle::Small).unwrap().size = letters;
-                paint_scale(ui, ui.painter(), rect, &scale);
-            });
-            drawings.add(name, &legend);
-        }
-        drawings.keep("legends");
-    }
-}

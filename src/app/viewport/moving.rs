@@ -131,8 +131,8 @@ impl Moving {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
-    use crate::app::tests::{Drawings, dressed};
-    use crate::app::viewport::placement::Zoom;
+    use crate::app::tests::dressed;
+
     use crate::stages::Stage;
     use eframe::egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, Sense, TouchPhase, pos2, vec2};
     use egui_kittest::Harness;
@@ -202,36 +202,6 @@ mod tests {
     }
 
     #[test]
-    fn a_drag_orbits_about_what_was_under_the_pointer() {
-        let by = vec2(40.0, -15.0);
-        let [right, down] = angles(by);
-        assert!((right - 0.24).abs() < 1e-9 && (down + 0.09).abs() < 1e-9, "{right} {down}");
-        let mut drawings = Drawings::default();
-        for (name, at, pivot) in
-            [("the ball", BALL, Some(DVec3::new(0.0, 0.0, -0.7))), ("the sky", SKY, None)]
-        {
-            let mut harness = picture();
-            let before = camera(&harness);
-            let pivot = pivot.unwrap_or(before.look_at);
-            drag(&mut harness, at, by, PointerButton::Primary, Modifiers::NONE);
-            assert!(same(&camera(&harness), &navigation::orbit(&before, pivot, right, down)), "{name}");
-            let touch = &harness.state().touch;
-            assert!(touch.is_move && touch.is_orbit && touch.pivot.unwrap().distance(pivot) < 1e-9, "{name}");
-            drawings.add(name, &harness);
-            let released = Event::PointerButton {
-                pos: at + by,
-                button: PointerButton::Primary,
-                pressed: false,
-                modifiers: Modifiers::NONE,
-            };
-            harness.event(released);
-            harness.run_steps(2);
-            assert!(harness.state().moving.pivot.is_none());
-        }
-        drawings.keep("pivots");
-    }
-
-    #[test]
     fn without_rays_the_camera_stays() {
         let (primary, secondary) = (PointerButton::Primary, PointerButton::Secondary);
         let by = vec2(40.0, -15.0);
@@ -258,20 +228,6 @@ mod tests {
         assert!(same(&camera(&harness), &navigation::look(&before, 0.24, 0.09)), "{:?}", camera(&harness));
         let touch = &harness.state().touch;
         assert_eq!((touch.is_move, touch.is_orbit, touch.pivot), (true, false, None));
-    }
-
-    #[test]
-    fn other_drags_move_the_picture_and_not_the_camera() {
-        for (button, modifiers) in
-            [(PointerButton::Middle, Modifiers::NONE), (PointerButton::Primary, Modifiers::SHIFT)]
-        {
-            let mut harness = picture();
-            let (eye, rect) = (camera(&harness), harness.state().placement.rect());
-            drag(&mut harness, BALL, vec2(40.0, -15.0), button, modifiers);
-            harness.run_steps(1);
-            assert_eq!(harness.state().placement.rect().min - rect.min, vec2(40.0, -15.0), "{button:?}");
-            assert!(camera(&harness) == eye && !harness.state().touch.is_move, "{button:?}");
-        }
     }
 
     #[test]
@@ -303,69 +259,6 @@ mod tests {
             let expected = navigation::dolly(&before, point, f64::exp(-0.002 * f64::from(down)));
             assert!(same(&camera(&harness), &expected), "{at} {down}: {:?}", camera(&harness));
             assert!(touch.is_move && !touch.is_orbit && touch.pivot.unwrap().distance(point) < 1e-9);
-        }
-    }
-
-    #[test]
-    fn a_pinch_zooms_the_picture_and_not_the_camera() {
-        let mut harness = picture();
-        let before = camera(&harness);
-        harness.event(Event::PointerMoved(SKY));
-        harness.event(Event::Zoom(1.5));
-        harness.run_steps(2);
-        assert_eq!(harness.state().placement.zoom(), Zoom::Times(30.0));
-        assert!(camera(&harness) == before && !harness.state().touch.is_move);
-        let rect = harness.state().placement.rect();
-        let place = place_at(rect, SKY);
-        assert!((place[0] - 0.5).abs() < 0.01 && (place[1] - 10.0 / 180.0).abs() < 0.01, "{rect} {place:?}");
-    }
-
-    #[test]
-    fn beside_the_picture_the_camera_turns_about_and_goes_to_what_it_looks_at() {
-        // Lower than the picture's left edge, where the ground would be seen.
-        let beside = pos2(30.0, 170.0);
-        let small = || {
-            let mut harness = picture();
-            harness.state_mut().placement.zoom_by(0.5);
-            harness.run_steps(1);
-            assert!(!harness.state().placement.rect().contains(beside));
-            harness
-        };
-        let mut harness = small();
-        let before = camera(&harness);
-        drag(&mut harness, beside, vec2(40.0, -15.0), PointerButton::Primary, Modifiers::NONE);
-        let expected = navigation::orbit(&before, before.look_at, 0.24, -0.09);
-        assert!(same(&camera(&harness), &expected), "{:?}", camera(&harness));
-        let mut harness = small();
-        harness.event(Event::PointerMoved(beside));
-        harness.run_steps(1);
-        let (unit, phase, source) = (MouseWheelUnit::Point, TouchPhase::Move, MouseWheelSource::Wheel);
-        let (delta, modifiers) = (vec2(0.0, 5.0), Modifiers::NONE);
-        harness.event(Event::MouseWheel { unit, delta, phase, source, modifiers });
-        harness.run_steps(2);
-        let expected = navigation::dolly(&before, before.look_at, f64::exp(-0.01));
-        assert!(same(&camera(&harness), &expected), "{:?}", camera(&harness));
-        assert_eq!(harness.state().touch.pivot, Some(before.look_at));
-    }
-
-    #[test]
-    fn a_view_from_the_top_is_turned_about_what_is_up_in_the_scene() {
-        let top = Camera { look_from: DVec3::new(0.0, 3.0, -1.0), vup: DVec3::NEG_Z, ..Camera::BOOK };
-        let by = vec2(40.0, -15.0);
-        let [right, down] = angles(by);
-        // The ball in the middle is under the pointer.
-        let pivot = DVec3::new(0.0, f64::sqrt(0.21), -1.0);
-        let upright = |pivot: DVec3| navigation::upright(&top, pivot, DVec3::Y);
-        for (button, expected) in [
-            (PointerButton::Primary, navigation::orbit(&upright(pivot), pivot, right, down)),
-            (PointerButton::Secondary, navigation::look(&upright(top.look_from), right, -down)),
-        ] {
-            let mut harness = picture();
-            harness.state_mut().document.camera = top;
-            harness.run_steps(1);
-            drag(&mut harness, BALL, by, button, Modifiers::NONE);
-            assert_eq!(expected.vup, DVec3::Y);
-            assert!(same(&camera(&harness), &expected), "{button:?}: {:?}", camera(&harness));
         }
     }
 }

@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::app::tests::dressed;
     use eframe::egui::{
-        Event, Modifiers, MouseWheelSource, MouseWheelUnit, Rect, Sense, TouchPhase, Vec2, pos2, vec2,
+        Event, Modifiers, MouseWheelSource, MouseWheelUnit, Rect, Sense, TouchPhase, pos2, vec2,
     };
     use egui_kittest::Harness;
 
@@ -66,34 +66,6 @@ mod tests {
             handle(ui, &response, placement, is_primary_free);
         };
         dressed([340.0, 200.0]).build_ui_state(draw, Placement::default())
-    }
-
-    /// By how much a drag moves the picture.
-    fn dragged(is_primary_free: bool, button: PointerButton, modifiers: Modifiers) -> Vec2 {
-        let mut harness = picture(is_primary_free);
-        let (pos, before) = (ROOM.center(), harness.state().rect().min);
-        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
-        harness.event(Event::PointerMoved(pos));
-        harness.event_modifiers(press(pos, true), modifiers);
-        harness.event_modifiers(Event::PointerMoved(pos + vec2(30.0, -12.0)), modifiers);
-        harness.run_steps(1);
-        let is_grabbed = harness.output().platform_output.cursor_icon == CursorIcon::Grabbing;
-        harness.event(press(pos + vec2(30.0, -12.0), false));
-        harness.run_steps(2);
-        let moved = harness.state().rect().min - before;
-        // With Shift, the last frame of the drag is one without it.
-        assert!(is_grabbed == (moved != Vec2::ZERO) || modifiers.shift, "{button:?} {modifiers:?}");
-        moved
-    }
-
-    #[test]
-    fn drags_move_the_picture_unless_they_mark_a_part_of_it() {
-        let (primary, middle, by) = (PointerButton::Primary, PointerButton::Middle, vec2(30.0, -12.0));
-        assert_eq!(dragged(true, primary, Modifiers::NONE), by);
-        assert_eq!(dragged(false, primary, Modifiers::NONE), Vec2::ZERO);
-        assert_eq!(dragged(false, primary, Modifiers::SHIFT), by);
-        assert_eq!(dragged(false, middle, Modifiers::NONE), by);
-        assert_eq!(dragged(true, PointerButton::Secondary, Modifiers::NONE), Vec2::ZERO);
     }
 
     #[test]

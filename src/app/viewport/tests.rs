@@ -1,24 +1,14 @@
 //! Tests of the viewport: clicks and the menu of a right click, the divider, and pictures whose scene stays as it is.
 
 use super::*;
-use crate::app::model::edit::Body;
-use crate::app::model::kept::Kept;
-use crate::app::model::presentation::Presentation;
-use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::model::view::With;
 use crate::app::pixel_values::PixelValues;
-use crate::app::tests::{Case, dressed, facts_of, leave};
-use crate::film::Film;
+use crate::app::tests::{dressed, facts_of};
 use crate::scene::Pick;
 use eframe::egui::{Event, Modifiers, Shape, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
-use std::sync::Arc;
 
 const PRIMARY: PointerButton = PointerButton::Primary;
-
-const PRESENTATION: Presentation =
-    Presentation { was_full_screen: false, has_captions: true, is_blank: false };
 
 /// A place on the ball in the middle, and one in the sky.
 const BALL: [f32; 2] = [0.55, 0.47];
@@ -169,180 +159,6 @@ fn a_click_selects_focuses_or_lists_paths_and_a_second_one_looks_there() {
     assert!(camera(&harness) == home && painted(&harness, "sky").is_some());
 }
 
-/// Opens the menu of a right click.
-fn open_menu(harness: &mut Harness<'_, Picture>, at: Pos2) {
-    click(harness, at, PointerButton::Secondary, Modifiers::NONE);
-    harness.run_steps(5);
-}
-
-#[test]
-fn the_menu_of_a_right_click_is_about_where_it_was_opened() {
-    let home = camera(&picture());
-    let chosen = |name: &str| {
-        let mut harness = picture();
-        // On the ball at the left.
-        let pos = at(&harness, [0.3, 0.5]);
-        let seen = under(&harness, pos);
-        assert_eq!(seen.sphere, 2);
-        open_menu(&mut harness, pos);
-        harness.get_by_label_contains(name).click();
-        harness.run_steps(5);
-        (harness, pos, seen)
-    };
-    let (harness, ..) = chosen("Select this");
-    assert_eq!((selects(&harness), camera(&harness)), (Some(Some(2)), home));
-    let (harness, _, seen) = chosen("Focus on this");
-    assert_eq!(camera(&harness), Camera { focus_distance: Some(home.depth_of(seen.point)), ..home });
-    let (harness, _, seen) = chosen("Look at this");
-    assert_eq!(camera(&harness), Camera { look_at: seen.point, ..home });
-    let (harness, ..) = chosen("List the paths of this pixel");
-    assert_eq!(lists(&harness), Some([4, 4]));
-    let (harness, pos, seen) = chosen("Add a sphere here");
-    let aspect = harness.state().facts.document().aspect();
-    let body = new_body(Some(seen), &home, aspect, place_of(&harness, pos));
-    let edits: Vec<Edit> = harness.state().touches.iter().filter_map(|touch| touch.edit).collect();
-    assert_eq!(edits, [Edit::Add(body)]);
-
-    // Beside the picture there is nothing to select.
-    let mut harness = picture();
-    harness.state_mut().facts.model.document.camera.vfov_degrees = 30.0;
-    let beside = harness.state().viewport.room().unwrap().center_top() + vec2(0.0, 20.0);
-    open_menu(&mut harness, beside);
-    assert!(harness.query_by_label_contains("Select this").is_none());
-    harness.get_by_label(&Command::Home.name()).click();
-    harness.run_steps(5);
-    assert_eq!(harness.state().commands, [Command::Home]);
-}
-
-/// Shows a kept picture in place of the live one.
-fn look_at_slot(picture: &mut Picture) {
-    let model = &mut picture.facts.model;
-    let mut film = Film::new(16, 9, 1);
-    film.record(0..1, 0).unwrap();
-    let kept = Arc::new(Kept::new(model.document.clone(), film, Arc::default(), None));
-    model.view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
-    model.view.look(Some(SlotNumber::ALL[0]));
-}
-
-#[test]
-fn a_menu_lists_what_can_be_done_with_the_picture_that_is_shown() {
-    let cases: [(Case<Picture>, [bool; 4]); 5] = [
-        (("the live one", |_| ()), [true, false, false, false]),
-        (
-            ("a sphere is selected", |picture| picture.facts.model.selected = Some(1)),
-            [true, true, false, false],
-        ),
-        (("a slot", look_at_slot), [false, false, true, false]),
-        (("a crop", |picture| picture.facts.model.view.crop = Some(None)), [false, false, false, true]),
-        (
-            ("a crop of a slot", |picture| {
-                look_at_slot(picture);
-                picture.facts.model.view.crop = Some(None);
-            }),
-            [false, false, false, true],
-        ),
-    ];
-    for ((name, change), expected) in cases {
-        let mut harness = picture();
-        change(harness.state_mut());
-        harness.run_steps(2);
-        let pos = at(&harness, [0.3, 0.5]);
-        open_menu(&mut harness, pos);
-        let look = Command::Slot(SlotCommand::LookLive);
-        let found = [Command::Home, Command::DuplicateSphere, look, Command::CopyCrop]
-            .map(|command| harness.query_by_label(&command.name()).is_some());
-        assert_eq!(found, expected, "{name}");
-        assert_eq!(harness.query_by_label_contains("Select this").is_some(), expected[0], "{name}");
-    }
-}
-
-#[test]
-fn the_scene_of_a_kept_picture_or_a_crop_stays_as_it_is() {
-    let by = vec2(60.0, -30.0);
-    // Whether a click selects, the camera moves, the picture moves, and a part is marked.
-    let cases: [(Case<Picture>, [bool; 4]); 3] = [
-        (("the live one", |_| ()), [true, true, false, false]),
-        (("a slot", look_at_slot), [false, false, true, false]),
-        (("a crop", |picture| picture.facts.model.view.crop = Some(None)), [false, false, false, true]),
-    ];
-    for ((name, change), expected) in cases {
-        let mut harness = picture();
-        change(harness.state_mut());
-        harness.run_steps(2);
-        let (before, rect) = (camera(&harness), harness.state().viewport.placement.rect());
-        let pos = at(&harness, BALL);
-        click(&mut harness, pos, PRIMARY, Modifiers::NONE);
-        // Later than a second click.
-        harness.run_steps(40);
-        drag(&mut harness, pos, pos + by);
-        let Picture { viewport, facts, .. } = harness.state();
-        let is_marked = facts.model.view.crop.is_some_and(|crop| crop.is_some());
-        let moved = viewport.placement.rect().min - rect.min;
-        assert!(moved == Vec2::ZERO || moved == by, "{name}: {moved}");
-        let found = [selects(&harness).is_some(), camera(&harness) != before, moved == by, is_marked];
-        assert_eq!(found, expected, "{name}");
-    }
-}
-
-/// The part of the screen in which the name of the selected ball is drawn, and the place of the picture.
-fn named(stage: &str, change: fn(&mut Picture)) -> (Option<Rect>, Rect) {
-    let mut harness = picture_of(stage);
-    let body = Body::of(harness.state().facts.document().scene(), 1).unwrap();
-    let selected = Selected { sphere: 1, body, material: "blue".to_owned(), count: 4 };
-    let name = selected.name();
-    harness.state_mut().selected = Some(selected);
-    change(harness.state_mut());
-    harness.run_steps(2);
-    (painted(&harness, &name), harness.state().viewport.placement.rect())
-}
-
-#[test]
-fn the_selected_sphere_is_shown_in_its_own_picture() {
-    let (clip, rect) = named("metal", |_| ());
-    assert_eq!(clip, Some(rect));
-    assert_eq!(named("metal", look_at_slot).0, None, "a kept picture has spheres of its own");
-    // The later stage is at the right of a wipe.
-    for (stage, from, to) in [("metal", 0.0, 0.5), ("metal-fuzzy", 0.5, 1.0)] {
-        let (clip, rect) = named(stage, |picture| picture.facts.model.view.toggle(Mode::Wipe, With::Stage));
-        let own = [from, to].map(|share| rect.left() + share * rect.width());
-        let found = clip.unwrap();
-        assert!((found.left() - own[0]).abs() + (found.right() - own[1]).abs() < 0.01, "{stage}: {found}");
-    }
-}
-
-#[test]
-fn there_are_axes_where_they_turn_the_camera_and_panels_are_shown() {
-    let cases: [(Case<Picture>, bool); 6] = [
-        (("the live one", |_| ()), true),
-        (("without axes", |picture| picture.facts.model.remembered.has_gizmo = false), false),
-        (("without panels", |picture| picture.facts.model.remembered.has_panels = false), false),
-        (("a presentation", |picture| picture.facts.model.presentation = Some(PRESENTATION)), false),
-        (("a slot", look_at_slot), false),
-        (("a crop", |picture| picture.facts.model.view.crop = Some(None)), false),
-    ];
-    for ((name, change), expected) in cases {
-        let mut harness = picture();
-        change(harness.state_mut());
-        harness.run_steps(2);
-        assert_eq!(harness.query_by_label("Axes").is_some(), expected, "{name}");
-    }
-    assert!(picture_of("ppm-gradient").query_by_label("Axes").is_none(), "it traces no rays");
-}
-
-#[test]
-fn the_picture_has_a_margin_between_panels_and_none_without() {
-    let mut harness = picture();
-    for (has_panels, margin) in [(true, 10.0), (false, 0.0)] {
-        harness.state_mut().facts.model.remembered.has_panels = has_panels;
-        harness.run_steps(2);
-        let viewport = &harness.state().viewport;
-        let free = viewport.room().unwrap().shrink(margin);
-        assert_eq!(viewport.room_pixels(), [free.width() as u32, free.height() as u32], "{has_panels}");
-        let rect = viewport.placement.rect();
-        assert!((rect.width() - free.width()).abs() < 0.1, "{has_panels}: {rect} in {free}");
-    }
-}
-
 #[test]
 fn the_divider_of_a_wipe_is_dragged_from_nearby_and_within_the_picture() {
     for (beside, to, expected) in [
@@ -377,24 +193,4 @@ fn the_divider_of_a_wipe_is_dragged_from_nearby_and_within_the_picture() {
     drag(&mut harness, ends[0], ends[1]);
     assert_eq!(harness.state().facts.model.view.divider, 0.5);
     assert_ne!(camera(&harness), before);
-}
-
-#[test]
-fn a_new_sphere_goes_to_the_pointer_or_to_the_ground_before_the_camera() {
-    let mut harness = picture();
-    let ground = [0.5, 0.7];
-    assert_eq!(harness.state().viewport.aim(), ground);
-    let pos = at(&harness, [0.27, 0.75]);
-    harness.event(Event::PointerMoved(pos));
-    harness.run_steps(1);
-    assert_eq!(harness.state().viewport.aim(), place_of(&harness, pos));
-    assert_eq!(harness.state().touches.last().unwrap().hovered, Some([4, 6]));
-    let beside = harness.state().viewport.room().unwrap().center_top() + vec2(0.0, 20.0);
-    harness.event(Event::PointerMoved(beside));
-    harness.run_steps(1);
-    let Picture { viewport, touches, .. } = harness.state();
-    assert_eq!((viewport.aim(), touches.last().unwrap().hovered), (ground, None));
-    harness.event(Event::PointerMoved(pos));
-    leave(&mut harness);
-    assert_eq!(harness.state().viewport.aim(), ground);
 }

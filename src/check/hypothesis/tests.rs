@@ -97,20 +97,3 @@ fn small_pictures_get_all_samples_and_large_ones_as_many_paths() {
     // Without antialiasing, all samples of a pixel are the same.
     assert_eq!(count("sky", 16, 9), Some(1));
 }
-
-#[test]
-fn hypotheses_are_as_kept() {
-    use crate::kept;
-    use std::fmt::Write;
-    let mut text = String::new();
-    for stage in Stage::ALL {
-        writeln!(text, "{}", stage.id).unwrap();
-        for hypothesis in Hypothesis::mistakes(&stage.recipe()) {
-            let id = hypothesis.mistake.map_or("right", |mistake| mistake.about().id);
-            let note = hypothesis.note.as_deref().unwrap_or_default();
-            let all = kept::digest_of(format!("{hypothesis:?}").as_bytes());
-            writeln!(text, "  {id} {all} {note}").unwrap();
-        }
-    }
-    kept::check("check_hypotheses", &text);
-}

@@ -2,33 +2,6 @@
 
 use super::*;
 use crate::companion::directive::{GLOSSARY_MARK, REFERENCES_MARK};
-use crate::kept;
-use std::fmt::Write;
-
-/// The made-up site with more chapters: one of the book with the book's own title, and one beyond the book.
-fn longer() -> Site {
-    let mut site = Site::made_up();
-    let [first, second] = [0, 1].map(|place| site.chapters[place].clone());
-    let title = "Surface Normals and Multiple Objects".to_owned();
-    site.chapters.push(Chapter { id: "same".to_owned(), title, ..first });
-    site.chapters.push(Chapter { id: "beyond".to_owned(), number: 20, ..second });
-    site
-}
-
-#[test]
-fn parts_of_the_page_are_as_kept() {
-    let (site, mut uses, mut faults) = (longer(), Uses::default(), Vec::new());
-    let mut told = navigation(&site).into_string();
-    for place in 0..site.chapters.len() {
-        let text = PreEscaped(format!("<p>text {place}</p>"));
-        write!(told, "\n\n{}", section(&site, place, &text, &mut faults).into_string()).unwrap();
-    }
-    uses.terms.insert("ray".to_owned(), "Some normals".to_owned());
-    let marks = format!("a {GLOSSARY_MARK} b {REFERENCES_MARK} c");
-    write!(told, "\n\n{}\n", back_matter::fill(&marks, &site, &mut uses, &mut faults)).unwrap();
-    assert_eq!(faults, []);
-    kept::check("companion_parts", &told.replace('>', ">\n"));
-}
 
 #[test]
 fn the_glossary_and_the_references_are_on_the_page_once() {

@@ -1,9 +1,7 @@
 //! Made-up texts as HTML, and what is wrong with them.
 
 use super::*;
-use crate::kept;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// The HTML of a text of the first chapter.
 fn converted(site: &Site, text: &str, uses: &mut Uses, faults: &mut Vec<Fault>) -> String {
@@ -120,39 +118,6 @@ fn a_mark_after_a_formula_stays_with_it() {
     for (text, is_kept) in [("$x$, y", true), ("$x$) y", true), ("$x$ y", false), ("$x$-y", false)] {
         assert_eq!(alone(&site, text).contains("<span class=\"nb\">"), is_kept, "{text}");
     }
-}
-
-#[test]
-fn texts_are_as_kept() {
-    let (site, mut uses) = (Site::made_up(), Uses::default());
-    let mut told = String::new();
-    for text in [
-        "Some *words* and `code`, \"quoted\".",
-        "## A Title with `code`\n\n### A part\n\n#### A smaller one\n\n## A Title with `code`",
-        "# Too high\n\n##### Too low",
-        "## 6.1 Shading with Surface Normals\n\n## 6.2 Something Else\n\n## 6.99 Nothing",
-        "```rust\nfn a() -> u32 { 1 }\n```\n\n    indented\n\n```\nplain <b>\n```\n\n```cobol\nx\n```",
-        "| a | b |\n|---|--:|\n| 1 | 2 |",
-        "A formula $\\frac{1}{2}$, another ($x$) and $\\nosuch$.\n\n$$y = x^2$$\n\n$$\\nosuch$$",
-        "[@first], [@second; @nobody] and [unknown].",
-        "[a](glossary:lane) [b](glossary:lane) [c](glossary:nothing)",
-        "[a](book:6) [b](book:6.1) [c](book:6.99)",
-        "[a](source:shaders/path.wgsl) [b](source:src/../x) [c](source:lib.rs) [d](other.md) [e](http://a.org)",
-        "<https://a.org/> <nobody@a.org> [f][g]\n\n[g]: nowhere.md",
-        "<b>bold</b>\n\n<div>\n</div>\n\n![a *picture*](a.png) after",
-        "{{nothing}}\n\nafter {{figure sky}}\n\n{{ figure sky }}\n\n{{figure sky}}\n\n{{glossary}}",
-        "- one\n- two with [a link](#a-b)\n\n1. first\n2. second\n\n> quoted",
-    ] {
-        let mut faults = Vec::new();
-        let html = converted(&site, text, &mut uses, &mut faults);
-        writeln!(told, "=== {text}\n--- as HTML\n{}", html.trim_end()).unwrap();
-        for fault in faults {
-            writeln!(told, "--- {fault}").unwrap();
-        }
-    }
-    let figures: Vec<&str> = uses.figures.iter().map(|figure| figure.title).collect();
-    writeln!(told, "=== {:?}\n{:?}\n{:?}\n{figures:?}", uses.terms, uses.targets, uses.anchors).unwrap();
-    kept::check("companion_texts", &told);
 }
 
 #[test]

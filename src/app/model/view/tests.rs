@@ -1,29 +1,8 @@
 //! Tests of what the viewport shows.
 
 use super::*;
-use crate::app::model::origin::Source;
 use crate::app::model::slots::Slot;
 use crate::film::Film;
-use crate::stress::shown_cases;
-
-fn by_the_book(mine: &Document) -> Other {
-    Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked))
-}
-
-#[test]
-fn what_is_no_stage_is_compared_with_the_books_arithmetic() {
-    let mut view = ViewState::default();
-    for case in shown_cases() {
-        let mine = Document::new(Origin::of_case(case));
-        assert_eq!(view.other(&mine), Some(by_the_book(&mine)));
-    }
-    let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-    assert!(matches!(view.other(&stage), Some(Other::Stage(_))));
-    view.toggle(Mode::Wipe, With::Book);
-    assert!(matches!(view.other(&stage), Some(Other::ByTheBook(..))));
-    let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
-    assert_eq!(view.other(&no_rays), None);
-}
 
 #[test]
 fn every_stage_has_something_to_be_compared_with() {
@@ -115,55 +94,6 @@ fn no_picture_is_compared_with_itself() {
 }
 
 #[test]
-fn a_slot_of_another_size_is_wiped_but_not_subtracted() {
-    let (mut view, document) = with_slots();
-    for (mode, number, is_possible) in [
-        (Mode::Wipe, ONE, true),
-        (Mode::Wipe, TWO, true),
-        (Mode::Difference, ONE, true),
-        (Mode::Difference, TWO, false),
-        (Mode::Wipe, SlotNumber::ALL[2], false),
-    ] {
-        view.end_comparison();
-        assert!(view.compared(&document).is_none() && view.wiped(&document).is_none());
-        view.toggle(mode, With::Slot(number));
-        assert_eq!(view.compared(&document).is_some(), is_possible, "{mode:?} {number}");
-        assert_eq!(view.is_other_earlier(&document), is_possible, "a slot is at the left");
-        let wiped = view.wiped(&document).map(|(kept, fitted)| (kept.size(), fitted.part()));
-        let expected = match (mode, number) {
-            (Mode::Wipe, ONE) => Some(([4, 2], [0.0, 0.0, 1.0, 1.0])),
-            (Mode::Wipe, TWO) => Some(([8, 8], [0.25, 0.0, 0.75, 1.0])),
-            _ => None,
-        };
-        assert_eq!(wiped, expected, "{mode:?} {number}");
-    }
-}
-
-#[test]
-fn the_earlier_stage_is_at_the_left_and_cameras_that_differ_stay() {
-    let stage = |id| Document::new(Origin::of_stage(Stage::find(id).unwrap()));
-    let mut view = ViewState { is_with_next: true, ..ViewState::default() };
-    assert!(!view.is_other_earlier(&stage("book")), "nothing is compared");
-    view.toggle(Mode::Wipe, With::Stage);
-    assert_eq!(
-        ["ppm-tiny", "metal", "book"].map(|id| view.is_other_earlier(&stage(id))),
-        [false, false, true]
-    );
-    view.is_with_next = false;
-    let has_other =
-        |view: &ViewState| ["view-distant", "glass-schlick"].map(|id| view.has_other_camera(&stage(id)));
-    assert_eq!(has_other(&view), [true, false]);
-    view.toggle(Mode::Wipe, With::Book);
-    assert_eq!(has_other(&view), [false, false]);
-    let (mut moved, book) = (stage("book").recipe(), stage("book").recipe());
-    assert!(!differ_in_camera(&moved, &book));
-    moved.camera.vfov_degrees += 1.0;
-    assert!(differ_in_camera(&moved, &book));
-    moved.rules.antialiasing = !moved.rules.antialiasing;
-    assert!(!differ_in_camera(&moved, &book), "in more than that");
-}
-
-#[test]
 fn what_is_subtracted_is_the_film_of_the_shown_difference() {
     let film = || Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]], identity: None });
     let (loaded, other) = (film(), film());
@@ -180,54 +110,6 @@ fn what_is_subtracted_is_the_film_of_the_shown_difference() {
     assert!(view.subtracted(Some(&other)).is_none());
 }
 
-/// A view with three slots in use, whose pictures have these sizes.
-fn with_sizes(sizes: [[u32; 2]; 3]) -> ViewState {
-    let mut view = ViewState::default();
-    for (number, size) in SlotNumber::ALL.into_iter().zip(sizes) {
-        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        document.give_size(size);
-        let mut film = Film::new(size[0], size[1], 1);
-        film.record(0..1, 0).unwrap();
-        let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
-        view.slots.put(number, Slot { name: String::new(), kept });
-    }
-    view
-}
-
-#[test]
-fn two_slots_are_compared_by_their_own_sizes() {
-    let mut live = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-    live.give_size([4, 2]);
-    let three = SlotNumber::ALL[2];
-    let mut view = with_sizes([[4, 2], [8, 8], [8, 8]]);
-    for (looked, with, is_possible) in
-        [(None, ONE, true), (None, TWO, false), (Some(TWO), three, true), (Some(TWO), ONE, false)]
-    {
-        view.end_comparison();
-        view.look(looked);
-        assert_eq!(view.shown_document(&live).size(), looked.map_or([4, 2], |_| [8, 8]));
-        view.toggle(Mode::Difference, With::Slot(with));
-        assert_eq!(view.compared(&live).is_some(), is_possible, "{looked:?} and {with}");
-    }
-    view.toggle(Mode::Wipe, With::Slot(ONE));
-    let wiped = view.wiped(&live).map(|(kept, fitted)| (kept.size(), fitted.part()));
-    assert_eq!(wiped, Some(([4, 2], [0.0, 0.25, 1.0, 0.75])), "in the place of the slot that is shown");
-}
-
-#[test]
-fn looking_again_at_what_is_shown_keeps_the_comparison() {
-    let (mut view, _) = with_slots();
-    view.look(Some(TWO));
-    view.toggle(Mode::Wipe, With::Slot(ONE));
-    (view.divider, view.is_divider_unplaced) = (0.25, false);
-    view.look(Some(TWO));
-    assert_eq!(
-        (view.mode(), view.compared_slot(), view.slots.looked()),
-        (Some(Mode::Wipe), Some(ONE), Some(TWO))
-    );
-    assert_eq!((view.divider, view.is_divider_unplaced), (0.25, false));
-}
-
 #[test]
 fn a_stage_is_compared_with_its_pair_or_with_its_neighbour() {
     let others = |is_with_next| {
@@ -237,32 +119,4 @@ fn a_stage_is_compared_with_its_pair_or_with_its_neighbour() {
     };
     assert_eq!(others(false), ["ppm-gradient", "metal", "metal", "glass-refract", "defocus"]);
     assert_eq!(others(true), ["ppm-gradient", "metal", "glass-refract", "hollow-glass", "defocus"]);
-}
-
-/// Where it is another one, it is traced anew.
-#[test]
-fn the_other_picture_is_another_one_if_it_has_other_spheres_or_comes_from_elsewhere() {
-    let mine = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-    let scene = CheckedScene::new(Arc::clone(mine.checked.scene()), *mine.rules());
-    let edited = Document { checked: Arc::new(scene), ..mine.clone() };
-    let origin = Arc::new(mine.origin.with_recipe(mine.origin.recipe.clone()));
-    let elsewhere = Document { origin, ..mine.clone() };
-    let stage = |id| Other::Stage(Stage::find(id).unwrap());
-    let (view, _) = with_slots();
-    let kept = |number| Other::Kept(Arc::clone(&view.slots.get(number).unwrap().kept));
-    let all = || {
-        let [mine, edited, elsewhere] = [&mine, &edited, &elsewhere].map(by_the_book);
-        [mine, edited, elsewhere, stage("metal"), stage("book"), kept(ONE), kept(TWO)]
-    };
-    for (row, a) in all().iter().enumerate() {
-        for (column, b) in all().iter().enumerate() {
-            assert_eq!(a == b, row == column, "{row} and {column}");
-        }
-    }
-    // Each is traced, or was, as its origin says.
-    assert_eq!(stage("book").origin().source, Source::Stage(Stage::find("book").unwrap()));
-    assert_eq!(by_the_book(&mine).origin().source, Source::ByTheBook);
-    assert!(Arc::ptr_eq(by_the_book(&edited).origin().scene.scene(), edited.checked.scene()));
-    let document = &view.slots.get(TWO).unwrap().kept.document;
-    assert!(Arc::ptr_eq(&kept(TWO).origin(), &document.origin));
 }

@@ -46,100 +46,6 @@ fn only_files_of_windows_that_are_gone_are_left() {
     assert_eq!(names(at), <[&str; 0]>::default(), "nothing stays where nothing was kept");
 }
 
-#[test]
-fn a_film_without_a_lock_or_a_note_is_found() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("window-1-1.exr"), "film").unwrap();
-    fs::write(directory.path().join("window-2-1.json"), "no note").unwrap();
-    fs::write(directory.path().join("other.exr"), "film").unwrap();
-    let left = RecoveryFiles::left_in(directory.path());
-    assert_eq!(left.len(), 2);
-    let told = left.iter().find_map(|files| files.note().err()).unwrap();
-    assert!(told.contains("window-2-1.json"), "{told}");
-}
-
-#[test]
-fn a_session_goes_from_window_to_window() {
-    let directory = tempfile::tempdir().unwrap();
-    let at = directory.path();
-    let first = RecoveryFiles::claim(at).unwrap();
-    assert!(!first.take_session().unwrap());
-    write(&first, "first", Some("film"));
-    first.leave_session().unwrap();
-    drop(first);
-    assert!(RecoveryFiles::left_in(at).is_empty(), "it ended in order");
-    let [second, third] = [(); 2].map(|()| RecoveryFiles::claim(at).unwrap());
-    assert!(second.take_session().unwrap());
-    assert_eq!((title(&second).as_str(), second.has_film()), ("first", true));
-    assert!(!third.take_session().unwrap(), "one window takes it");
-    // It is this window's now: if the window is killed, the film is left.
-    drop(second);
-    assert_eq!(RecoveryFiles::left_in(at).len(), 1);
-}
-
-#[test]
-fn a_session_that_no_window_has_taken_is_replaced_only_if_nothing_is_lost() {
-    let directory = tempfile::tempdir().unwrap();
-    let at = directory.path();
-    let leave = |title: &str, film| {
-        let files = RecoveryFiles::claim(at).unwrap();
-        write(&files, title, film);
-        files.leave_session().unwrap();
-    };
-    leave("plain", None);
-    leave("long", Some("film"));
-    assert!(RecoveryFiles::left_in(at).is_empty(), "the plain one cost nothing");
-    leave("newest", None);
-    let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
-    assert_eq!((title(&left).as_str(), left.has_film()), ("long", true));
-    let last = RecoveryFiles::claim(at).unwrap();
-    assert!(last.take_session().unwrap() && title(&last) == "newest" && !last.has_film());
-}
-
-#[test]
-fn a_film_is_set_aside() {
-    let directory = tempfile::tempdir().unwrap();
-    let [files, other] = [(); 2].map(|()| RecoveryFiles::claim(directory.path()).unwrap());
-    write(&files, "mine", Some("film"));
-    let aside = files.set_film_aside().unwrap();
-    assert!(aside.exists() && !files.has_film());
-    assert_ne!(aside, other.film(), "that name is another window's");
-    let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
-    assert_eq!(left.film(), aside);
-    files.take_film(&left).unwrap();
-    assert!(files.has_film() && !left.has_film());
-}
-
-#[test]
-fn a_directory_that_cannot_be_is_named() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("file"), "").unwrap();
-    let told = RecoveryFiles::claim(&directory.path().join("file/deeper")).unwrap_err();
-    assert!(told.contains("file/deeper"), "{told}");
-}
-
-#[test]
-fn changes_and_kept_pictures_that_no_window_has_taken_are_not_replaced() {
-    let directory = tempfile::tempdir().unwrap();
-    let at = directory.path();
-    let leave = |note: serde_json::Value, has_slots: bool| {
-        let files = RecoveryFiles::claim(at).unwrap();
-        files.write_note(&serde_json::from_value(note).unwrap()).unwrap();
-        if has_slots {
-            fs::create_dir(files.slots().path()).unwrap();
-            fs::write(files.slots().film("1"), "a film").unwrap();
-        }
-        files.leave_session().unwrap();
-    };
-    leave(serde_json::json!({ "title": "changed", "is_changed": true }), false);
-    leave(serde_json::json!({ "title": "keeping" }), true);
-    leave(serde_json::json!({ "title": "newest" }), false);
-    let mut left = RecoveryFiles::left_in(at);
-    left.sort_by_key(title);
-    let found: Vec<_> = left.iter().map(|files| (title(files), files.slots().exists())).collect();
-    assert_eq!(found, [("changed".to_owned(), false), ("keeping".to_owned(), true)]);
-}
-
 #[cfg(unix)]
 #[test]
 fn what_cannot_be_looked_at_is_not_taken_for_nothing() {
@@ -165,16 +71,4 @@ fn what_cannot_be_looked_at_is_not_taken_for_nothing() {
             fs::remove_file(at.join(name)).unwrap();
         }
     }
-}
-
-#[cfg(unix)]
-#[test]
-fn kept_pictures_are_set_aside_without_being_looked_at() {
-    let directory = tempfile::tempdir().unwrap();
-    let files = RecoveryFiles::claim(directory.path()).unwrap();
-    let _elsewhere = unreadable(files.slots().path());
-    let aside = files.set_slots_aside().unwrap();
-    assert!(aside.is_symlink() && !files.slots().exists());
-    let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
-    assert_eq!(left.slots().path(), aside);
 }

@@ -3,8 +3,7 @@
 use super::*;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
-use crate::app::model::view::{Mode, With};
-use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, rest_at};
+use crate::app::tests::{dressed, facts_of};
 use crate::film::{Film, PixelSum};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -64,86 +63,6 @@ fn strip() -> Harness<'static, Shown> {
 }
 
 #[test]
-fn a_long_name_gets_more_room_and_an_ellipsis_where_it_is_cut() {
-    let mut harness = strip();
-    let width = |harness: &Harness<'_, Shown>| harness.get_by_label("Name of slot 1").rect().width();
-    let short = width(&harness);
-    let very_long = "a picture of glass ".repeat(9);
-    for (name, is_cut) in [("13.2 A lens instead of a pinhole, 36 spp", false), (very_long.as_str(), true)] {
-        *harness.state_mut().slots().name_mut(ONE).unwrap() = name.to_owned();
-        harness.run_steps(3);
-        assert!(width(&harness) > short + 20.0, "{name}");
-        let is_ellipsis =
-            |shape: &egui::Shape| matches!(shape, egui::Shape::Text(text) if text.galley.text() == "…");
-        let has_it = harness.output().shapes.iter().any(|clipped| is_ellipsis(&clipped.shape));
-        assert_eq!(has_it, is_cut, "{name}");
-    }
-}
-
-#[test]
-fn the_strip_in_all_its_states() {
-    let mut drawings = Drawings::default();
-    let mut harness = strip();
-    drawings.add("three pictures and one to come", &harness);
-    let changes: [Case<Shown>; 6] = [
-        ("a long wait", |shown| {
-            let (name, id) =
-                ("a name that is much too long for the card of a slot".to_owned(), "6".to_owned());
-            let coming = Coming { name, id, size: [3, 900], samples: 7, has_own_size: true };
-            shown.slots().expect(SlotNumber::ALL[5], coming);
-        }),
-        ("one is looked at", |shown| shown.facts.model.view.look(Some(ONE))),
-        ("another is meant", |shown| shown.slots().choose(TWO)),
-        ("one is compared", |shown| {
-            shown.facts.model.view.look(None);
-            shown.facts.model.view.toggle(Mode::Wipe, With::Slot(ONE));
-        }),
-        ("one is subtracted", |shown| {
-            shown.facts.model.view.toggle(Mode::Difference, With::Slot(ONE));
-        }),
-        ("one could not be written", |shown| {
-            let id = shown.slots().get(TWO).unwrap().kept.id.clone();
-            shown.slots().note_lasting(&id, false);
-        }),
-    ];
-    for (name, change) in changes {
-        change(harness.state_mut());
-        harness.run_steps(2);
-        drawings.add(name, &harness);
-    }
-    let replacement = slot(&harness.state().facts.model.document.clone(), [60, 6], "another");
-    harness.state_mut().slots().put(ONE, replacement);
-    harness.run_steps(2);
-    drawings.add("another picture in a slot", &harness);
-    drawings.keep("strip");
-}
-
-#[test]
-fn everything_in_the_strip_is_explained() {
-    let mut drawings = Drawings::default();
-    let mut harness = strip();
-    let id = harness.state_mut().slots().get(TWO).unwrap().kept.id.clone();
-    harness.state_mut().slots().note_lasting(&id, false);
-    harness.run_steps(2);
-    leave(&mut harness);
-    drawings.add("the strip", &harness);
-    drawings.add_tips(&mut harness);
-    for label in ["8x6, 8 samples", "this window only"] {
-        let at = harness.get_by_label(label).rect().center();
-        rest_at(&mut harness, at);
-        drawings.add(label, &harness);
-    }
-    let at = harness.get_by_label("Name of slot 1").rect().center();
-    rest_at(&mut harness, at);
-    drawings.add("a name", &harness);
-    harness.get_by_label("More about slot 2").click();
-    harness.run_steps(4);
-    leave(&mut harness);
-    drawings.add("the menu of a slot", &harness);
-    drawings.keep("strip_tips");
-}
-
-#[test]
 fn every_control_of_the_strip_gives_its_command_for_its_slot() {
     let mut harness = strip();
     let mut click = |name: &str| {
@@ -180,50 +99,5 @@ fn every_control_of_the_strip_gives_its_command_for_its_slot() {
     ] {
         assert_eq!(click("More about slot 2"), (vec![], THREE), "the menu is open");
         assert_eq!(click(&command.name()), (expected, TWO), "{command:?}");
-    }
-}
-
-#[test]
-fn the_slot_that_is_looked_at_returns_to_the_live_picture() {
-    let mut harness = strip();
-    harness.state_mut().facts.model.view.look(Some(TWO));
-    harness.run_steps(2);
-    harness.get_by_label("Slot 2").click();
-    harness.run_steps(2);
-    harness.get_by_label("Live").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().commands, [Command::Slot(SlotCommand::LookLive); 2]);
-}
-
-#[test]
-fn a_thumbnail_is_that_of_the_picture_that_is_in_the_slot_now() {
-    let mut harness = strip();
-    let shown = |harness: &Harness<'_, Shown>| {
-        let (_, texture) = harness.state().strip.textures[ONE.index()].as_ref().unwrap();
-        texture.colour([0, 0]).unwrap()
-    };
-    let of_slot = |harness: &mut Harness<'_, Shown>| {
-        let rgb8 = harness.state_mut().slots().get(ONE).unwrap().kept.thumbnail.rgb8.clone();
-        [rgb8[0], rgb8[1], rgb8[2]]
-    };
-    let document = harness.state().facts.model.document.clone();
-    let mut seen = vec![of_slot(&mut harness)];
-    assert_eq!(shown(&harness), seen[0]);
-    let changes: [fn(&mut Slots, Slot); 3] = [
-        |slots, slot| slots.put(ONE, slot),
-        |slots, slot| {
-            slots.delete(ONE);
-            slots.put(ONE, slot);
-        },
-        |slots, _| slots.bring_back(),
-    ];
-    for (change, shift) in changes.into_iter().zip([24, 22, 0]) {
-        let picture = slot_of(&document, [8, 6], "another", 1 << shift);
-        change(harness.state_mut().slots(), picture);
-        harness.run_steps(2);
-        let expected = of_slot(&mut harness);
-        assert_eq!(shown(&harness), expected);
-        assert_ne!(seen.last(), Some(&expected));
-        seen.push(expected);
     }
 }
