@@ -12,7 +12,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("scene", &["number"]),
     ("stages", &["scene", "suggest"]),
     ("animation", &["scene"]),
-    ("film", &["memory", "files", "number", "threads", "stages"]),
+    ("film", &["memory", "files", "threads", "stages"]),
     ("render", &["memory", "scene", "stages", "film"]),
     ("record", &[]),
     ("heat", &[]),
