@@ -58,13 +58,8 @@ impl Film {
     pub fn new(width: u32, height: u32, half_count: usize) -> Self {
         debug_assert!(half_count == 1 || half_count == 2);
         let pixels = width as usize * height as usize;
-        Film {
-            width,
-            height,
-            halves: vec![vec![PixelSum::default(); pixels]; half_count],
-            samples: SampleRanges::default(),
-            rejected: 0,
-        }
+        let halves = vec![vec![PixelSum::default(); pixels]; half_count];
+        Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 }
     }
 
     /// Like [`Film::new`], but returns an error if there is not enough memory.

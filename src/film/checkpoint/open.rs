@@ -27,10 +27,6 @@ pub struct FilmHead {
     /// Samples that were left out, over all pixels.
     pub rejected: u64,
     pub description: Description,
-    /// Version of the file's layout.
-    pub version: u32,
-    /// Version of the samples.
-    pub sample_version: u32,
     /// Length of the file in bytes.
     pub bytes: u64,
 }
@@ -76,8 +72,6 @@ impl<'a> Opened<'a> {
             samples: head.ranges().map_err(|error| damaged(path, error))?,
             rejected: head.rejected,
             description,
-            version: head.version,
-            sample_version: head.sample_version,
             bytes: length,
         };
         Ok((Opened { path, header: header.clone(), about, bands: head.bands, planes }, reader))
