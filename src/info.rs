@@ -177,7 +177,8 @@ impl Info {
         self.samples_per_pixel = Some(head.samples.count());
         self.sample_ranges = Some(head.samples.to_string());
         (self.halves, self.rejected_samples) = (Some(head.halves), Some(head.rejected));
-        (self.film_version, self.sample_version) = (Some(head.version), Some(head.sample_version));
+        (self.film_version, self.sample_version) =
+            (Some(checkpoint::VERSION), Some(checkpoint::SAMPLE_VERSION));
         match checkpoint::load(path) {
             Ok(read) => {
                 let error: Option<ErrorEstimate> = read.film.error();

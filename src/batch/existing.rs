@@ -117,15 +117,15 @@ mod tests {
         for samples in ["8", "3000", "4000"] {
             let render = options(&["--checkpoint", name, "--samples", samples]);
             let film = put(&path, &render, 0..3000, 0);
-            let told = check(&render, &Places::of(&render), None).unwrap_err().to_string();
+            let told = check(&render, &Places::of(&render).unwrap(), None).unwrap_err().to_string();
             assert!(told.contains("3000 samples") && told.contains("--continue"), "{told}");
             std::fs::remove_file(&path).unwrap();
-            assert!(check(&render, &Places::of(&render), None).unwrap().is_empty());
+            assert!(check(&render, &Places::of(&render).unwrap(), None).unwrap().is_empty());
             put(&path, &render, 0..3000, 0);
             let going_on = options(&["--checkpoint", name, "--samples", "4000", "--continue"]);
-            assert!(check(&going_on, &Places::of(&going_on), Some(&film)).unwrap().is_empty());
+            assert!(check(&going_on, &Places::of(&going_on).unwrap(), Some(&film)).unwrap().is_empty());
             put(&path, &render, 0..3000, 1);
-            let told = check(&render, &Places::of(&render), None).unwrap_err().to_string();
+            let told = check(&render, &Places::of(&render).unwrap(), None).unwrap_err().to_string();
             assert!(told.contains("another picture: seed is 0 here, 1 there"), "{told}");
             std::fs::remove_file(&path).unwrap();
         }
@@ -137,7 +137,7 @@ mod tests {
         let path = directory.path().join("k.exr");
         let warned = |flags: &[&str]| {
             let render = options(&[&["--out", path.to_str().unwrap()][..], flags].concat());
-            check(&render, &Places::of(&render), None).unwrap().join("; ")
+            check(&render, &Places::of(&render).unwrap(), None).unwrap().join("; ")
         };
         put(&path, &options(&[]), 0..32, 0);
         let told = warned(&["--samples", "8"]);
@@ -155,7 +155,7 @@ mod tests {
         let path = directory.path().join("k.exr");
         let render = options(&["--out", path.to_str().unwrap(), "--samples", "64"]);
         let longer = put(&path, &render, 0..32, 0);
-        let places = Places::of(&render);
+        let places = Places::of(&render).unwrap();
         assert!(check(&render, &places, None).unwrap().is_empty());
         for (end, held) in [(8, 32), (40, 40)] {
             let mut film = render.job.new_film();
@@ -176,7 +176,7 @@ mod tests {
         let out = directory.path().join("f.png");
         let warned = |flags: &[&str]| {
             let render = options(&[&["--out", out.to_str().unwrap()][..], flags].concat());
-            check(&render, &Places::of(&render), Some(&film)).unwrap().join("; ")
+            check(&render, &Places::of(&render).unwrap(), Some(&film)).unwrap().join("; ")
         };
         for flags in [["--resume", name].as_slice(), &["--checkpoint", name, "--continue"]] {
             let told = warned(&[flags, &["--samples", "8"]].concat());

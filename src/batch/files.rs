@@ -2,18 +2,18 @@
 
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::files::{FileIdentity, ShownPath};
-use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
+use crate::files::{FileIdentity, LockedError, ShownPath};
+use crate::film::{Description, Film, LockedFilm, key};
 use crate::output::{Forms, OutputFormat, write_image_as};
 use crate::progressive::Status;
 use crate::render::panic_text;
-use crate::saved::{rescue, same_job};
+use crate::saved::rescue;
 use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The film files of a render. They are watched from the start, because another run may write to them, too.
+/// The film files of a render. They are locked from the start, so that no other run writes them.
 pub(super) struct Places {
     /// The film of `--checkpoint`.
     pub checkpoint: Option<SharedPlace>,
@@ -31,28 +31,31 @@ enum Out {
 
 /// A film file that the threads of the render share.
 #[derive(Clone)]
-pub(super) struct SharedPlace(Arc<Mutex<SharedFile>>);
+pub(super) struct SharedPlace(Arc<Mutex<LockedFilm>>);
 
 impl SharedPlace {
-    fn new(path: &Path) -> Self {
-        SharedPlace(Arc::new(Mutex::new(SharedFile::new(path))))
+    fn new(path: &Path) -> Result<Self, LockedError> {
+        Ok(SharedPlace(Arc::new(Mutex::new(LockedFilm::new(path)?))))
     }
 
     /// Locks the place. Its state is valid after every statement, so a panic of another user does not matter.
-    pub fn lock(&self) -> MutexGuard<'_, SharedFile> {
+    pub fn lock(&self) -> MutexGuard<'_, LockedFilm> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Places {
-    /// The places in their present state. The film to be resumed must be read after this.
-    pub fn of(render: &RenderOptions) -> Places {
+    /// Locks the places. The film to be resumed must be read after this.
+    ///
+    /// # Errors
+    /// [`LockedError`] if another run is writing one of them.
+    pub fn of(render: &RenderOptions) -> Result<Places, LockedError> {
         let out = match &render.checkpoint {
             Some(checkpoint) if *checkpoint == render.out => Out::Checkpoint,
-            _ if is_film(&render.out) => Out::Film(SharedPlace::new(&render.out)),
+            _ if is_film(&render.out) => Out::Film(SharedPlace::new(&render.out)?),
             _ => Out::Picture,
         };
-        Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
+        Ok(Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new).transpose()?, out })
     }
 
     /// Both films, each with its flag and its path.
@@ -108,16 +111,13 @@ pub(super) fn write(
     for (_, path, place) in places.films(render) {
         let saved = caught(path, || {
             say(path);
-            place.lock().save(film, &description, &same_job).map_err(|error| error.to_string())
+            place.lock().save(film, &description).map_err(|error| error.to_string())
         });
         match saved {
-            Ok(SaveOutcome { path, note, is_elsewhere }) => {
+            Ok(note) => {
                 is_film_kept = true;
-                written.files.push(path);
-                match note {
-                    Some(note) if is_elsewhere => failures.push(note),
-                    note => written.notes.extend(note),
-                }
+                written.files.push(path.to_owned());
+                written.notes.extend(note);
             }
             Err(reason) => failures.push(reason),
         }
@@ -202,9 +202,7 @@ pub(super) fn is_film(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::outcome::outcome;
     use crate::batch::tests::options;
-    use crate::failure::Failure;
     use crate::film::checkpoint;
 
     fn write_two_samples(render: &RenderOptions) -> (Film, Written) {
@@ -214,7 +212,7 @@ mod tests {
     fn write_two_samples_and_say(render: &RenderOptions, say: impl FnMut(&Path)) -> (Film, Written) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = write(render, &Places::of(render), &film, &Status::default(), None, say);
+        let written = write(render, &Places::of(render).unwrap(), &film, &Status::default(), None, say);
         (film, written)
     }
 
@@ -300,49 +298,20 @@ mod tests {
         assert!(checkpoint::load(rescued).unwrap().film == film);
     }
 
-    /// A render of two samples to `picture.png` with the film `film.exr`, which another program writes meanwhile.
-    fn write_after(directory: &Path, other: impl FnOnce(&RenderOptions, &Path)) -> (Film, Written) {
-        let [out, path] = ["picture.png", "film.exr"].map(|name| directory.join(name));
-        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", path.to_str().unwrap()]);
-        let places = Places::of(&render);
-        other(&render, &path);
-        let mut film = render.job.new_film();
-        film.record(0..2, 0).unwrap();
-        let status = Status::default();
-        let written = write(&render, &places, &film, &status, None, |_| {});
-        let ended = outcome(&render, &status, Some(&film), &written, None);
-        assert_eq!(matches!(ended, Err(Failure::Run(_))), written.failure.is_some(), "{ended:?}");
-        (film, written)
-    }
-
     #[test]
-    fn a_film_that_had_to_go_elsewhere_is_a_failure() {
+    fn a_film_that_another_run_writes_is_locked() {
         let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name);
-        let (film, written) =
-            write_after(directory.path(), |_, path| std::fs::write(path, "no film").unwrap());
-        assert_eq!(written.files, [at("film-2.exr"), at("picture.png")]);
-        assert!(checkpoint::load(&at("film-2.exr")).unwrap().film == film);
-        assert_eq!(std::fs::read(at("film.exr")).unwrap(), b"no film");
-        assert!(written.notes.is_empty(), "{:?}", written.notes);
-        let told = written.failure.unwrap().to_string();
-        assert!(told.contains("film.exr") && told.contains("film-2.exr"), "{told}");
-    }
-
-    #[test]
-    fn samples_that_another_run_has_added_are_a_note() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name);
-        let (_, written) = write_after(directory.path(), |render, path| {
-            let mut theirs = render.job.new_film();
-            theirs.record(8..10, 0).unwrap();
-            let description = described(render, &theirs, &Status::default(), None);
-            checkpoint::save(path, &theirs, &description).unwrap();
-        });
-        assert_eq!(written.files, [at("film.exr"), at("picture.png")]);
-        assert_eq!(checkpoint::load(&at("film.exr")).unwrap().film.sample_count(), 4);
-        assert!(written.failure.is_none(), "{:?}", written.failure);
-        assert!(matches!(&written.notes[..], [note] if note.contains("8..10")), "{:?}", written.notes);
+        let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+        let run = |flags: &[&str]| Places::of(&options(flags));
+        let first = run(&["--checkpoint", &at("g.exr"), "--out", &at("a.png")]).unwrap();
+        for flags in
+            [["--checkpoint", &at("g.exr"), "--out", &at("b.png")].as_slice(), &["--out", &at("g.exr")]]
+        {
+            let told = run(flags).err().unwrap().to_string();
+            assert!(told.contains("g.exr is locked: another run is writing it"), "{told}");
+        }
+        drop(first);
+        assert!(run(&["--out", &at("g.exr")]).is_ok());
     }
 
     #[test]
@@ -357,7 +326,7 @@ mod tests {
             let description = described(&first, &film, &Status::default(), None);
             checkpoint::save(&path, &film, &description).unwrap();
             let render = options(&["--checkpoint", names[0], "--continue", "--out", names[1]]);
-            let places = Places::of(&render);
+            let places = Places::of(&render).unwrap();
             if goes_on {
                 places.go_on(&render, &film);
             }

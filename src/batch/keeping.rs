@@ -4,7 +4,6 @@ use super::files::{SharedPlace, caught, described};
 use crate::cli::RenderOptions;
 use crate::film::Film;
 use crate::progressive::{Progressive, Status};
-use crate::saved::same_job;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{Builder, JoinHandle};
@@ -67,16 +66,12 @@ impl Writer {
         let saved = caught(path, || {
             let status = status.of_film(film, self.held_before);
             let description = described(&self.render, film, &status, self.seconds_before);
-            self.place.lock().save(film, &description, &same_job).map_err(|error| error.to_string())
+            self.place.lock().save(film, &description).map_err(|error| error.to_string())
         });
         let outcome = match saved {
-            Ok(saved) => {
-                log::info!(
-                    "checkpoint: {} samples per pixel in {}",
-                    film.sample_count(),
-                    saved.path.display()
-                );
-                Outcome { samples: Some(film.sample_count()), words: saved.note }
+            Ok(_) => {
+                log::info!("checkpoint: {} samples per pixel in {}", film.sample_count(), path.display());
+                Outcome { samples: Some(film.sample_count()), words: None }
             }
             Err(reason) => {
                 let words = format!("{reason}; rendering continues, and writing will be tried again");
@@ -176,7 +171,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");
         let render = options(&["--checkpoint", path.to_str().unwrap()]);
-        let mut keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 0, Some(0.0));
+        let mut keeper = Keeper::new(&render, Places::of(&render).unwrap().checkpoint.unwrap(), 0, Some(0.0));
         // The film has one sample per pixel.
         (keeper.asked, keeper.is_under_way) = (1, true);
         let told = keeper.note(Outcome { samples: None, words: Some("the disk is full".to_owned()) });
@@ -191,7 +186,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");
         let render = options(&["--checkpoint", path.to_str().unwrap(), "--every", "2s"]);
-        let mut keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 5, None);
+        let mut keeper = Keeper::new(&render, Places::of(&render).unwrap().checkpoint.unwrap(), 5, None);
         let [early, late] = [1999, 2000].map(Duration::from_millis);
         assert!(keeper.is_due(late, 6));
         assert!(!keeper.is_due(early, 6) && !keeper.is_due(late, 5), "the film was resumed with 5");
@@ -206,7 +201,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");
         let render = options(&["--checkpoint", path.to_str().unwrap(), "--every", "0.1s"]);
-        let place = Places::of(&render).checkpoint.unwrap();
+        let place = Places::of(&render).unwrap().checkpoint.unwrap();
         let mut keeper = Keeper::new(&render, place, 0, Some(0.0));
         let mut progressive = Progressive::spawn().unwrap();
         let backend = crate::backends::BackendChoice::Cpu(crate::render_cpu::CpuOptions::default());
@@ -237,7 +232,7 @@ mod tests {
             let directory = tempfile::tempdir().unwrap();
             let path = directory.path().join("film.exr");
             let render = options(&["--checkpoint", path.to_str().unwrap()]);
-            let keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 0, Some(0.0));
+            let keeper = Keeper::new(&render, Places::of(&render).unwrap().checkpoint.unwrap(), 0, Some(0.0));
             let mut film = render.job.new_film();
             film.record(0..6, 0).unwrap();
             // A thread that has ended listens no more.
@@ -253,7 +248,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");
         let render = options(&["--checkpoint", path.to_str().unwrap()]);
-        let keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 2, Some(1.0));
+        let keeper = Keeper::new(&render, Places::of(&render).unwrap().checkpoint.unwrap(), 2, Some(1.0));
         let mut film = render.job.new_film();
         film.record(0..6, 0).unwrap();
         let backend = BackendInfo { name: "cpu", device: String::new(), lanes: 8, threads: 1 };

@@ -48,7 +48,8 @@ use summary::{Summary, SummaryJson};
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
+    let places =
+        options.renders.iter().map(Places::of).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     // Checked now, because the film of a resumed render is read before kernels are built.
     let resumed = match options.renders.as_slice() {
         [RenderOptions { resume: Some(path), job, .. }] => {
@@ -358,7 +359,7 @@ pub(crate) mod tests {
         let render = &options.renders[0];
         let mut progressive = Progressive::with_factory(Box::new(|_| Ok(Box::new(Failing)))).unwrap();
         let interrupt = Interrupt::unheard();
-        let places = Places::of(render);
+        let places = Places::of(render).unwrap();
         let begun = Begun { options: &options, interrupt: &interrupt, places: &places, warnings: &[] };
         let (_, outcome) = begun.render(render, &mut progressive, None, None);
         let failure = outcome.unwrap_err();

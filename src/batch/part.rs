@@ -86,8 +86,9 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         crashes_at: None,
     };
     check_before(&batch)?;
-    // The places are noted before the film is read: another run may be writing it.
-    let places: Vec<Places> = batch.renders.iter().map(Places::of).collect();
+    // The places are locked before the film is read: another run may be writing it.
+    let places =
+        batch.renders.iter().map(Places::of).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     let found = find(&path, plan, part)?;
     if let Some(found) = &found
         && part.missing(found.film.samples()) == 0

@@ -19,11 +19,8 @@ impl SampleRanges {
     /// ranges have samples in common.
     pub fn from_ranges(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
         let mut ranges: Vec<Range<u64>> = ranges.into_iter().collect();
-        for range in &ranges {
-            if range.is_empty() {
-                return Err(FilmError::Range { range: range.clone() });
-            }
-            check(range)?;
+        if let Some(range) = ranges.iter().find(|range| range.is_empty() || range.end > SAMPLE_LIMIT) {
+            return Err(FilmError::Range { range: range.clone() });
         }
         ranges.sort_unstable_by_key(|range| range.start);
         Self::of_sorted(ranges)
@@ -100,25 +97,18 @@ impl SampleRanges {
         if range.is_empty() {
             return Ok(());
         }
-        check(&range)?;
-        if let Some(range) = self.overlap(&range) {
-            return Err(FilmError::Overlap { range });
-        }
-        let place = self.ranges_before(range.start);
-        if place == self.ranges.len() {
-            self.push(range);
-            return Ok(());
-        }
-        self.count += range.end - range.start;
-        let joins_next = self.ranges[place].start == range.end;
-        let joins_last = place > 0 && self.ranges[place - 1].end == range.start;
-        match (joins_last, joins_next) {
-            (true, true) => self.ranges[place - 1].end = self.ranges.remove(place).end,
-            (true, false) => self.ranges[place - 1].end = range.end,
-            (false, true) => self.ranges[place].start = range.start,
-            (false, false) => self.ranges.insert(place, range),
+        let added = SampleRanges::from_ranges([range])?;
+        // Most ranges come in order.
+        match added.ranges.as_slice() {
+            [range] if self.end() <= range.start => self.push(range.clone()),
+            _ => *self = self.union(&added)?,
         }
         Ok(())
+    }
+
+    /// Whether all samples of `other` are in the set.
+    pub fn contains(&self, other: &SampleRanges) -> bool {
+        other.iter().all(|range| self.first_gap(range, u64::MAX).is_none())
     }
 
     /// The samples of both sets.
@@ -144,10 +134,6 @@ impl SampleRanges {
         let end = end.min(start.saturating_add(limit));
         (start < end).then_some(start..end)
     }
-}
-
-fn check(range: &Range<u64>) -> Result<(), FilmError> {
-    if range.end > SAMPLE_LIMIT { Err(FilmError::Range { range: range.clone() }) } else { Ok(()) }
 }
 
 /// As `0..64, 128..256`.

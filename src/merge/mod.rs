@@ -10,9 +10,9 @@ use crate::cli::{MergeOptions, MergeSource};
 use crate::console;
 use crate::describe::counted;
 use crate::failure::{FAILED, Failure};
-use crate::files::{FileIdentity, ShownPath, check_writable};
+use crate::files::{FileIdentity, FileLock, ShownPath, check_writable};
 use crate::film::{Description, Film, SampleRanges, merge_files};
-use crate::output::write_image;
+use crate::output::{OutputFormat, write_image};
 use crate::plan::{AnyPlan, Plan, Samples};
 use crate::recipe::file;
 use crate::saved::{Replaced, same_job};
@@ -31,6 +31,9 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     for out in &options.out {
         check_writable(out).map_err(Failure::input)?;
     }
+    let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
+    let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
+    let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
     match (&options.source, options.watch) {
         (MergeSource::Films(films), _) if options.check => check::films(films, &options.program),
         (MergeSource::Films(films), _) => match repeated(films).next() {
@@ -64,7 +67,7 @@ fn merge_all(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
 fn merge_plan(plan: &Plan<Samples>, options: &MergeOptions) -> Result<ExitCode, Failure> {
     let mut sum = PlanSum::new(plan).map_err(Failure::input)?;
     for index in 0..plan.manifest.work.parts.len() {
-        sum.add(index, true).map_err(Failure::run)?;
+        sum.add(index, true);
     }
     let lacking = sum.lacking();
     if sum.film().sample_count() > 0 {
@@ -99,9 +102,7 @@ fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
 
 /// What is lost if `film` replaces what is at `out`, in words.
 fn losses(out: &[PathBuf], film: &Film, description: &Description) -> Vec<String> {
-    let is_kept = |samples: &SampleRanges| {
-        samples.iter().all(|range| film.samples().first_gap(range, u64::MAX).is_none())
-    };
+    let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
     out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept)).collect()
 }
 

@@ -4,7 +4,9 @@ use super::Lacking;
 use crate::console;
 use crate::describe::{counted, describe};
 use crate::files::ShownPath;
-use crate::film::{CheckpointError, Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key};
+use crate::film::{
+    CheckpointError, Description, Film, FilmError, FilmSum, MergeError, SampleRanges, checkpoint, key,
+};
 use crate::plan::{Commands, Plan, Samples, Work};
 use crate::progressive::Status;
 use crate::saved::same_job;
@@ -43,52 +45,31 @@ impl<'a> PlanSum<'a> {
         Ok(PlanSum { plan, sum, states: vec![State::Missing; plan.manifest.work.parts.len()] })
     }
 
-    /// A copy, from which [`PlanSum::take_back`] takes away only what is added to it.
+    /// A copy.
     ///
     /// # Errors
-    /// [`MergeError::Film`] if there is not enough memory.
-    pub fn try_copy(&self) -> Result<Self, MergeError> {
+    /// [`FilmError::Memory`] if there is not enough memory.
+    pub fn try_copy(&self) -> Result<Self, FilmError> {
         Ok(PlanSum { plan: self.plan, sum: self.sum.try_copy()?, states: self.states.clone() })
     }
 
-    /// Empties the sum.
-    pub fn clear(&mut self) {
-        self.sum.clear();
-        self.states.fill(State::Missing);
-    }
-
-    /// Adds what is there of a part: only a whole one, or also a checkpoint, which [`PlanSum::take_back`] takes away
-    /// again. What cannot be added is left out.
-    ///
-    /// # Errors
-    /// [`MergeError::Lost`]: the sum is then worthless.
-    pub fn add(&mut self, index: usize, also_unfinished: bool) -> Result<&State, MergeError> {
+    /// Adds what is there of a part: only a whole one, or also a checkpoint. What cannot be added is left out.
+    pub fn add(&mut self, index: usize, also_unfinished: bool) -> &State {
         let part = &self.plan.manifest.work.parts[index];
         let path = self.plan.part_path(part);
         let state = match head_state(self.plan, index) {
             State::Unfinished { missing } if !also_unfinished => State::Unfinished { missing },
-            State::Whole | State::Unfinished { .. } => {
-                match self.sum.add(&path, same_job, |samples| part.missing(samples) > 0) {
-                    Ok(share) => match part.missing(share.samples()) {
-                        0 => State::Whole,
-                        missing => State::Unfinished { missing },
-                    },
-                    Err(error @ MergeError::Lost { .. }) => return Err(error),
-                    Err(error) => State::Wrong(words(&error)),
-                }
-            }
+            State::Whole | State::Unfinished { .. } => match self.sum.add(&path, same_job) {
+                Ok(samples) => match part.missing(&samples) {
+                    0 => State::Whole,
+                    missing => State::Unfinished { missing },
+                },
+                Err(error) => State::Wrong(words(&error)),
+            },
             state => state,
         };
         self.states[index] = state;
-        Ok(&self.states[index])
-    }
-
-    /// Takes the unfinished parts away again.
-    ///
-    /// # Errors
-    /// [`MergeError::Lost`]: the sum is then worthless.
-    pub fn take_back(&mut self) -> Result<(), MergeError> {
-        self.sum.take_back()
+        &self.states[index]
     }
 
     pub fn film(&self) -> &Film {
@@ -305,7 +286,7 @@ pub(super) mod tests {
         let mut sum = PlanSum::new(&plan).unwrap();
         assert_eq!(sum.words(), "0 of 43 samples per pixel (); 0 of 2 parts are whole");
         save(&plan, "part-1.exr", 30..50);
-        assert_eq!(sum.add(1, false).unwrap(), &State::Whole);
+        assert_eq!(sum.add(1, false), &State::Whole);
         assert_eq!(sum.words(), "20 of 43 samples per pixel (30..50); 1 of 2 parts are whole");
         assert_eq!((sum.is_whole(0), sum.is_whole(1)), (false, true));
         assert_eq!(numbers(&sum.lacking()), [0]);
@@ -344,9 +325,9 @@ pub(super) mod tests {
         (plan.manifest.command, plan.manifest.stage) = ("w plan".to_owned(), Some("metal".to_owned()));
         save(&plan, "part-0.exr", 7..17);
         let mut sum = PlanSum::new(&plan).unwrap();
-        assert_eq!(sum.add(0, false).unwrap(), &State::Unfinished { missing: 13 });
+        assert_eq!(sum.add(0, false), &State::Unfinished { missing: 13 });
         assert_eq!(sum.film().sample_count(), 0, "only what is whole");
-        assert_eq!(sum.add(0, true).unwrap(), &State::Unfinished { missing: 13 });
+        assert_eq!(sum.add(0, true), &State::Unfinished { missing: 13 });
         let description = sum.description();
         for (name, value) in [
             (key::COMMAND, "w plan"),
