@@ -1,6 +1,6 @@
 //! Input files: their kind and length are checked before anything is read.
 
-use super::shown::ShownPath;
+use super::paths::ShownPath;
 use crate::memory::words;
 use std::fs::{self, File, FileType};
 use std::io::{self, Read};

@@ -1,5 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
+use super::read::invalid;
 use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
@@ -115,30 +116,13 @@ fn decoder<R: BufRead + Seek>(reader: R) -> ::png::Decoder<R> {
     ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: 4 * RECIPE_LIMIT })
 }
 
-/// The number of values that a sample can have: fewer than its bits allow if the file says that only some of them are
-/// significant. The colours of a palette have 8 bits.
-pub(super) fn levels(reader: impl BufRead + Seek) -> io::Result<u32> {
-    use ::png::ColorType;
-    let reader = decoder(reader).read_info()?;
-    let info = reader.info();
-    let (bits, colours) = match info.color_type {
-        ColorType::Grayscale | ColorType::GrayscaleAlpha => (info.bit_depth as u32, 1),
-        ColorType::Rgb | ColorType::Rgba => (info.bit_depth as u32, 3),
-        ColorType::Indexed => (8, 3),
-    };
-    let significant = info.sbit.as_deref().unwrap_or_default().iter().take(colours);
-    let bits = significant.map(|bits| u32::from(*bits)).fold(bits, u32::min);
-    Ok(1 << bits)
-}
-
 /// Reads an 8-bit RGB picture of this size to its end, row by row from the top, three bytes a pixel.
 pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<Vec<u8>> {
     let mut reader = decoder(reader).read_info()?;
     let info = reader.info();
     let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
     if (info.width, info.height) != (width, height) || !is_rgb || info.interlaced {
-        let reason = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        return Err(invalid(format!("it is not an 8-bit RGB picture of {width}x{height} pixels")));
     }
     let mut pixels = vec![0; 3 * width as usize * height as usize];
     reader.next_frame(&mut pixels)?;
@@ -155,8 +139,7 @@ pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option
     let mut recipe = recipe.clone();
     // The decompressor wants room for one byte more to find the end.
     recipe.decompress_text_with_limit(RECIPE_LIMIT + 1).map_err(|error| {
-        let reason = format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})");
-        io::Error::new(io::ErrorKind::InvalidData, reason)
+        invalid(format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})"))
     })?;
     let mut description = Description::new(&recipe.get_text()?);
     for chunk in &info.uncompressed_latin1_text {

@@ -1,13 +1,13 @@
 //! Reads pictures of any program as linear radiance: PFM, EXR, PNG and binary PPM.
 
 use super::OutputError;
-use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
-use super::{pfm, png};
+use super::pfm;
 use crate::files;
 use crate::film::checkpoint;
+use crate::memory;
 use crate::stages::Transfer;
-use image::ImageDecoder;
-use image::codecs::pnm::PnmDecoder;
+use image::codecs::{png::PngDecoder, pnm::PnmDecoder};
+use image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageFormat};
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
@@ -61,8 +61,8 @@ pub fn decode_picture(
     match start.as_slice() {
         [b'P', b'F' | b'f', ..] => pfm::read(reader, length).map(float),
         start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader, length).map(float),
-        [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, image::ImageFormat::Png, encoding),
-        [b'P', b'2'..=b'6', ..] => read_whole(reader, length, image::ImageFormat::Pnm, encoding),
+        [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, ImageFormat::Png, encoding),
+        [b'P', b'2'..=b'6', ..] => read_whole(reader, length, ImageFormat::Pnm, encoding),
         _ => Err(invalid("it is not a PFM, EXR, PNG or PPM file")),
     }
 }
@@ -73,12 +73,12 @@ pub fn decode_picture(
 /// [`OutputError::Input`] or [`OutputError::Read`].
 pub fn read_rgb8(path: &Path) -> Result<([u32; 2], Vec<u8>), OutputError> {
     let (file, length) = files::open(path)?;
-    let image = decode(BufReader::new(file), length, image::ImageFormat::Png)
+    let (image, _) = decode(BufReader::new(file), length, ImageFormat::Png)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })?;
     Ok(([image.width(), image.height()], image.into_rgb8().into_raw()))
 }
 
-fn invalid(reason: impl ToString) -> io::Error {
+pub(super) fn invalid(reason: impl ToString) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
 }
 
@@ -135,14 +135,12 @@ fn size_of_layer(size: exr::prelude::Vec2<usize>) -> io::Result<(u32, u32)> {
 const LARGEST_RATIO: u64 = 1032 * 24;
 
 fn read_whole(
-    mut reader: impl BufRead + Seek,
+    reader: impl BufRead + Seek,
     length: u64,
-    format: image::ImageFormat,
+    format: ImageFormat,
     encoding: Encoding,
 ) -> io::Result<ReadPicture> {
-    let image = decode(&mut reader, length, format)?;
-    reader.rewind()?;
-    let levels = levels(reader, format)?;
+    let (image, levels) = decode(reader, length, format)?;
     let (width, height) = (image.width(), image.height());
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (most, values): (u16, Vec<u16>) = if is_deep {
@@ -167,37 +165,64 @@ fn read_whole(
     Ok(ReadPicture { width, height, pixels, steps: Some(steps), limit })
 }
 
-/// The number of values that a sample in the file can have, 2 to 65536.
-fn levels(reader: impl BufRead + Seek, format: image::ImageFormat) -> io::Result<u32> {
-    if format == image::ImageFormat::Png {
-        return png::levels(reader);
-    }
-    let most = PnmDecoder::new(reader).map_err(invalid)?.header().maximal_sample();
-    Ok(most.clamp(1, u16::MAX.into()) + 1)
-}
-
-/// Decodes a picture whose size its file can have.
+/// The picture, and the number of values that a sample in the file can have, 2 to 65536.
 fn decode(
     reader: impl BufRead + Seek,
     length: u64,
-    format: image::ImageFormat,
-) -> io::Result<image::DynamicImage> {
-    let mut reader = image::ImageReader::with_format(reader, format);
+    format: ImageFormat,
+) -> io::Result<(DynamicImage, u32)> {
+    if format != ImageFormat::Png {
+        let decoder = PnmDecoder::new(reader).map_err(invalid)?;
+        let most = decoder.header().maximal_sample().clamp(1, u16::MAX.into());
+        return Ok((image_of(decoder, length, 8)?, most + 1));
+    }
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(invalid)?;
+    let decoder = PngDecoder::with_limits(reader, limits).map_err(invalid)?;
+    let levels = match (decoder.original_color_type(), decoder.color_type()) {
+        (ExtendedColorType::L1, _) => 1 << 1,
+        (ExtendedColorType::L2, _) => 1 << 2,
+        (ExtendedColorType::L4, _) => 1 << 4,
+        (_, ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16) => 1 << 16,
+        _ => 1 << 8,
+    };
+    Ok((image_of(decoder, length, LARGEST_RATIO)?, levels))
+}
+
+/// Decodes a picture if its size is within the limits and its file is long enough: a byte becomes at most `ratio`.
+fn image_of(decoder: impl ImageDecoder, length: u64, ratio: u64) -> io::Result<DynamicImage> {
     let (width, height) = decoder.dimensions();
     pixel_count(width, height)?;
-    let ratio = if format == image::ImageFormat::Png { LARGEST_RATIO } else { 8 };
-    if decoder.total_bytes() / ratio > length {
-        let least = decoder.total_bytes() / ratio;
-        return Err(invalid(format!(
-            "it has {length} bytes, but {width}x{height} pixels need at least {least}"
-        )));
+    let least = decoder.total_bytes() / ratio;
+    if least > length {
+        return Err(invalid(format!("it has {length} bytes, but {width}x{height} pixels need at least {least}")));
     }
     check_memory(width, height)?;
-    image::DynamicImage::from_decoder(decoder).map_err(invalid)
+    DynamicImage::from_decoder(decoder).map_err(invalid)
+}
+
+/// Largest number of pixels that is read.
+const PIXEL_LIMIT: u64 = 1 << 28;
+
+/// Number of pixels, or an error if the size is out of range.
+pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
+    let count = u64::from(width) * u64::from(height);
+    if !(1..=PIXEL_LIMIT).contains(&count) {
+        return Err(invalid(format!("its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read")));
+    }
+    Ok(count as usize)
+}
+
+/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// quantisation steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Returns an error if the picture would not fit into memory.
+pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+    let what = || format!("a picture of {width}x{height} pixels");
+    memory::check(what, bytes, "close other programs or make it smaller")
+        .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 impl Encoding {

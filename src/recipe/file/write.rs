@@ -4,7 +4,7 @@ use super::named::{mark, name_of};
 use crate::animation::Keyframe;
 use crate::recipe::Recipe;
 use crate::render::{RenderSettings, SettingValue};
-use crate::scene::{Camera, Parameter, Scene, Sphere};
+use crate::scene::{Camera, Parameter, Scene, Sphere, toml_key, toml_string};
 use crate::stages::Rules;
 use glam::DVec3;
 use std::fmt::Write;
@@ -32,8 +32,8 @@ pub fn to_picture_toml(recipe: &Recipe) -> String {
 }
 
 fn write_named(out: &mut String, recipe: &Recipe, name: &str) -> std::fmt::Result {
-    writeln!(out, "scene = {} # {} spheres", quoted(name), recipe.scene.spheres.len())?;
-    writeln!(out, "scene_mark = {}\n", quoted(&mark(&recipe.scene)))?;
+    writeln!(out, "scene = {} # {} spheres", toml_string(name), recipe.scene.spheres.len())?;
+    writeln!(out, "scene_mark = {}\n", toml_string(&mark(&recipe.scene)))?;
     write_camera(out, &recipe.camera)?;
     write_keyframes(out, &recipe.keyframes)?;
     write_render(out, recipe)?;
@@ -61,7 +61,7 @@ fn write_listed(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
             writeln!(out, "\n[[spheres]]")?;
             writeln!(out, "center = {}", vector(sphere.center))?;
             writeln!(out, "radius = {}", number(sphere.radius))?;
-            writeln!(out, "material = {}", quoted(material_name(&recipe.scene, sphere)))?;
+            writeln!(out, "material = {}", toml_string(material_name(&recipe.scene, sphere)))?;
         }
     }
     Ok(())
@@ -101,7 +101,7 @@ fn write_render(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
     for named in RenderSettings::NAMED {
         let value = match (named.value)(settings) {
             SettingValue::Number(number) => number.to_string(),
-            SettingValue::Name(name) => quoted(name),
+            SettingValue::Name(name) => toml_string(name),
             SettingValue::Switch(is_on) => is_on.to_string(),
         };
         let comment = if named.comment.is_empty() { String::new() } else { format!(" # {}", named.comment) };
@@ -134,7 +134,7 @@ fn write_materials(out: &mut String, scene: &Scene) -> std::fmt::Result {
             Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
         });
         let keys = keys.collect::<Vec<_>>().join(", ");
-        writeln!(out, "{} = {{ kind = \"{}\", {keys} }}", key(&named.name), named.material.kind())?;
+        writeln!(out, "{} = {{ kind = \"{}\", {keys} }}", toml_key(&named.name), named.material.kind())?;
     }
     Ok(())
 }
@@ -143,7 +143,7 @@ fn write_sphere_lines(out: &mut String, scene: &Scene) -> std::fmt::Result {
     writeln!(out, "spheres = [")?;
     for sphere in &scene.spheres {
         let (center, radius) = (vector(sphere.center), number(sphere.radius));
-        let material = quoted(material_name(scene, sphere));
+        let material = toml_string(material_name(scene, sphere));
         writeln!(out, "  {{ center = {center}, radius = {radius}, material = {material} }},")?;
     }
     writeln!(out, "]")
@@ -160,25 +160,4 @@ fn vector(v: DVec3) -> String {
 /// Rust's shortest form, which TOML can read, except for NaN.
 fn number(x: f64) -> String {
     if x.is_nan() { "nan".to_owned() } else { format!("{x:?}") }
-}
-
-fn key(name: &str) -> String {
-    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
-}
-
-/// A TOML basic string.
-fn quoted(text: &str) -> String {
-    let mut out = String::with_capacity(text.len() + 2);
-    out.push('"');
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => out.extend(['\\', c]),
-            // Writing to a string cannot fail.
-            c if c.is_control() => drop(write!(out, "\\u{:04X}", u32::from(c))),
-            c => out.push(c),
-        }
-    }
-    out.push('"');
-    out
 }
