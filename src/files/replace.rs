@@ -20,18 +20,12 @@ pub struct WriteError {
 fn remedy(reason: &io::Error) -> &'static str {
     match reason.kind() {
         ErrorKind::NotFound => "create its directory first, or choose another place",
-        ErrorKind::NotADirectory => "what stands in its directory's place is a file: choose another place",
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "choose a place where you may write, or allow it"
-        }
-        ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::IsADirectory => "name a file in that directory",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "free some space, or choose another place; an existing file is left unchanged"
         }
-        ErrorKind::FileTooLarge => {
-            "allow larger files (ulimit -f), or choose another place; an existing file is left unchanged"
-        }
+        ErrorKind::FileTooLarge => "allow larger files (ulimit -f); an existing file is left unchanged",
+        ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",
     }
