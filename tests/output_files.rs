@@ -9,7 +9,6 @@ use program_common::names;
 use std::fs;
 use std::io;
 use std::path::Path;
-use weekender::describe::seconds;
 use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
 use weekender::output::{
@@ -143,13 +142,6 @@ fn a_picture_holds_its_recipe_up_to_the_limit_and_says_that_a_longer_one_is_miss
     }
 }
 
-/// 59.6 s are a minute, and neither "60 s" nor "0 min".
-#[test]
-fn times_are_rounded_before_they_are_divided_into_units() {
-    let found = [59.4, 59.6, 119.6, 3599.7, 7199.6].map(seconds);
-    assert_eq!(found, ["59.4 s", "1 min 00 s", "2 min 00 s", "1 h 00 min", "2 h 00 min"]);
-}
-
 #[test]
 fn pictures_of_others_say_nothing() {
     let directory = tempfile::tempdir().unwrap();
@@ -254,6 +246,8 @@ mod unix {
         replace_file(&link, |writer| io::Write::write_all(writer, b"new")).unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&target).unwrap(), b"new");
+        fs::remove_file(&target).unwrap();
+        assert!(check_writable(&link).unwrap_err().to_string().contains("link to a file that is not there"));
     }
 
     #[cfg(target_os = "linux")]
