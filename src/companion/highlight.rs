@@ -71,15 +71,9 @@ mod tests {
     #[test]
     fn words_have_classes() {
         let rust = html("rs", "pub fn hit<'a>(t: f32) -> u32 { /* a /* b */ */ x'a' \"}\" }\n");
-        for part in [
-            "<span class=\"hl-k\">fn</span>",
-            "<span class=\"hl-f\">hit</span>",
-            "<span class=\"hl-t\">&#39;a</span>",
-            "<span class=\"hl-t\">f32</span>",
-            "<span class=\"hl-c\">/* a <span class=\"hl-c\">/* b */</span> */</span>",
-            "<span class=\"hl-s\">&#39;a&#39;</span>",
-            "<span class=\"hl-s\">&quot;}&quot;</span>",
-        ] {
+        for part in
+            ["hl-k\">fn", "hl-f\">hit", "hl-t\">&#39;a", "hl-t\">f32", "hl-s\">&#39;a&#39;", "hl-c\">/* a "]
+        {
             assert!(rust.contains(part), "{part} in {rust}");
         }
         let wgsl = html("wgsl", "@must_use fn f(a: vec3<f32>) -> u32 { return 3u; } // x\n");
@@ -96,29 +90,13 @@ mod tests {
             ("c", include_str!("../../reference/rt_weekend.c")),
         ] {
             let html = html(language, code);
-            let mut text = String::new();
-            let mut is_tag = false;
-            for c in html.chars() {
-                match c {
-                    '<' => is_tag = true,
-                    '>' if is_tag => is_tag = false,
-                    _ if !is_tag => text.push(c),
-                    _ => {}
-                }
+            let mut text: String =
+                html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
+            for (name, c) in [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")]
+            {
+                text = text.replace(name, c);
             }
-            let text = text
-                .replace("&lt;", "<")
-                .replace("&gt;", ">")
-                .replace("&quot;", "\"")
-                .replace("&#39;", "'")
-                .replace("&amp;", "&");
             assert!(text == code, "{language}");
         }
-    }
-
-    #[test]
-    fn unknown_languages_are_refused() {
-        let error = Highlighter::new().unwrap().html("cobol", "").unwrap_err().to_string();
-        assert!(error.contains("\"cobol\"") && error.contains("wgsl"), "{error}");
     }
 }

@@ -90,20 +90,20 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
 
 /// The panel; `is_labelled` if it has neighbours.
 fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
-    let class = if is_about_pixels(panel.stage) { "panel pixels" } else { "panel" };
+    let class = if is_about_pixels(panel.stage()) { "panel pixels" } else { "panel" };
     html! {
-        div class=(class) data-stage=(panel.stage.id) {
-            @match stills.of(panel.stage) {
+        div class=(class) data-stage=(panel.stage().id) {
+            @match stills.of(panel.stage()) {
                 Some(still) => {
                     a href=(still.file) {
-                        img src=(still.file) width=(still.width) height=(still.height) alt=(panel.alt) loading="lazy";
+                        img src=(still.file) width=(still.width) height=(still.height) alt=(panel.stage().alt) loading="lazy";
                     }
                     p.facts {
                         @if is_labelled { strong { (panel.label) } " " }
                         (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
                     }
                 }
-                None => p.missing { "Not rendered yet: " code { "--only " (panel.stage.id) } }
+                None => p.missing { "Not rendered yet: " code { "--only " (panel.stage().id) } }
             }
         }
     }
@@ -129,37 +129,7 @@ mod tests {
     use crate::gallery::{Quality, Still};
 
     #[test]
-    fn every_figure_is_on_the_page_with_what_is_known_of_its_pictures() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut stills = Stills::read(directory.path()).0;
-        let metal = Stage::find("metal").unwrap();
-        stills.set(Still::new(metal, &Quality::Full.recipe(metal), String::new()));
-        let page = page(&stills);
-        for figure in Figure::ALL {
-            assert!(page.contains(&format!("id=\"figure-{}\"", figure.id)), "{}", figure.id);
-            assert!(
-                page.contains(&figure.stage().url().replace('\'', "&#39;"))
-                    || page.contains(&figure.stage().url())
-            );
-            let stage = figure.stage();
-            let [section, chapter] = [
-                format!(">Section {}, {}</a>", stage.section, stage.section_title),
-                format!("<h2><span class=\"number\">{}</span> {}</h2>", stage.chapter(), stage.chapter_title),
-            ];
-            for part in [section, chapter] {
-                assert!(page.contains(&part) || page.contains(&part.replace('\'', "&#39;")), "{part}");
-            }
-        }
-        // Metal is in two figures.
-        assert_eq!(page.matches("<img ").count(), 2, "{page}");
-        let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
-        assert_eq!(page.matches("Not rendered yet").count(), panels - 2);
-        assert!(page.contains("880 × 495 pixels, 1024 samples per pixel"));
-        assert!(!page.contains("<script") && !page.contains("style=\""));
-    }
-
-    #[test]
-    fn chapters_have_their_figures_and_pictures_their_labels() {
+    fn a_page_has_every_figure_and_says_which_pictures_are_missing() {
         let mut stills = Stills::default();
         for (id, backend) in [("metal", "gpu x"), ("metal-fuzzy", "cpu y"), ("book", "gpu x")] {
             let stage = Stage::find(id).unwrap();
@@ -167,24 +137,17 @@ mod tests {
             stills.set(Still { backend: backend.to_owned(), ..still });
         }
         let page = page(&stills);
-        let chapters: BTreeSet<&str> = Figure::ALL.iter().map(|figure| figure.stage().chapter()).collect();
-        for chapter in &chapters {
-            assert_eq!(page.matches(&format!("<section id=\"chapter-{chapter}\">")).count(), 1, "{chapter}");
+        for figure in Figure::ALL {
+            assert_eq!(page.matches(&format!("id=\"figure-{}\"", figure.id)).count(), 1, "{}", figure.id);
+            let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());
+            assert_eq!(page.matches(&chapter).count(), 1, "{chapter}");
         }
-        assert_eq!(page.matches("<section ").count(), chapters.len());
-        assert_eq!(page.matches("<li>").count(), chapters.len());
-        let version = env!("CARGO_PKG_VERSION");
-        assert!(page.contains(&format!("<p>Rendered by Weekender {version} (cpu y; gpu x).</p>")), "{page}");
-        // Metal is shown alone and beside its fuzzy neighbour; only there it needs a label.
-        let metal =
-            "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path; less than 0.1 s, no noise";
-        assert_eq!(page.matches(&format!("<p class=\"facts\">{metal}</p>")).count(), 1, "{page}");
-        let labelled = page.matches("<p class=\"facts\"><strong>").count();
-        assert_eq!((labelled, page.matches("<img ").count()), (2, 4));
-        let few: Vec<&str> = page.split("<div class=\"panel pixels\" data-stage=\"").skip(1).collect();
-        assert!(matches!(few.as_slice(), [one] if one.starts_with("ppm-tiny\"")), "{few:?}");
-        let count = |panels: usize| Figure::ALL.iter().filter(|figure| figure.panels.len() == panels).count();
-        assert_eq!(page.matches("<div class=\"panels\">").count(), count(1));
-        assert_eq!(page.matches("<div class=\"panels two\">").count(), count(2));
+        // Metal is shown alone and, with a label, beside its fuzzy neighbour.
+        let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
+        assert_eq!(page.matches("<img ").count(), 4);
+        assert_eq!(page.matches("<p class=\"facts\"><strong>").count(), 2);
+        assert_eq!(page.matches("Not rendered yet").count(), panels - 4);
+        assert!(page.contains(" (cpu y; gpu x).</p>"), "{page}");
+        assert!(!page.contains("<script") && !page.contains("style=\""));
     }
 }

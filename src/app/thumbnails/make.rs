@@ -2,7 +2,7 @@
 
 use crate::app::answers::Answer;
 use crate::film::Description;
-use crate::gallery::{Fingerprints, is_about_pixels};
+use crate::gallery::{fingerprint, is_about_pixels};
 use crate::output::{read_rgb8, write_image};
 use crate::recipe::Recipe;
 use crate::render::Renderer;
@@ -54,7 +54,7 @@ pub(super) fn begin(request: Request) -> io::Result<()> {
 fn work(request: Request) -> Result<()> {
     let Request { answers, scale, directory, alive } = request;
     let directory = directory.map(|directory| directory.join("thumbnails"));
-    let mut maker = Maker::open(scale)?;
+    let mut maker = Maker::new(scale);
     for (stage, answer) in answers {
         if alive.strong_count() == 0 {
             break;
@@ -68,25 +68,21 @@ fn work(request: Request) -> Result<()> {
 
 struct Maker {
     scale: u32,
-    fingerprints: Fingerprints,
     /// Started with the first picture that is not in the cache.
     renderer: Option<CpuRenderer>,
     rendered: usize,
 }
 
 impl Maker {
-    fn open(scale: u32) -> Result<Self> {
-        Ok(Maker { scale, fingerprints: Fingerprints::new()?, renderer: None, rendered: 0 })
+    fn new(scale: u32) -> Self {
+        Maker { scale, renderer: None, rendered: 0 }
     }
 
     /// The size and the bytes of a stage's picture. It is rendered unless `directory` has it.
     fn picture(&mut self, stage: &Stage, directory: Option<&Path>) -> Result<([u32; 2], Vec<u8>)> {
         let recipe = recipe(stage, self.scale);
         let size = [recipe.settings.width, recipe.settings.height];
-        let place = match directory {
-            Some(directory) => Some(KeptFile::of(directory, &recipe, &self.fingerprints.of(&recipe)?)),
-            None => None,
-        };
+        let place = directory.map(|directory| KeptFile::of(directory, &recipe, &fingerprint(&recipe)));
         if let Some(place) = &place
             && let Ok((found, rgb8)) = read_rgb8(&place.path)
             && found == size
@@ -191,20 +187,20 @@ mod tests {
     #[test]
     fn what_is_in_the_cache_is_not_rendered_again() {
         let directory = tempfile::tempdir().unwrap();
-        let mut first = Maker::open(1).unwrap();
+        let mut first = Maker::new(1);
         for id in ["ppm-tiny", "metal", "book"] {
             first.picture(stage(id), Some(directory.path())).unwrap();
         }
         assert_eq!(first.rendered, 3);
-        let mut second = Maker::open(1).unwrap();
+        let mut second = Maker::new(1);
         for id in ["ppm-tiny", "metal", "book"] {
-            let alone = Maker::open(1).unwrap().picture(stage(id), None).unwrap();
+            let alone = Maker::new(1).picture(stage(id), None).unwrap();
             assert!(alone.1.chunks_exact(3).any(|pixel| *pixel != alone.1[..3]), "{id} has one colour");
             assert!(second.picture(stage(id), Some(directory.path())).unwrap() == alone, "{id}");
         }
         assert_eq!(second.rendered, 0);
         assert_eq!(
-            Maker::open(2).unwrap().picture(stage("metal"), Some(directory.path())).unwrap().0,
+            Maker::new(2).picture(stage("metal"), Some(directory.path())).unwrap().0,
             [160, 90]
         );
         assert_eq!(names(directory.path()).len(), 4, "each size is kept");
@@ -213,7 +209,7 @@ mod tests {
     #[test]
     fn a_picture_of_another_recipe_or_tracer_is_replaced() {
         let directory = tempfile::tempdir().unwrap();
-        let mut maker = Maker::open(1).unwrap();
+        let mut maker = Maker::new(1);
         let metal = recipe(stage("metal"), 1);
         let stale = KeptFile::of(directory.path(), &metal, "0123456789abcdef");
         fs::write(&stale.path, "of an earlier tracer").unwrap();
@@ -223,7 +219,6 @@ mod tests {
         assert_eq!((maker.rendered, rgb8.len()), (1, 80 * 45 * 3));
         assert!(!stale.path.exists() && other.path.exists());
         // So does every change of the recipe, because the name tells it.
-        let fingerprint = |recipe: &Recipe| Fingerprints::new().unwrap().of(recipe).unwrap();
         let mut changed = metal.clone();
         changed.camera.vfov_degrees += 1.0;
         assert_ne!(fingerprint(&metal), fingerprint(&changed));
@@ -232,7 +227,7 @@ mod tests {
     #[test]
     fn a_damaged_picture_is_rendered_again() {
         let directory = tempfile::tempdir().unwrap();
-        let mut maker = Maker::open(1).unwrap();
+        let mut maker = Maker::new(1);
         let whole = maker.picture(stage("sky"), Some(directory.path())).unwrap();
         let name = names(directory.path()).pop_first().unwrap();
         let path = directory.path().join(&name);
@@ -249,7 +244,7 @@ mod tests {
         let file = directory.path().join("file");
         fs::write(&file, "").unwrap();
         let before: SystemTime = fs::metadata(&file).unwrap().modified().unwrap();
-        let mut maker = Maker::open(1).unwrap();
+        let mut maker = Maker::new(1);
         for _ in 0..2 {
             maker.picture(stage("sky"), Some(&file.join("thumbnails"))).unwrap();
         }
