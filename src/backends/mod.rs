@@ -32,11 +32,8 @@ impl BackendChoice {
     /// The best choice for this machine: a GPU if there is one, otherwise the widest CPU kernel. If any option of the
     /// CPU is set, the CPU.
     pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
-        if cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit) {
-            BackendChoice::Gpu(gpu)
-        } else {
-            BackendChoice::Cpu(cpu)
-        }
+        let is_gpu = cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit);
+        if is_gpu { BackendChoice::Gpu(gpu) } else { BackendChoice::Cpu(cpu) }
     }
 
     /// The GPU that `adapter` names, or else the best one; `None` if none is named and none is suitable.
@@ -157,32 +154,20 @@ fn listing(levels: Vec<Isa>, adapters: &[AdapterInfo]) -> Vec<BackendListing> {
     let auto_adapter = adapters.iter().position(AdapterInfo::is_fit);
     let cpu = levels.into_iter().map(|isa| {
         let lanes: Vec<String> = isa.lane_counts().iter().map(usize::to_string).collect();
-        let chosen = isa.native_lanes();
-        BackendListing {
-            device: "cpu",
-            about: format!("--isa {isa}: --simd {}; default {chosen}", lanes.join(", ")),
-            is_auto: auto_adapter.is_none() && Some(isa) == best,
-        }
+        let about = format!("--isa {isa}: --simd {}; default {}", lanes.join(", "), isa.native_lanes());
+        BackendListing { device: "cpu", about, is_auto: auto_adapter.is_none() && Some(isa) == best }
     });
     let gpu = adapters.iter().enumerate().map(|(index, adapter)| {
-        let mib = |bytes: u64| bytes >> 20;
+        let [buffers, bindings] =
+            [adapter.buffer_limit, adapter.storage_binding_limit].map(|bytes| bytes >> 20);
         let lacks = adapter.lacks.as_ref().map_or(String::new(), |lacks| format!("; not usable: {lacks}"));
         let software = if adapter.is_software { "; used only if named with --adapter" } else { "" };
-        BackendListing {
-            device: "gpu",
-            about: format!(
-                "{adapter}: buffers of up to {} MiB, bindings of up to {} MiB{lacks}{software}",
-                mib(adapter.buffer_limit),
-                mib(adapter.storage_binding_limit)
-            ),
-            is_auto: auto_adapter == Some(index),
-        }
+        let limits = format!("buffers of up to {buffers} MiB, bindings of up to {bindings} MiB");
+        let about = format!("{adapter}: {limits}{lacks}{software}");
+        BackendListing { device: "gpu", about, is_auto: auto_adapter == Some(index) }
     });
-    let reference = BackendListing {
-        device: "reference",
-        about: "f64, one lane: slow, the reference for rounding errors".to_owned(),
-        is_auto: false,
-    };
+    let about = "f64, one lane: slow, the reference for rounding errors".to_owned();
+    let reference = BackendListing { device: "reference", about, is_auto: false };
     cpu.chain(gpu).chain([reference]).collect()
 }
 

@@ -144,7 +144,7 @@ impl Status {
         self.contributions.iter().map(|part| part.samples_per_pixel).sum()
     }
 
-    pub(super) fn say(&mut self, messages: Vec<String>) {
+    pub(super) fn say(&mut self, messages: impl IntoIterator<Item = String>) {
         for message in messages {
             if !self.messages.contains(&message) {
                 log::warn!("{message}");
