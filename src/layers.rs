@@ -147,14 +147,6 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_albedo_of_its_own_is_white() {
-        let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
-        recipe.settings.max_depth = 1;
-        let glass = image(Layer::Albedo, &recipe, 1).mean([8, 9]);
-        assert_eq!(glass, [1.0; 3]);
-    }
-
-    #[test]
     fn rays_are_as_many_as_the_renderer_counts() {
         use crate::render::Renderer;
         use crate::render_cpu::{CpuOptions, CpuRenderer};
@@ -170,33 +162,13 @@ mod tests {
     }
 
     #[test]
-    fn every_stage_has_every_layer() {
-        for stage in Stage::ALL {
-            for layer in Layer::ALL {
-                let image = image(layer, &stage.recipe(), 1);
-                let sane = |v: f64| (0.0..=100.0).contains(&v);
-                assert!(image.sums.iter().flatten().all(|v| sane(f64::from(*v))), "{} {layer:?}", stage.id);
-            }
-        }
-    }
-
-    #[test]
-    fn a_cancelled_layer_says_so() {
-        let recipe = Recipe::builtin("three-spheres").unwrap();
+    fn a_cancelled_layer_says_so_and_glass_is_white() {
+        let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
+        recipe.settings.max_depth = 1;
+        assert_eq!(image(Layer::Albedo, &recipe, 1).mean([8, 9]), [1.0; 3]);
         let job = Layer::Normals.job(&recipe.job().unwrap()).unwrap();
         let paths = PathRecorder::new(&job, Isa::Portable, None);
         assert!(!LayerImage::new(Layer::Normals, &job).add_sample(&paths, &AtomicBool::new(true)));
-    }
-
-    #[test]
-    fn a_layer_records_only_the_rays_that_it_needs() {
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        let mut depths = |max_depth| {
-            recipe.settings.max_depth = max_depth;
-            let job = recipe.job().unwrap();
-            Layer::ALL.map(|layer| layer.job(&job).unwrap().settings().max_depth)
-        };
-        assert_eq!([1, 2, 50].map(&mut depths), [[1, 1, 1], [1, 2, 2], [1, 2, 50]]);
     }
 
     #[test]

@@ -93,27 +93,6 @@ fn paths_end_for_the_reason_that_is_given() {
 }
 
 #[test]
-fn sentences_name_the_law_that_decided() {
-    let sentences = |stage: &str| {
-        let job = job(Stage::find(stage).expect("a stage").recipe());
-        let mut all = Vec::new();
-        for_paths(&job, 2, |_, steps| all.extend(steps.iter().map(|step| step.sentence(&job))));
-        all
-    };
-    let has = |all: &[String], part: &str| all.iter().any(|sentence| sentence.contains(part));
-    let schlick = sentences("glass-schlick");
-    assert!(
-        has(&schlick, "Schlick says") && has(&schlick, ": refracted, to") && has(&schlick, ": reflected.")
-    );
-    let bubble = sentences("glass-tir");
-    assert!(has(&bubble, "total reflection") && !has(&bubble, "Schlick"));
-    assert!(!has(&sentences("glass-refract"), "Schlick"));
-    assert!(has(&sentences("diffuse"), "all equally likely"));
-    assert!(has(&sentences("lambertian-gamma"), "normal plus a random unit vector"));
-    assert!(has(&sentences("metal"), "Mirror: ") && has(&sentences("metal-fuzzy"), ", its fuzz."));
-}
-
-#[test]
 fn refill_leaves_no_lane_waiting_until_the_end() {
     let job = job(Recipe::find("three-spheres").expect("built in"));
     let lane = |x: u32| (0..16).map(|index| record_path(&job, [x, 7], index, None)).collect::<Vec<_>>();

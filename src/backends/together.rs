@@ -317,22 +317,6 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_member_takes_nothing_that_the_others_would_have_to_wait_for() {
-        let mut pieces = Pieces { left: std::iter::once(0..16).collect(), grain: 2 };
-        let [fast, slow] = [0, 1].map(|index| Pace::of(index, &[Some(100.0), Some(10.0)]));
-        assert_eq!(pieces.take(slow), None);
-        assert_eq!(pieces.take(fast), Some(0..6));
-        pieces.left = std::iter::once(0..64).collect();
-        assert_eq!(pieces.take(slow), Some(0..2));
-        // The fastest member takes all that is left, and so does a member that is alone or new.
-        pieces.left = std::iter::once(0..2).collect();
-        for pace in [fast, Pace::of(0, &[Some(1.0)]), Pace::of(1, &[Some(100.0), None])] {
-            pieces.left = std::iter::once(0..2).collect();
-            assert_eq!(pieces.take(pace), Some(0..2));
-        }
-    }
-
-    #[test]
     fn a_piece_is_the_share_of_all_that_is_left_from_the_last_range() {
         // Half of what is left, times the share of the total speed: 3 in 4 and 1 in 4.
         let speeds = [Some(30.0), Some(10.0), None];

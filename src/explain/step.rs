@@ -272,18 +272,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_normal_is_on_the_side_that_the_ray_comes_from() {
-        let sphere = Sphere { center: DVec3::ZERO, radius: 2.0, material: 0 };
-        for (direction, normal, is_outside) in
-            [(DVec3::NEG_Y, DVec3::Y, true), (DVec3::Y, DVec3::NEG_Y, false)]
-        {
-            let hit = hit_of(&sphere, 7, 2.0 * DVec3::Y, direction);
-            assert_eq!((hit.sphere, hit.point, hit.normal), (7, 2.0 * DVec3::Y, normal));
-            assert_eq!(hit.is_outside, is_outside);
-        }
-    }
-
     fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
         let job = Stage::find(stage).unwrap().recipe().job().unwrap();
         let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);

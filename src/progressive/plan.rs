@@ -160,10 +160,4 @@ mod tests {
             assert_eq!(plan.later_pass_target(heeds_stop), factor * plan.pass_target, "{plan:?}");
         }
     }
-
-    #[test]
-    fn a_plan_without_samples_goes_on_to_the_last_that_a_film_can_hold() {
-        assert_eq!(Plan { first_sample: 5, ..Plan::endless() }.range(), 5..SAMPLE_LIMIT);
-        assert_eq!(Plan { first_sample: 5, ..Plan::samples(20) }.range(), 5..20);
-    }
 }

@@ -172,17 +172,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_are_counts_over_the_seconds_of_tracing() {
-        let stats = Stats { paths: 100, rays: 300, busy_lanes: 6, offered_lanes: 8, ..Stats::default() };
-        let trace = Duration::from_secs(2);
-        let mut status = Status { stats, trace, elapsed: Duration::from_secs(5), ..Status::default() };
-        assert_eq!((status.paths_per_second(), status.rays_per_second()), (50.0, 150.0));
-        assert_eq!(status.lane_occupancy(), Some(0.75));
-        (status.stats, status.trace) = (Stats::default(), Duration::ZERO);
-        assert_eq!((status.paths_per_second(), status.lane_occupancy()), (0.0, None));
-    }
-
-    #[test]
     fn backends_with_other_options_are_credited_apart() {
         let info = |lanes| BackendInfo { name: "cpu", device: "x".to_owned(), lanes, threads: 1 };
         let mut status = Status::default();
@@ -192,23 +181,6 @@ mod tests {
         let found: Vec<_> =
             status.contributions.iter().map(|part| (part.backend.lanes, part.samples_per_pixel)).collect();
         assert_eq!(found, [(8, 20), (1, 2)]);
-    }
-
-    #[test]
-    fn the_status_fits_the_film() {
-        let info = |lanes| BackendInfo { name: "cpu", device: String::new(), lanes, threads: 1 };
-        let part = |lanes, samples_per_pixel| Contribution { backend: info(lanes), samples_per_pixel };
-        let status = Status {
-            backend: Some(info(8)),
-            contributions: vec![part(8, 30), part(4, 10)],
-            trace: Duration::from_secs(40),
-            ..Status::default()
-        };
-        let mut film = Film::new(1, 1, 1);
-        film.record(0..70, 0).unwrap();
-        let fitted = status.of_film(&film, 20);
-        assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
-        assert_eq!(fitted.trace, Duration::from_secs(50));
     }
 
     #[test]
@@ -240,27 +212,5 @@ mod tests {
         assert_eq!(later.contributions, [part("gpu", 30), part("cpu", 14)]);
         let nothing = Status::default();
         assert_eq!(nothing.of_film(&film(8), 4), nothing);
-    }
-
-    #[test]
-    fn phases_that_are_over_do_not_work() {
-        for (phase, is_working, is_over) in [
-            (Phase::Idle, false, false),
-            (Phase::Preparing, true, false),
-            (Phase::Tracing, true, false),
-            (Phase::Paused, false, false),
-            (Phase::Done(EndReason::Samples), false, true),
-            (Phase::Failed(String::new()), false, true),
-        ] {
-            assert_eq!((phase.is_working(), phase.is_over()), (is_working, is_over), "{phase:?}");
-        }
-    }
-
-    #[test]
-    fn what_was_said_is_not_said_again() {
-        let mut status = Status::default();
-        status.say(vec!["a".to_owned(), "b".to_owned()]);
-        status.say(vec!["b".to_owned(), "c".to_owned(), "c".to_owned()]);
-        assert_eq!(status.messages, ["a", "b", "c"]);
     }
 }

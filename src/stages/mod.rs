@@ -156,12 +156,4 @@ mod tests {
         }
         assert_eq!(Stage::find("book").map(Stage::chapter), Ok("14"));
     }
-
-    #[test]
-    fn a_chapter_and_a_section_have_addresses_of_their_own() {
-        let chapter = "Surface Normals and Multiple Objects";
-        let address = format!("{BOOK_URL}#surfacenormalsandmultipleobjects");
-        assert_eq!(book_url(chapter, None), address);
-        assert_eq!(book_url(chapter, Some("An Interval Class")), format!("{address}/anintervalclass"));
-    }
 }

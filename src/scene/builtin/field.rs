@@ -177,11 +177,4 @@ mod tests {
         other.spheres[17].material = 0;
         assert!(!is_field(&other, 17), "another sphere");
     }
-
-    #[test]
-    fn hues_run_from_red_over_green_to_blue() {
-        assert_eq!(hue(0.0, 1.0, 1.0), DVec3::X);
-        assert_eq!(hue(1.0 / 3.0, 1.0, 1.0), DVec3::Y);
-        assert_eq!(hue(2.0 / 3.0, 1.0, 1.0), DVec3::Z);
-    }
 }
