@@ -64,24 +64,6 @@ impl Highlighter {
 mod tests {
     use super::*;
 
-    fn html(language: &str, code: &str) -> String {
-        Highlighter::new().unwrap().html(language, code).unwrap().into_string()
-    }
-
-    #[test]
-    fn words_have_classes() {
-        let rust = html("rs", "pub fn hit<'a>(t: f32) -> u32 { /* a /* b */ */ x'a' \"}\" }\n");
-        for part in
-            ["hl-k\">fn", "hl-f\">hit", "hl-t\">&#39;a", "hl-t\">f32", "hl-s\">&#39;a&#39;", "hl-c\">/* a "]
-        {
-            assert!(rust.contains(part), "{part} in {rust}");
-        }
-        let wgsl = html("wgsl", "@must_use fn f(a: vec3<f32>) -> u32 { return 3u; } // x\n");
-        for part in ["hl-m\">@must_use", "hl-t\">vec3", "hl-n\">3u", "hl-c\">// x"] {
-            assert!(wgsl.contains(part), "{part} in {wgsl}");
-        }
-    }
-
     #[test]
     fn text_is_unchanged_apart_from_the_tags() {
         for (language, code) in [
@@ -89,7 +71,8 @@ mod tests {
             ("wgsl", include_str!("../../shaders/path.wgsl")),
             ("c", include_str!("../../reference/rt_weekend.c")),
         ] {
-            let html = html(language, code);
+            let html = Highlighter::new().unwrap().html(language, code).unwrap().into_string();
+            assert!(html.contains("class=\"hl-k\""), "{language}");
             let mut text: String =
                 html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
             for (name, c) in [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")]

@@ -4,10 +4,12 @@ use super::fault::Fault;
 use super::library::{FOLDER, Library};
 use crate::bench;
 use crate::chart::{self, UNTITLED_TOP};
+use crate::describe::counted;
 use crate::report::{self, CurveSummary};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// Where the kept measurements are listed.
@@ -95,127 +97,71 @@ impl Measured {
     }
 }
 
-/// A row of a benchmark, or of a comparison, which has only some of these.
-#[derive(Debug, Deserialize)]
-struct Row {
-    name: String,
-    #[serde(default)]
-    kind: String,
-    lanes: Option<usize>,
-    threads: Option<usize>,
-    paths_per_second: Option<Spread>,
-    /// Fraction of lanes or threads that had work.
-    #[serde(alias = "in_use")]
-    lanes_in_use: Option<f64>,
-    ratio_to_baseline: Option<f64>,
-    efficiency: Option<f64>,
-    skipped: Option<String>,
-}
-
-/// Smallest, middle and largest value of several runs.
-#[derive(Clone, Copy, Debug, Deserialize)]
-struct Spread {
-    median: f64,
-    min: f64,
-    max: f64,
-}
-
-/// The part of a benchmark's JSON that the tables show.
-#[derive(Debug, Deserialize)]
-struct Bench {
-    schema: u32,
-    machine: Machine,
-    scenes: Vec<Scene>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Machine {
-    processor: String,
-    cores: usize,
-}
-
-#[derive(Debug, Deserialize)]
-struct Scene {
-    scene: String,
-    width: u32,
-    height: u32,
-    max_depth: u32,
-    spheres: usize,
-    rows: Vec<Row>,
-}
-
-/// Ways of doing the same work, from the JSON of `examples/mappings`.
-#[derive(Debug, Deserialize)]
-struct Comparison {
-    /// What was rendered.
-    about: String,
-    /// The processor or the adapter.
-    machine: String,
-    /// The first row is what the others are compared with.
-    rows: Vec<Row>,
-}
-
 /// One table per scene, from the JSON of `weekender bench`.
 fn speed_tables(kept: &Kept) -> Result<Markup> {
-    let remedy = "make the file with weekender bench --json FILE";
-    let Bench { schema, machine, scenes } = serde_json::from_str(&kept.text).context(remedy)?;
-    if schema != bench::SCHEMA || scenes.is_empty() {
-        bail!(
-            "has version {schema} and {} scenes, but version {} is needed; {remedy}",
-            scenes.len(),
-            bench::SCHEMA
-        );
-    }
-    let machine = format!("{}, {} cores", machine.processor, machine.cores);
-    Ok(html! { @for scene in &scenes { (speed_table(kept, &machine, scene)) } })
+    let json: Value = serde_json::from_str(&kept.text).unwrap_or_default();
+    let is_known = json["schema"] == bench::SCHEMA;
+    let scenes = json["scenes"].as_array().filter(|scenes| is_known && !scenes.is_empty());
+    let scenes = scenes.with_context(|| {
+        let (version, needed) = (&json["schema"], bench::SCHEMA);
+        format!(
+            "is no benchmark of version {needed}, but {version}; make it with weekender bench --json FILE"
+        )
+    })?;
+    let machine = &json["machine"];
+    let machine = format!("{}, {} cores", text(&machine["processor"]), machine["cores"]);
+    Ok(html! { @for scene in scenes { (speed_table(kept, &machine, scene)) } })
 }
 
-fn speed_table(kept: &Kept, machine: &str, scene: &Scene) -> Markup {
-    let Scene { scene: name, width, height, max_depth, spheres, rows } = scene;
-    let longest = longest(rows);
+fn speed_table(kept: &Kept, machine: &str, scene: &Value) -> Markup {
+    let name = text(&scene["scene"]);
+    let rows = rows(scene);
     let body = html! {
         @for row in rows {
             tr {
                 th scope="row" { (tracer(row)) }
-                @if let Some(reason) = &row.skipped {
+                @if let Some(reason) = row["skipped"].as_str() {
                     td .skipped colspan="5" { "not measured: " (reason) }
                 } @else {
-                    td { @if let Some(threads) = row.threads.filter(|_| row.kind != "gpu") { (threads) } }
-                    (speed_cell(row, longest))
-                    td { (shown(row.ratio_to_baseline, |ratio| format!("{ratio:.2}"))) }
-                    td { (shown(row.lanes_in_use, percent)) }
-                    td { (shown(row.efficiency, two_digits)) }
+                    td { @if row["kind"] != "gpu" { (row["threads"].to_string()) } }
+                    (speed_cell(row, rows))
+                    td { (shown(row["ratio_to_baseline"].as_f64(), |ratio| format!("{ratio:.2}"))) }
+                    td { (shown(row["lanes_in_use"].as_f64(), percent)) }
+                    td { (shown(row["efficiency"].as_f64(), two_digits)) }
                 }
             }
         }
     };
+    let [width, height, depth, spheres] = ["width", "height", "max_depth", "spheres"].map(|key| &scene[key]);
     let caption = html! {
         strong { (name) }
-        (format!(", {width} × {height}, at most {max_depth} rays per path, {spheres} spheres. Median and range of the runs. "))
-        (origin(kept, Some(machine)))
+        (format!(", {width} × {height}, at most {depth} rays per path, {spheres} spheres. "))
+        "Median and range of the runs. " (origin(kept, Some(machine)))
     };
     let columns = ["tracer", "threads", SPEED, "× C89", "lanes in use", "1/(MSE s)"];
     table(&format!("Speed of {name}"), &caption, &columns, &body)
 }
 
+/// Ways of doing the same work, from the JSON of `examples/mappings`. They are compared with the first.
 fn comparison(kept: &Kept) -> Result<Markup> {
-    let Comparison { about, machine, rows } = serde_json::from_str(&kept.text)?;
-    let longest = longest(&rows);
-    let first = rows.first().and_then(|row| row.paths_per_second).context("the first row has no speed")?;
-    let has_use = rows.iter().any(|row| row.lanes_in_use.is_some());
+    let json: Value = serde_json::from_str(&kept.text)?;
+    let (about, rows) = (text(&json["about"]), rows(&json));
+    let first = rows.first().and_then(median).context("the first row has no speed")?;
+    let has_use = rows.iter().any(|row| row["in_use"].is_f64());
     let body = html! {
-        @for row in &rows {
+        @for row in rows {
             tr {
-                th scope="row" { (row.name) }
-                (speed_cell(row, longest))
-                td { (shown(row.paths_per_second, |speed| format!("{:.2}", speed.median / first.median))) }
-                @if has_use { td { (shown(row.lanes_in_use, percent)) } }
+                th scope="row" { (text(&row["name"])) }
+                (speed_cell(row, rows))
+                td { (shown(median(row), |speed| format!("{:.2}", speed / first))) }
+                @if has_use { td { (shown(row["in_use"].as_f64(), percent)) } }
             }
         }
     };
-    let caption = html! { (about) " Median and range of the runs. " (origin(kept, Some(&machine))) };
+    let machine = json["machine"].as_str();
+    let caption = html! { (about) " Median and range of the runs. " (origin(kept, machine)) };
     let columns = ["who traces what", SPEED, "× the first", "lanes in use"];
-    Ok(table(&about, &caption, &columns[..if has_use { 4 } else { 3 }], &body))
+    Ok(table(about, &caption, &columns[..if has_use { 4 } else { 3 }], &body))
 }
 
 /// The times to two errors, for all scenes, from the JSON of `weekender report`.
@@ -324,19 +270,29 @@ fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
 }
 
 /// A cell with the median, a bar of its share of the longest, and the range.
-fn speed_cell(row: &Row, longest: f64) -> Markup {
+fn speed_cell(row: &Value, rows: &[Value]) -> Markup {
+    let longest = rows.iter().filter_map(median).fold(0.0, f64::max);
+    let end = |key: &str| shown(row["paths_per_second"][key].as_f64(), millions);
     html! {
-        @match row.paths_per_second {
+        @match median(row) {
             None => td .bar { "not measured" },
-            Some(Spread { median, min, max }) => td .bar style={ "--share:" (format!("{:.3}", median / longest)) } {
-                strong { (millions(median)) } " " span .range { (millions(min)) "–" (millions(max)) }
+            Some(speed) => td .bar style={ "--share:" (format!("{:.3}", speed / longest)) } {
+                strong { (millions(speed)) } " " span .range { (end("min")) "–" (end("max")) }
             }
         }
     }
 }
 
-fn longest(rows: &[Row]) -> f64 {
-    rows.iter().filter_map(|row| row.paths_per_second).map(|speed| speed.median).fold(0.0, f64::max)
+fn rows(json: &Value) -> &[Value] {
+    json["rows"].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn median(row: &Value) -> Option<f64> {
+    row["paths_per_second"]["median"].as_f64()
+}
+
+fn text(json: &Value) -> &str {
+    json.as_str().unwrap_or_default()
 }
 
 fn shown<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
@@ -344,13 +300,13 @@ fn shown<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
 }
 
 /// The tracer's name. A benchmark puts the level first, which lanes and threads follow.
-fn tracer(row: &Row) -> String {
-    let level = row.name.split(',').next().unwrap_or_default();
-    match (row.kind.as_str(), row.lanes) {
+fn tracer(row: &Value) -> String {
+    let name = text(&row["name"]);
+    let level = name.split(',').next().unwrap_or_default();
+    match (text(&row["kind"]), row["lanes"].as_u64()) {
         ("baseline", _) => level.to_owned(),
-        ("gpu", _) | (_, None) => row.name.clone(),
-        (_, Some(1)) => format!("1 lane, {level}"),
-        (_, Some(lanes)) => format!("{lanes} lanes, {level}"),
+        ("gpu", _) | (_, None) => name.to_owned(),
+        (_, Some(lanes)) => format!("{}, {level}", counted(lanes, "lane")),
     }
 }
 
@@ -397,7 +353,7 @@ fn two_digits(number: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::json;
 
     fn kept(json: &Value) -> Kept {
         let (file, command) = ("a.json".to_owned(), "make it".to_owned());
@@ -448,7 +404,7 @@ mod tests {
             "{html}"
         );
         let refused = speed_tables(&kept(&bench(99))).unwrap_err().to_string();
-        assert!(refused.contains("version 99") && refused.contains("weekender bench --json"), "{refused}");
+        assert!(refused.contains("but 99") && refused.contains("weekender bench --json"), "{refused}");
     }
 
     #[test]

@@ -107,19 +107,4 @@ mod tests {
         // Every lane begins with a ray from the camera.
         assert_eq!(html.matches("M0.0 ").count(), 16);
     }
-
-    #[test]
-    fn a_lane_is_a_row_and_a_step_a_column() {
-        use Activity::{Camera, Glass, Matte, Waits};
-        let timeline = Timeline { lanes: vec![vec![Camera, Matte, Glass], vec![Camera, Waits, Waits]] };
-        let svg = drawing(&timeline, 4).into_string();
-        for path in [
-            "from-camera\" d=\"M0.0 0.0h178.5v8.5h-178.5zM0.0 10.0h178.5v8.5h-178.5z\"",
-            "off-matte\" d=\"M180.0 0.0h178.5v8.5h-178.5z\"",
-            "off-metal\" d=\"\"",
-            "waits\" d=\"M180.0 10.0h178.5v8.5h-178.5zM360.0 10.0h178.5v8.5h-178.5z\"",
-        ] {
-            assert!(svg.contains(path), "{path}: {svg}");
-        }
-    }
 }

@@ -203,13 +203,22 @@ impl<'a> Studio<'a> {
         let forms = Forms { png: PngForm::Small, ..Forms::default() };
         write_image_as(&path, &film, recipe.rules.transfer, &description, forms)?;
         let error = film.error();
+        let settings = &recipe.settings;
         Ok(Some(Still {
+            stage: task.stage.id.to_owned(),
+            file: Still::file_name(task.stage),
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name().to_owned(),
+            seed: settings.seed,
+            samples_per_pixel: recipe.samples_per_pixel,
             trace_seconds: status.trace.as_secs_f64(),
             rmse_estimate: error.map(|error| error.rmse),
             rmse_deviation: error.map(|error| error.rmse_deviation),
             backend: description.get(key::BACKEND).unwrap_or_default().to_owned(),
+            fingerprint: task.fingerprint.clone(),
             checksum: still::checksum(&path)?,
-            ..Still::new(task.stage, recipe, task.fingerprint.clone())
         }))
     }
 }

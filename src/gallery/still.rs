@@ -64,27 +64,6 @@ impl Still {
         format!("{}.png", stage.id)
     }
 
-    /// The still of `recipe` in the file of `stage`, before it is rendered.
-    pub(super) fn new(stage: &Stage, recipe: &Recipe, fingerprint: String) -> Still {
-        let settings = &recipe.settings;
-        Still {
-            stage: stage.id.to_owned(),
-            file: Still::file_name(stage),
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name().to_owned(),
-            seed: settings.seed,
-            samples_per_pixel: recipe.samples_per_pixel,
-            trace_seconds: 0.0,
-            rmse_estimate: None,
-            rmse_deviation: None,
-            backend: String::new(),
-            fingerprint,
-            checksum: String::new(),
-        }
-    }
-
     /// The still on one line.
     pub(super) fn line(&self) -> String {
         let size = format!("{}x{}", self.width, self.height);
@@ -212,9 +191,28 @@ mod tests {
     use crate::scene::Sphere;
     use std::sync::Arc;
 
-    fn still(id: &str) -> Still {
-        let stage = Stage::find(id).unwrap();
-        Still::new(stage, &Quality::Full.recipe(stage), format!("of {id}"))
+    impl Still {
+        /// A full still, not rendered.
+        pub fn of(id: &str) -> Still {
+            let stage = Stage::find(id).unwrap();
+            let Recipe { settings, samples_per_pixel, .. } = Quality::Full.recipe(stage);
+            Still {
+                stage: stage.id.to_owned(),
+                file: Still::file_name(stage),
+                width: settings.width,
+                height: settings.height,
+                max_depth: settings.max_depth,
+                sampler: String::new(),
+                seed: 0,
+                samples_per_pixel,
+                trace_seconds: 0.0,
+                rmse_estimate: None,
+                rmse_deviation: None,
+                backend: String::new(),
+                fingerprint: format!("of {id}"),
+                checksum: String::new(),
+            }
+        }
     }
 
     #[test]
@@ -246,10 +244,10 @@ mod tests {
         let mut stills = Stills::read(directory.path());
         assert_eq!(stills.all(), []);
         for id in ["metal", "sky", "metal"] {
-            stills.set(Still { rmse_estimate: Some(0.1 + 0.2), ..still(id) });
+            stills.set(Still { rmse_estimate: Some(0.1 + 0.2), ..Still::of(id) });
         }
-        stills.set(Still { stage: "no-stage".to_owned(), ..still("book") });
-        stills.set(Still { file: "../book.png".to_owned(), ..still("book") });
+        stills.set(Still { stage: "no-stage".to_owned(), ..Still::of("book") });
+        stills.set(Still { file: "../book.png".to_owned(), ..Still::of("book") });
         stills.write().unwrap();
         let read = Stills::read(directory.path());
         assert_eq!(read, stills);
@@ -271,7 +269,7 @@ mod tests {
         let path = directory.path().join("sky.png");
         std::fs::write(&path, "picture").unwrap();
         let mut stills = Stills::read(directory.path());
-        stills.set(Still { checksum: checksum(&path).unwrap(), ..still("sky") });
+        stills.set(Still { checksum: checksum(&path).unwrap(), ..Still::of("sky") });
         let is_fresh = |fingerprint: &str| stills.is_fresh(stage, &["other", fingerprint]);
         assert!(is_fresh("of sky") && !is_fresh("of it"));
         std::fs::write(&path, "Picture").unwrap();
@@ -286,13 +284,13 @@ mod tests {
             trace_seconds: 8.26,
             rmse_estimate: Some(0.001_234),
             rmse_deviation: Some(1e-5),
-            ..still("metal")
+            ..Still::of("metal")
         };
         let line = "metal                880x495, 1024 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
         assert_eq!(metal.line(), line);
         let settings = "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path";
         assert_eq!(metal.settings_words(), settings);
-        let sky = still("sky");
+        let sky = Still::of("sky");
         assert_eq!(sky.settings_words(), "880 × 495 pixels, 1 ray through the centre of each pixel");
         assert_eq!((sky.time_words().as_str(), sky.error_words().as_str()), ("less than 0.1 s", "no noise"));
     }

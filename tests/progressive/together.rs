@@ -1,13 +1,11 @@
 //! Several renderers at work on one film, of which some fail.
 
-use super::common::{Fake, PATIENCE, expected, forgetful, job, pulled_out, scripted, spoiling};
-use std::ops::Range;
+use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::channel;
-use std::time::Duration;
 use weekender::backends::Together;
 use weekender::film::Film;
-use weekender::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};
+use weekender::render::{BackendInfo, RenderError, Renderer, Stats};
 
 fn fake(name: &'static str, fails_at: Option<u64>) -> Box<dyn Renderer> {
     Box::new(Fake { fails_at, ..Fake::new(name) })
@@ -93,73 +91,4 @@ fn when_every_member_has_failed_the_film_is_unchanged() {
         assert!(film == job(2).new_film());
         assert_eq!(together.info().name, "none");
     }
-}
-
-/// A backend that describes itself.
-struct Described {
-    fake: Fake,
-    number: u32,
-    prepared: fn() -> Result<(), RenderError>,
-}
-
-impl Renderer for Described {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn hierarchy_time(&self) -> Duration {
-        Duration::from_secs(self.number.into())
-    }
-
-    fn kernel(&self) -> String {
-        format!("kernel {}", self.number)
-    }
-
-    fn kernel_contents(&self) -> KernelContents {
-        let left_out = [["lens", "glass"], ["glass", "fuzz"]][self.number as usize - 1].to_vec();
-        KernelContents { present: format!("code {}", self.number), left_out }
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        (self.prepared)()
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.fake.accumulate(job, range, film, cancel)
-    }
-}
-
-fn described(prepared: [fn() -> Result<(), RenderError>; 2]) -> Together {
-    let member = |name, number, prepared| -> Box<dyn Renderer> {
-        Box::new(Described { fake: Fake::new(name), number, prepared })
-    };
-    let [first, second] = prepared;
-    Together::new(vec![member("cpu", 1, first), member("gpu", 2, second)])
-}
-
-#[test]
-fn members_are_described_in_their_order_and_left_out_if_they_cannot_prepare() {
-    let both = described([|| Ok(()); 2]);
-    assert_eq!(both.kernel(), "kernel 1 | kernel 2");
-    let left_out = vec!["lens", "glass", "fuzz"];
-    assert_eq!(both.kernel_contents(), KernelContents { present: "code 1 | code 2".into(), left_out });
-    assert_eq!(both.hierarchy_time(), Duration::from_secs(3));
-
-    let failing = || Err(pulled_out("gpu"));
-    let mut one = described([|| Ok(()), failing]);
-    one.prepare(&job(2), &AtomicBool::new(false)).unwrap();
-    assert_eq!(one.kernel(), "kernel 1");
-    assert_eq!(one.take_messages(), ["gpu failed: pulled out; cpu continues the same picture"]);
-    let outcome = described([failing; 2]).prepare(&job(2), &AtomicBool::new(false));
-    assert!(matches!(outcome, Err(RenderError::Backend { .. })), "{outcome:?}");
-    let mut both = described([|| Err(RenderError::Cancelled), || Ok(())]);
-    let outcome = both.prepare(&job(2), &AtomicBool::new(false));
-    assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
-    assert_eq!(both.kernel(), "kernel 1 | kernel 2");
 }
