@@ -36,7 +36,6 @@ impl HeatScale {
     pub const DIFFERENCE: HeatScale =
         HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
-    /// Rays of a path.
     pub const RAYS: HeatScale = HeatScale {
         title: "rays per path",
         limits: [1.0, 32.0],
@@ -44,7 +43,6 @@ impl HeatScale {
         marks: &[(1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8"), (16.0, "16"), (32.0, "32")],
     };
 
-    /// Lanes in use.
     pub const OCCUPANCY: HeatScale = HeatScale {
         title: "share of lanes in use",
         limits: [0.0, 1.0],
@@ -85,7 +83,6 @@ impl HeatScale {
         }
     }
 
-    /// The colour of a value.
     pub fn colour(&self, value: f64) -> [u8; 3] {
         colour_at(self.place(value))
     }

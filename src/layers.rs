@@ -9,7 +9,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A layer of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// `(n + 1) / 2` of the normal where the camera's ray meets a surface; the sky where it meets none.
@@ -21,7 +20,6 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// All layers.
     pub const ALL: [Layer; 3] = [Layer::Normals, Layer::Albedo, Layer::RaysPerPath];
 
     /// The job whose paths this layer records: the picture's job with only as many rays per path as the layer needs.
@@ -66,11 +64,8 @@ impl Layer {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerImage {
     layer: Layer,
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Samples per pixel.
     pub samples: u64,
     sums: Vec<[f32; 3]>,
 }

@@ -107,10 +107,8 @@ impl BackendChoice {
 /// Why a backend is not available.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum BackendError {
-    /// The CPU cannot fulfil the options.
     #[error(transparent)]
     Cpu(#[from] CpuError),
-    /// No suitable GPU is available.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
@@ -133,7 +131,6 @@ pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError>
     })
 }
 
-/// One line of `--list`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BackendListing {
     /// The `--device` that uses it.

@@ -12,20 +12,17 @@ use glam::DVec3;
 pub struct Step {
     /// Start of the ray, scene units.
     pub origin: DVec3,
-    /// Unit direction of the ray.
     pub direction: DVec3,
     /// Factor by which light that arrives along the ray contributes to the pixel, linear RGB.
     pub throughput: DVec3,
     /// Where and what the ray hits; `None` if it leaves the scene.
     pub hit: Option<Hit>,
-    /// What happens there.
     pub event: Event,
 }
 
 /// The end of a ray on a sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// Index of the sphere in the scene.
     pub sphere: usize,
     /// The point, scene units.
     pub point: DVec3,
@@ -59,14 +56,12 @@ pub enum Lobe {
     Lambertian,
     /// The mirrored direction plus `fuzz` times a uniform unit vector.
     Metal {
-        /// The mirrored unit direction.
         mirrored: DVec3,
         /// Length of the random part, `0..=1`.
         fuzz: f64,
     },
     /// One of two directions.
     Glass {
-        /// The mirrored unit direction.
         mirrored: DVec3,
         /// The refracted unit direction; `None` where Snell's law has no solution.
         refracted: Option<DVec3>,
@@ -74,7 +69,6 @@ pub enum Lobe {
         reflectance: f64,
         /// The random number in `[0, 1)`; the ray is reflected if it is less than `reflectance`.
         coin: f64,
-        /// Whether the ray was refracted.
         refracts: bool,
     },
 }
@@ -221,7 +215,6 @@ mod tests {
 
     const GLASS: Material = Material::Dielectric { refraction_index: 1.5 };
 
-    /// The top of a sphere.
     fn top(is_outside: bool) -> Hit {
         Hit { sphere: 0, point: DVec3::ZERO, normal: DVec3::Y, is_outside }
     }

@@ -38,9 +38,7 @@ pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, Ba
 
 /// What a render thread is asked to render.
 pub struct RenderRequest {
-    /// The picture.
     pub job: RenderJob,
-    /// The backend that renders it.
     pub backend: BackendChoice,
     /// An existing renderer of `backend`; otherwise the render thread makes or reuses one.
     pub renderer: Option<Box<dyn Renderer>>,
@@ -51,7 +49,6 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
-    /// A render from the beginning.
     pub fn new(job: RenderJob, backend: BackendChoice, plan: Plan) -> Self {
         RenderRequest { job, backend, renderer: None, plan, film: None }
     }
@@ -132,7 +129,6 @@ impl Progressive {
     /// Longest time between two looks of [`Progressive::watch`].
     pub const LOOK: Duration = Duration::from_millis(50);
 
-    /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.abandon();
         self.send(RenderCommand::Abandon);

@@ -40,7 +40,6 @@ impl Stop {
 pub struct Plan {
     /// The first sample of each pixel. Samples that are already in the film are skipped.
     pub first_sample: u64,
-    /// The stop conditions.
     pub stop: Stop,
     /// The duration that a pass should have, and the longest that a stop should take. Commands are obeyed between passes.
     pub pass_target: Duration,
@@ -93,7 +92,6 @@ impl Plan {
     }
 }
 
-/// Why a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndReason {
     /// The film holds all samples of the plan.

@@ -10,11 +10,8 @@ use std::time::Duration;
 pub struct Picture {
     /// The run it belongs to, as [`Status::run`].
     pub run: u64,
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Samples per pixel in the picture.
     pub samples_per_pixel: u64,
     /// Three bytes a pixel, top row first.
     pub rgb8: Vec<u8>,

@@ -6,7 +6,6 @@ use crate::render::{BackendInfo, Stats};
 use serde::Serialize;
 use std::time::Duration;
 
-/// The phase of a render.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Phase {
     /// No render was started, or it was abandoned.
@@ -14,7 +13,6 @@ pub enum Phase {
     Idle,
     /// The prepared scene, its hierarchy and kernels are being built.
     Preparing,
-    /// Samples are being added.
     Tracing,
     /// The render waits to be resumed.
     Paused,
@@ -36,18 +34,15 @@ impl Phase {
     }
 }
 
-/// The error at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistoryPoint {
     /// The backend that traced the newest samples: [`BackendInfo::name`].
     pub backend: &'static str,
-    /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
     /// Wall seconds of tracing since the start.
     pub trace_seconds: f64,
     /// Estimated RMSE, linear radiance.
     pub rmse_estimate: f64,
-    /// Estimated relative MSE.
     pub rel_mse_estimate: f64,
 }
 
@@ -57,7 +52,6 @@ pub struct Contribution {
     /// The backend that added them.
     #[serde(flatten)]
     pub backend: BackendInfo,
-    /// Samples per pixel.
     pub samples_per_pixel: u64,
 }
 
@@ -67,11 +61,8 @@ pub struct Contribution {
 pub struct Status {
     /// The run that this belongs to: 0 before the first start, then one more for each start.
     pub run: u64,
-    /// The current phase.
     pub phase: Phase,
-    /// The backend in use.
     pub backend: Option<BackendInfo>,
-    /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
     /// Samples per pixel that the film should reach.
     pub planned_samples_per_pixel: u64,
@@ -79,7 +70,6 @@ pub struct Status {
     pub rejected_samples: u64,
     /// Statistics summed over the passes.
     pub stats: Stats,
-    /// Wall time of preparation.
     pub prepare: Duration,
     /// What the current kernel contains, in words.
     pub kernel: String,
@@ -106,12 +96,10 @@ pub struct Status {
 }
 
 impl Status {
-    /// Paths per second of tracing.
     pub fn paths_per_second(&self) -> f64 {
         per_second(self.stats.paths, self.trace)
     }
 
-    /// Rays per second of tracing.
     pub fn rays_per_second(&self) -> f64 {
         per_second(self.stats.rays, self.trace)
     }

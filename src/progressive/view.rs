@@ -28,9 +28,7 @@ pub enum View {
 /// A picture to compare with, linear RGB.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceMeans {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
     /// Linear RGB, row by row from the top.
     pub means: Vec<[f32; 3]>,

@@ -11,17 +11,13 @@ pub enum SceneError {
     /// A value is NaN or infinite.
     #[error("{what} is {value}, but must be a finite number")]
     NotFinite {
-        /// The location of the value.
         what: String,
-        /// The invalid value.
         value: f64,
     },
     /// A number is outside its range.
     #[error("{what} is {}, but must be {limit}; {remedy}", Number(*value))]
     OutOfRange {
-        /// The location of the value.
         what: String,
-        /// The invalid value.
         value: f64,
         /// The range, in words.
         limit: Cow<'static, str>,
@@ -31,11 +27,9 @@ pub enum SceneError {
     /// A colour has a component outside its range.
     #[error("{what} is {}, but each component must be within 0 and {limit}", Numbers(value.to_array()))]
     Colour {
-        /// The location of the colour.
         what: String,
         /// The colour, linear RGB.
         value: DVec3,
-        /// The largest allowed component.
         limit: f64,
     },
     /// A sphere names a material that does not exist.
@@ -53,7 +47,6 @@ pub enum SceneError {
     /// Two materials have the same name.
     #[error("two materials are called {name:?}; rename one")]
     DuplicateMaterial {
-        /// The repeated name.
         name: String,
     },
     /// The camera's position equals the point that it looks at.
@@ -73,7 +66,6 @@ pub enum SceneError {
         Numbers(remedy.to_array())
     )]
     NoUp {
-        /// The up vector.
         vup: DVec3,
         /// An up vector for this view.
         remedy: DVec3,

@@ -57,16 +57,12 @@ pub enum Look {
 pub struct NamedMaterial {
     /// Unique within a scene.
     pub name: String,
-    /// How the surface scatters.
     pub material: Material,
 }
 
-/// A parameter of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
-    /// A plain number.
     Number(f64),
-    /// Linear RGB.
     Colour(DVec3),
 }
 
@@ -100,7 +96,6 @@ impl Material {
         }
     }
 
-    /// What the material looks like.
     pub fn look(&self) -> Look {
         match *self {
             Material::Lambertian { .. } => Look::Matte,

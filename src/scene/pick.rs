@@ -3,10 +3,8 @@
 use super::{Camera, Scene, Sphere};
 use glam::DVec3;
 
-/// The first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// Index of the sphere in the scene.
     pub sphere: usize,
     /// Distance from the eye along the ray, scene units.
     pub distance: f64,

@@ -5,7 +5,6 @@ use super::error::{LENGTH_LIMIT, finite, position};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// A sphere with a single material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre, scene units.

@@ -28,7 +28,6 @@ pub fn dismiss(backend: Option<Backend>) {
     }
 }
 
-/// Makes a renderer.
 fn make(factory: &Mutex<Factory>, choice: &BackendChoice) -> Result<Box<dyn Renderer>, RenderError> {
     let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(choice);
     made.map_err(|error| RenderError::Backend { backend: choice.name(), reason: error.to_string() })

@@ -40,7 +40,6 @@ impl Cancel {
     }
 }
 
-/// The current render.
 pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
@@ -49,7 +48,6 @@ pub(super) struct Render {
     requested: SampleRanges,
     cancel: Arc<Cancel>,
     choice: BackendChoice,
-    /// The backends that have failed.
     failed: Vec<BackendChoice>,
     is_prepared: bool,
     pending: Option<Pending>,

@@ -8,7 +8,6 @@ use glam::DVec3;
 /// 485 spheres, the same number as the book's own generator.
 const SEED: u64 = 1;
 
-/// The camera of the final render.
 pub const BOOK_CAMERA: Camera = Camera {
     look_from: DVec3::new(13.0, 2.0, 3.0),
     look_at: DVec3::ZERO,

@@ -55,7 +55,6 @@ pub fn is_field(scene: &Scene, count: u64) -> bool {
 
 /// The ground of a field.
 struct Ground {
-    /// Number of cells in a row.
     columns: u64,
     /// Half the field's side, scene units.
     half_width: f64,

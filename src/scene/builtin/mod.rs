@@ -22,11 +22,8 @@ pub struct BuiltinScene {
     pub name: &'static str,
     /// A description in one line.
     pub about: &'static str,
-    /// Default picture width in pixels.
     pub width: u32,
-    /// Default picture height in pixels.
     pub height: u32,
-    /// Default samples per pixel.
     pub samples_per_pixel: u64,
     /// Default limit on rays per path, including the camera ray.
     pub max_depth: u32,
@@ -112,7 +109,6 @@ impl BuiltinScene {
         },
     ];
 
-    /// Finds the scene with this name.
     pub fn find(name: &str) -> Option<&'static BuiltinScene> {
         Self::ALL.iter().find(|scene| scene.name == name)
     }
