@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use super::library::Entry;
 use super::prose;
-use super::reference::{Area, GLOSSARY, REFERENCES, Term};
+use super::reference::{Area, GLOSSARY, REFERENCES};
 use super::site::{Site, Uses};
 use maud::{Markup, html};
 
@@ -36,24 +36,16 @@ fn glossary(site: &Site, uses: &mut Uses) -> Result<Markup, Fault> {
         @for (title, area) in areas {
             h3 id={ "glossary-of-" (title.to_lowercase()) } { (title) }
             dl .glossary {
-                @for entry in site.terms.iter().filter(|entry| entry.value.area == area) {
-                    (term(site, entry, uses)?)
-                }
-            }
-        }
-    })
-}
-
-fn term(site: &Site, entry: &Entry<Term>, uses: &mut Uses) -> Result<Markup, Fault> {
-    let key = &entry.key;
-    let text = prose::short_text(site, GLOSSARY, entry.line, &entry.value.text, uses)?;
-    Ok(html! {
-        div {
-            dt id={ "term-" (key) } { (entry.value.term) }
-            dd {
-                span id={ "def-" (key) } { (text) }
-                @if let Some(chapter) = uses.terms.get(key) {
-                    " " a .back href={ "#use-" (key) } title="First link to the term" { (chapter) }
+                @for Entry { key, line, value } in site.terms.iter().filter(|entry| entry.value.area == area) {
+                    div {
+                        dt id={ "term-" (key) } { (value.term) }
+                        dd {
+                            span id={ "def-" (key) } { (prose::short_text(site, GLOSSARY, *line, &value.text, uses)?) }
+                            @if let Some(chapter) = uses.terms.get(key) {
+                                " " a .back href={ "#use-" (key) } title="First link to the term" { (chapter) }
+                            }
+                        }
+                    }
                 }
             }
         }

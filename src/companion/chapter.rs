@@ -53,6 +53,11 @@ impl Chapter {
         (is_of_book || self.number > LAST_OF_BOOK).then_some(self.number)
     }
 
+    /// The number to show and a space, or nothing.
+    pub fn number_prefix(&self) -> String {
+        self.shown_number().map_or_else(String::new, |number| format!("{number} "))
+    }
+
     /// Splits a file into its facts and its Markdown.
     fn parse(file: &str, text: &str) -> Result<Chapter, Fault> {
         let parts = text.strip_prefix("+++\n").and_then(|rest| rest.split_once("\n+++\n"));

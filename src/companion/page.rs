@@ -129,7 +129,15 @@ fn navigation(site: &Site) -> Markup {
                     a .home href="#top" { strong { "Weekender" } " the companion" }
                     @for (title, chapters) in [("With the book", with_book), ("Beyond the book", beyond)] {
                         p .part { (title) }
-                        ol { @for chapter in chapters { (entry(chapter)) } }
+                        ol {
+                            @for chapter in chapters {
+                                li {
+                                    a href={ "#" (chapter.id) } {
+                                        span .number { (chapter.number_prefix()) } (chapter.short())
+                                    }
+                                }
+                            }
+                        }
                     }
                     fieldset .theme hidden {
                         legend { "Colours" }
@@ -141,22 +149,6 @@ fn navigation(site: &Site) -> Markup {
             }
         }
     }
-}
-
-fn entry(chapter: &Chapter) -> Markup {
-    html! {
-        li {
-            a href={ "#" (chapter.id) } {
-                span .number { @if let Some(number) = chapter.shown_number() { (number) " " } } (chapter.short())
-            }
-        }
-    }
-}
-
-/// Number and short title.
-fn title_of(chapter: &Chapter) -> String {
-    let number = chapter.shown_number().map_or_else(String::new, |number| format!("{number} "));
-    number + chapter.short()
 }
 
 fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> {
@@ -189,10 +181,10 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
             (text)
             nav .turn aria-label={ "Before and after " (title) } {
                 @if let Some(before) = before {
-                    a .before href={ "#" (before.id) } { span { "Previous" } (title_of(before)) }
+                    a .before href={ "#" (before.id) } { span { "Previous" } (before.number_prefix()) (before.short()) }
                 }
                 @if let Some(after) = after {
-                    a .after href={ "#" (after.id) } { span { "Next" } (title_of(after)) }
+                    a .after href={ "#" (after.id) } { span { "Next" } (after.number_prefix()) (after.short()) }
                 }
             }
         }

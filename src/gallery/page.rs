@@ -11,8 +11,12 @@ const STYLE: &str = include_str!("../../assets/gallery/style.css");
 
 /// The page of the stills. A still that is not there has a place that says so.
 pub fn page(stills: &Stills) -> String {
-    let chapters: Vec<&[Figure]> =
-        Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter()).collect();
+    let chapters = Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
+    let chapters: Vec<(&Stage, &[Figure])> =
+        chapters.filter_map(|figures| Some((figures.first()?.stage(), figures))).collect();
+    let title = |stage: &Stage| html! { span.number { (stage.chapter()) } " " (stage.chapter_title) };
+    let backends: BTreeSet<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
+    let backends: Vec<&str> = backends.into_iter().collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -34,35 +38,34 @@ pub fn page(stills: &Stills) -> String {
                          full size and contains the settings that it was made with."
                     }
                     nav aria-label="Chapters" {
-                        ul { @for chapter in &chapters { (entry(chapter)) } }
+                        ul {
+                            @for (stage, _) in &chapters {
+                                li { a href={ "#chapter-" (stage.chapter()) } { (title(stage)) } }
+                            }
+                        }
                     }
                 }
-                main { @for chapter in &chapters { (section(chapter, stills)) } }
-                footer { (footer(stills)) }
+                main {
+                    @for (stage, figures) in &chapters {
+                        section id={ "chapter-" (stage.chapter()) } {
+                            h2 { (title(stage)) }
+                            @for figure in *figures { (shown(figure, stills)) }
+                        }
+                    }
+                }
+                footer {
+                    p {
+                        "Times are those of tracing alone. The error is the root of the mean squared error in linear radiance, \
+                         estimated from two halves of the samples; ± is one standard deviation of the estimate."
+                    }
+                    @if !backends.is_empty() {
+                        p { "Rendered by Weekender " (env!("CARGO_PKG_VERSION")) " (" (backends.join("; ")) ")." }
+                    }
+                }
             }
         }
     };
     page.into_string() + "\n"
-}
-
-fn entry(figures: &[Figure]) -> Markup {
-    let stage = first(figures);
-    html! { li { a href={ "#chapter-" (stage.chapter()) } { span.number { (stage.chapter()) } " " (stage.chapter_title) } } }
-}
-
-fn section(figures: &[Figure], stills: &Stills) -> Markup {
-    let stage = first(figures);
-    html! {
-        section id={ "chapter-" (stage.chapter()) } {
-            h2 { span.number { (stage.chapter()) } " " (stage.chapter_title) }
-            @for figure in figures { (shown(figure, stills)) }
-        }
-    }
-}
-
-/// The stage of the first figure of a chapter.
-fn first(figures: &[Figure]) -> &'static Stage {
-    figures.first().map_or(&Stage::ALL[0], Figure::stage)
 }
 
 fn shown(figure: &Figure, stills: &Stills) -> Markup {
@@ -74,15 +77,13 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
     };
     html! {
         figure.figure id={ "figure-" (figure.id) } {
-            div class=(class) { @for panel in figure.panels {
-                    (shown_panel(panel, figure.panels.len() > 1, stills))
-                } }
+            div class=(class) {
+                @for panel in figure.panels { (shown_panel(panel, figure.panels.len() > 1, stills)) }
+            }
             figcaption {
                 h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
                 p { (figure.caption) }
-                p.section {
-                    a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title) }
-                }
+                p.section { a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title) } }
             }
         }
     }
@@ -90,35 +91,22 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
 
 /// The panel; `is_labelled` if it has neighbours.
 fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
-    let class = if is_about_pixels(panel.stage()) { "panel pixels" } else { "panel" };
+    let stage = panel.stage();
+    let class = if is_about_pixels(stage) { "panel pixels" } else { "panel" };
     html! {
-        div class=(class) data-stage=(panel.stage().id) {
-            @match stills.of(panel.stage()) {
+        div class=(class) data-stage=(stage.id) {
+            @match stills.of(stage) {
                 Some(still) => {
                     a href=(still.file) {
-                        img src=(still.file) width=(still.width) height=(still.height) alt=(panel.stage().alt) loading="lazy";
+                        img src=(still.file) width=(still.width) height=(still.height) alt=(stage.alt) loading="lazy";
                     }
                     p.facts {
                         @if is_labelled { strong { (panel.label) } " " }
                         (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
                     }
                 }
-                None => p.missing { "Not rendered yet: " code { "--only " (panel.stage().id) } }
+                None => p.missing { "Not rendered yet: " code { "--only " (stage.id) } }
             }
-        }
-    }
-}
-
-fn footer(stills: &Stills) -> Markup {
-    let backends: BTreeSet<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
-    let backends: Vec<&str> = backends.into_iter().collect();
-    html! {
-        p {
-            "Times are those of tracing alone. The error is the root of the mean squared error in linear radiance, \
-             estimated from two halves of the samples; ± is one standard deviation of the estimate."
-        }
-        @if !backends.is_empty() {
-            p { "Rendered by Weekender " (env!("CARGO_PKG_VERSION")) " (" (backends.join("; ")) ")." }
         }
     }
 }

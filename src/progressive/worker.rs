@@ -84,7 +84,7 @@ impl Worker {
             RenderCommand::Abandon => return self.abandon(),
             RenderCommand::SetView(view) => {
                 self.view = view;
-                self.render.iter_mut().for_each(Render::forget_picture);
+                self.render.iter_mut().for_each(|render| render.pictured_samples = None);
                 return;
             }
             RenderCommand::Take(taker) => {
@@ -107,7 +107,7 @@ impl Worker {
             RenderCommand::SetPlan(plan) => render.set_plan(plan),
             RenderCommand::Inspect(look) => {
                 let looked = guarded("whoever looked at the film", || {
-                    look(render.film());
+                    look(&render.film);
                     Ok(())
                 });
                 render.complain(looked);
@@ -161,7 +161,7 @@ impl Worker {
 
     fn take_film(&mut self) -> Option<Film> {
         self.collect();
-        let (film, status) = self.render.take()?.into_film();
+        let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
             self.shared.publish(&Status { phase: Phase::Idle, ..status });
         }

@@ -43,7 +43,7 @@ impl Cancel {
 pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
-    film: Film,
+    pub film: Film,
     /// The samples of the film, and those that the renderer has not added to it yet.
     requested: SampleRanges,
     cancel: Arc<Cancel>,
@@ -56,7 +56,8 @@ pub(super) struct Render {
     estimated_samples: u64,
     estimated_at: Instant,
     estimate_took: Duration,
-    pictured_samples: Option<u64>,
+    /// Samples in the last picture; `None` if the next request is to resolve one even of the same film.
+    pub pictured_samples: Option<u64>,
     pub status: Status,
 }
 
@@ -94,19 +95,6 @@ impl Render {
 
     pub fn is_working(&self) -> bool {
         self.status.phase.is_working()
-    }
-
-    pub fn film(&self) -> &Film {
-        &self.film
-    }
-
-    pub fn into_film(self) -> (Film, Status) {
-        (self.film, self.status)
-    }
-
-    /// Makes the next request resolve a picture even if the film has not changed.
-    pub fn forget_picture(&mut self) {
-        self.pictured_samples = None;
     }
 
     /// Changes when the render ends. A finished render continues if the new plan has work left.
