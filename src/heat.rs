@@ -36,7 +36,6 @@ impl HeatScale {
     pub const DIFFERENCE: HeatScale =
         HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
-    /// Rays of a path.
     pub const RAYS: HeatScale = HeatScale {
         title: "rays per path",
         limits: [1.0, 32.0],
@@ -44,7 +43,6 @@ impl HeatScale {
         marks: &[(1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8"), (16.0, "16"), (32.0, "32")],
     };
 
-    /// Lanes in use.
     pub const OCCUPANCY: HeatScale = HeatScale {
         title: "share of lanes in use",
         limits: [0.0, 1.0],
@@ -85,7 +83,6 @@ impl HeatScale {
         }
     }
 
-    /// The colour of a value.
     pub fn colour(&self, value: f64) -> [u8; 3] {
         colour_at(self.place(value))
     }
@@ -115,16 +112,6 @@ mod tests {
     const SCALES: [HeatScale; 3] = [HeatScale::ERROR, HeatScale::RAYS, HeatScale::OCCUPANCY];
 
     #[test]
-    fn scales_go_from_dark_to_bright() {
-        for scale in SCALES {
-            assert_eq!(scale.colour(-1.0), [0, 0, 4]);
-            assert_eq!(scale.colour(1e9), [252, 255, 164]);
-        }
-        let sum = |place| colour_at(place).iter().map(|x| u32::from(*x)).sum::<u32>();
-        assert!((0..20).all(|i| sum(f64::from(i) / 20.0) <= sum(f64::from(i + 1) / 20.0)));
-    }
-
-    #[test]
     fn known_values_have_known_colours() {
         // A third of the way up is the third of seven colours, halfway the fourth.
         for (scale, third, middle) in [
@@ -134,7 +121,9 @@ mod tests {
         ] {
             assert_eq!(scale.colour(third), [101, 21, 110], "{}", scale.title);
             assert_eq!(scale.colour(middle), [159, 42, 99], "{}", scale.title);
+            assert_eq!([scale.colour(-1.0), scale.colour(1e9)], [[0, 0, 4], [252, 255, 164]]);
         }
+        assert_eq!(colour_at(0.625), [199, 65, 74], "three quarters from the fourth to the fifth");
     }
 
     #[test]
@@ -154,18 +143,5 @@ mod tests {
                 assert!((scale.place(*value) - index as f64 / last as f64).abs() < 1e-12, "{value}");
             }
         }
-    }
-
-    #[test]
-    fn colours_between_two_neighbours_are_mixed_and_rounded() {
-        assert_eq!(colour_at(0.125), [30, 8, 64], "three quarters from the first to the second");
-        assert_eq!(colour_at(0.625), [199, 65, 74], "three quarters from the fourth to the fifth");
-        assert_eq!(HeatScale::OCCUPANCY.colour(0.625), colour_at(0.625));
-    }
-
-    #[test]
-    fn two_digits_of_a_number_count() {
-        let found = [1234.0, 20.0, 16.0, 9.6, 1.0, 0.25, 0.0304, 0.000_012_3, 3e-7].map(short);
-        assert_eq!(found, ["1234", "20", "16", "9.6", "1", "0.25", "0.03", "0.000012", "0"]);
     }
 }

@@ -9,7 +9,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A layer of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// `(n + 1) / 2` of the normal where the camera's ray meets a surface; the sky where it meets none.
@@ -21,7 +20,6 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// All layers.
     pub const ALL: [Layer; 3] = [Layer::Normals, Layer::Albedo, Layer::RaysPerPath];
 
     /// The job whose paths this layer records: the picture's job with only as many rays per path as the layer needs.
@@ -66,11 +64,8 @@ impl Layer {
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerImage {
     layer: Layer,
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Samples per pixel.
     pub samples: u64,
     sums: Vec<[f32; 3]>,
 }
@@ -147,14 +142,6 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_albedo_of_its_own_is_white() {
-        let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
-        recipe.settings.max_depth = 1;
-        let glass = image(Layer::Albedo, &recipe, 1).mean([8, 9]);
-        assert_eq!(glass, [1.0; 3]);
-    }
-
-    #[test]
     fn rays_are_as_many_as_the_renderer_counts() {
         use crate::render::Renderer;
         use crate::render_cpu::{CpuOptions, CpuRenderer};
@@ -170,33 +157,13 @@ mod tests {
     }
 
     #[test]
-    fn every_stage_has_every_layer() {
-        for stage in Stage::ALL {
-            for layer in Layer::ALL {
-                let image = image(layer, &stage.recipe(), 1);
-                let sane = |v: f64| (0.0..=100.0).contains(&v);
-                assert!(image.sums.iter().flatten().all(|v| sane(f64::from(*v))), "{} {layer:?}", stage.id);
-            }
-        }
-    }
-
-    #[test]
-    fn a_cancelled_layer_says_so() {
-        let recipe = Recipe::builtin("three-spheres").unwrap();
+    fn a_cancelled_layer_says_so_and_glass_is_white() {
+        let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
+        recipe.settings.max_depth = 1;
+        assert_eq!(image(Layer::Albedo, &recipe, 1).mean([8, 9]), [1.0; 3]);
         let job = Layer::Normals.job(&recipe.job().unwrap()).unwrap();
         let paths = PathRecorder::new(&job, Isa::Portable, None);
         assert!(!LayerImage::new(Layer::Normals, &job).add_sample(&paths, &AtomicBool::new(true)));
-    }
-
-    #[test]
-    fn a_layer_records_only_the_rays_that_it_needs() {
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        let mut depths = |max_depth| {
-            recipe.settings.max_depth = max_depth;
-            let job = recipe.job().unwrap();
-            Layer::ALL.map(|layer| layer.job(&job).unwrap().settings().max_depth)
-        };
-        assert_eq!([1, 2, 50].map(&mut depths), [[1, 1, 1], [1, 2, 2], [1, 2, 50]]);
     }
 
     #[test]

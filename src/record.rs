@@ -2,10 +2,8 @@
 
 use serde::Serialize;
 
-/// The hit of a recorded ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedHit {
-    /// Index of the sphere in the scene.
     pub sphere: usize,
     /// Distance along the ray, scene units.
     pub distance: f64,
@@ -16,9 +14,7 @@ pub struct RecordedHit {
 /// One ray of a recorded path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedRay {
-    /// Origin of the ray, scene units.
     pub origin: [f64; 3],
-    /// Unit direction of the ray.
     pub direction: [f64; 3],
     /// Factor by which light arriving along the ray contributes to the pixel, linear RGB.
     pub throughput: [f64; 3],

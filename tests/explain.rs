@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use glam::DVec3;
-use weekender::explain::{Activity, Event, Lobe, Step, steps, timeline};
+use weekender::explain::{Event, Lobe, Step, steps};
 use weekender::recipe::Recipe;
 use weekender::render::RenderJob;
 use weekender::render_cpu::{PathRecord, record_path};
@@ -92,49 +92,3 @@ fn paths_end_for_the_reason_that_is_given() {
     });
 }
 
-#[test]
-fn sentences_name_the_law_that_decided() {
-    let sentences = |stage: &str| {
-        let job = job(Stage::find(stage).expect("a stage").recipe());
-        let mut all = Vec::new();
-        for_paths(&job, 2, |_, steps| all.extend(steps.iter().map(|step| step.sentence(&job))));
-        all
-    };
-    let has = |all: &[String], part: &str| all.iter().any(|sentence| sentence.contains(part));
-    let schlick = sentences("glass-schlick");
-    assert!(
-        has(&schlick, "Schlick says") && has(&schlick, ": refracted, to") && has(&schlick, ": reflected.")
-    );
-    let bubble = sentences("glass-tir");
-    assert!(has(&bubble, "total reflection") && !has(&bubble, "Schlick"));
-    assert!(!has(&sentences("glass-refract"), "Schlick"));
-    assert!(has(&sentences("diffuse"), "all equally likely"));
-    assert!(has(&sentences("lambertian-gamma"), "normal plus a random unit vector"));
-    assert!(has(&sentences("metal"), "Mirror: ") && has(&sentences("metal-fuzzy"), ", its fuzz."));
-}
-
-#[test]
-fn refill_leaves_no_lane_waiting_until_the_end() {
-    let job = job(Recipe::find("three-spheres").expect("built in"));
-    let lane = |x: u32| (0..16).map(|index| record_path(&job, [x, 7], index, None)).collect::<Vec<_>>();
-    let paths: Vec<Vec<PathRecord>> = (4..20).map(lane).collect();
-    let rays: usize = paths.iter().flatten().map(|path| path.rays.len()).sum();
-    let [plain, refilled] = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
-    for timeline in [&plain, &refilled] {
-        let at_work =
-            timeline.lanes.iter().flatten().filter(|activity| **activity != Activity::Waits).count();
-        assert_eq!(at_work, rays, "every ray is one step of one lane");
-        let cameras =
-            timeline.lanes.iter().flatten().filter(|activity| **activity == Activity::Camera).count();
-        assert_eq!(cameras, 16 * 16, "one camera ray per path");
-        assert!((timeline.share_at_work() - rays as f64 / (16 * timeline.len()) as f64).abs() < 1e-12);
-    }
-    for lane in &refilled.lanes {
-        let waits = lane.iter().position(|activity| *activity == Activity::Waits).unwrap_or(lane.len());
-        assert!(lane[waits..].iter().all(|activity| *activity == Activity::Waits), "waits only at the end");
-    }
-    let longest_of_each: usize =
-        (0..16).map(|round| paths.iter().map(|lane| lane[round].rays.len()).max().unwrap_or(0)).sum();
-    assert_eq!(plain.len(), longest_of_each);
-    assert!(plain.len() > refilled.len());
-}

@@ -94,26 +94,15 @@ fn a_full_picture_is_also_good_enough_for_quick_ones() {
     assert_eq!(pictures(at)[0]["width"], 480);
     // One sample more or less would not be the figure, so its full picture is the quick one.
     assert_eq!(rendered(at, &only), ["sky"]);
-    assert_eq!(pictures(at)[0]["width"], 880);
+    let sky = &pictures(at)[0];
+    assert_eq!(
+        (&sky["width"], &sky["file"], &sky["samples_per_pixel"]),
+        (&880.into(), &"sky.png".into(), &1.into())
+    );
     assert!(rendered(at, &quick).is_empty());
-}
-
-#[test]
-fn pictures_say_how_they_were_made() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    rendered(at, &["--quick", "--only", "metal"]);
-    let path = at.join("g/metal.png");
-    assert_eq!(read_description(&path).unwrap().get("Stage"), Some("metal"));
-    let recipe = Saved::describe(&path).unwrap().recipe().unwrap();
-    assert_eq!((recipe.settings.width, recipe.samples_per_pixel), (480, 64));
-    let still = &pictures(at)[0];
-    for (key, value) in [("stage", "metal"), ("file", "metal.png"), ("sampler", "sobol")] {
-        assert_eq!(still[key], value);
-    }
-    assert_eq!((&still["samples_per_pixel"], &still["max_depth"]), (&64.into(), &50.into()));
-    assert!(still["trace_seconds"].as_f64().unwrap() > 0.0);
-    assert!((1e-3..1e-1).contains(&still["rmse_estimate"].as_f64().unwrap()), "{still}");
+    let path = at.join("g/antialiased.png");
+    assert_eq!(read_description(&path).unwrap().get("Stage"), Some("antialiased"));
+    assert_eq!(Saved::describe(&path).unwrap().recipe().unwrap().samples_per_pixel, 64);
 }
 
 #[cfg(unix)]
@@ -168,12 +157,10 @@ fn bad_input_is_refused_with_a_remedy() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     std::fs::write(at.join("file"), "").unwrap();
-    let cases: [(&[&str], &[&str]); 5] = [
+    let cases: [(&[&str], &[&str]); 3] = [
         (&["--out", "file"], &["file", "choose another with --out"]),
         (&["--out", "g", "--only", "shadow-akne"], &["shadow-akne", "did you mean shadow-acne?"]),
         (&["--out", "g", "--device", "gpu", "--adapter", "no such thing"], &["no such thing"]),
-        (&["--out", "g", "--adapter", "x", "--device", "reference"], &["--adapter", "leave one of them out"]),
-        (&[], &["--out"]),
     ];
     for (arguments, parts) in cases {
         let output = Command::new(env!("CARGO_BIN_EXE_weekender"))

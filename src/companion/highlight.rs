@@ -64,30 +64,6 @@ impl Highlighter {
 mod tests {
     use super::*;
 
-    fn html(language: &str, code: &str) -> String {
-        Highlighter::new().unwrap().html(language, code).unwrap().into_string()
-    }
-
-    #[test]
-    fn words_have_classes() {
-        let rust = html("rs", "pub fn hit<'a>(t: f32) -> u32 { /* a /* b */ */ x'a' \"}\" }\n");
-        for part in [
-            "<span class=\"hl-k\">fn</span>",
-            "<span class=\"hl-f\">hit</span>",
-            "<span class=\"hl-t\">&#39;a</span>",
-            "<span class=\"hl-t\">f32</span>",
-            "<span class=\"hl-c\">/* a <span class=\"hl-c\">/* b */</span> */</span>",
-            "<span class=\"hl-s\">&#39;a&#39;</span>",
-            "<span class=\"hl-s\">&quot;}&quot;</span>",
-        ] {
-            assert!(rust.contains(part), "{part} in {rust}");
-        }
-        let wgsl = html("wgsl", "@must_use fn f(a: vec3<f32>) -> u32 { return 3u; } // x\n");
-        for part in ["hl-m\">@must_use", "hl-t\">vec3", "hl-n\">3u", "hl-c\">// x"] {
-            assert!(wgsl.contains(part), "{part} in {wgsl}");
-        }
-    }
-
     #[test]
     fn text_is_unchanged_apart_from_the_tags() {
         for (language, code) in [
@@ -95,30 +71,15 @@ mod tests {
             ("wgsl", include_str!("../../shaders/path.wgsl")),
             ("c", include_str!("../../reference/rt_weekend.c")),
         ] {
-            let html = html(language, code);
-            let mut text = String::new();
-            let mut is_tag = false;
-            for c in html.chars() {
-                match c {
-                    '<' => is_tag = true,
-                    '>' if is_tag => is_tag = false,
-                    _ if !is_tag => text.push(c),
-                    _ => {}
-                }
+            let html = Highlighter::new().unwrap().html(language, code).unwrap().into_string();
+            assert!(html.contains("class=\"hl-k\""), "{language}");
+            let mut text: String =
+                html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
+            for (name, c) in [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")]
+            {
+                text = text.replace(name, c);
             }
-            let text = text
-                .replace("&lt;", "<")
-                .replace("&gt;", ">")
-                .replace("&quot;", "\"")
-                .replace("&#39;", "'")
-                .replace("&amp;", "&");
             assert!(text == code, "{language}");
         }
-    }
-
-    #[test]
-    fn unknown_languages_are_refused() {
-        let error = Highlighter::new().unwrap().html("cobol", "").unwrap_err().to_string();
-        assert!(error.contains("\"cobol\"") && error.contains("wgsl"), "{error}");
     }
 }

@@ -1,11 +1,12 @@
 //! `weekender companion`: one web page that goes through the book, made from the texts in `docs/companion`, the
 //! sources, the gallery's stills and measurements.
 
+mod back_matter;
 mod book;
 mod chapter;
 mod directive;
 mod excerpt;
-mod faults;
+mod fault;
 mod formula;
 mod highlight;
 mod library;
@@ -15,47 +16,31 @@ mod prose;
 mod reference;
 mod section;
 mod site;
-mod text;
 mod timeline;
 
 pub use excerpt::Excerpt;
-pub use faults::{Fault, Faults};
-pub use library::Library;
-pub use page::Page;
 pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
-use crate::console;
 use crate::failure::Failure;
 use crate::files::{self, check_page, write_text};
-use crate::gallery::{self, Order, Outcome, Quality, StillProgress};
+use crate::gallery::{self, Order, Quality};
 use crate::interrupt::Interrupt;
-use crate::terminal::print;
-use anyhow::{Context, Result, anyhow};
-use measured::Measured;
+use anyhow::{Context, Result};
+use library::Library;
+use page::Page;
 use site::Site;
 use std::process::ExitCode;
 
 /// Largest JSON of `weekender bench` that is read, bytes.
 const BENCH_LIMIT: u64 = 16 << 20;
 
-/// Where the stills are, beside the page.
-const STILLS: &str = "figures";
-
 /// Writes the page and renders the stills that changed.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
-    let library = options.source.clone().map_or(Library::Embedded, Library::Checkout);
-    let bench = match &options.bench {
-        None => None,
-        Some(path) => {
-            let bytes = files::read(path, "the JSON of a benchmark", BENCH_LIMIT).map_err(Failure::input)?;
-            Some(String::from_utf8_lossy(&bytes).into_owned())
-        }
-    };
-    let page = build(&library, bench).map_err(Failure::Input)?;
+    let page = build(options).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let out = &options.out;
     std::fs::create_dir_all(out)
@@ -66,37 +51,27 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
     // The page can be read while its figures are rendered.
     write_text(&index, &page.html).map_err(Failure::run)?;
     let order = Order {
-        directory: &out.join(STILLS),
+        directory: &out.join("figures"),
         stages: &page.stages,
-        quality: if options.quick { Quality::Quick } else { Quality::Full },
+        quality: Quality::new(options.quick),
         backend: &options.backend,
+        progress: options.progress,
+        prints_stills: false,
     };
-    let mut progress = StillProgress::new(options.progress);
-    let outcome = gallery::render(&order, &interrupt, |event| progress.tell(&event));
-    progress.finish();
-    let Outcome { rendered, kept, missing, .. } = outcome?;
-    if missing > 0 {
-        console::note(&format!(
-            "interrupted: {missing} figures missing; run the same command again to go on"
-        ));
-        return Ok(interrupt.exit_code());
-    }
-    let length = page.html.len() / 1024;
-    let words = format!("{rendered} figures rendered, {kept} unchanged, {length} KiB of text");
-    print(&format!("{words}\nopen {}\n", index.display())).map_err(Failure::Run)?;
-    Ok(ExitCode::SUCCESS)
+    gallery::render(&order, &interrupt)?.report("figure", &index, &interrupt)
 }
 
-/// Renders the page from the texts of `library`. `bench` is the JSON of a benchmark to show instead of the kept one.
-///
-/// # Errors
-/// [`Faults`] of the texts, or a message about `bench`.
-pub fn build(library: &Library, bench: Option<String>) -> Result<Page> {
-    let mut faults = Vec::new();
-    let mut measured = Measured::read(library, &mut faults);
-    if let Some(text) = bench {
-        measured.set_bench(text).map_err(|message| anyhow!(message)).context("the file of --bench")?;
+fn build(options: &CompanionOptions) -> Result<Page> {
+    let library = options.source.clone().map_or(Library::Embedded, Library::Checkout);
+    let mut site = Site::read(&library)?;
+    if let Some(path) = &options.bench {
+        let bytes = files::read(path, "the JSON of a benchmark", BENCH_LIMIT)?;
+        site.measured
+            .set_bench(String::from_utf8_lossy(&bytes).into_owned())
+            .context("the file of --bench")?;
     }
-    let site = Site::read(library, measured, &mut faults)?;
-    Ok(page::render(&site, faults)?)
+    page::render(&site)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,12 +1,10 @@
 //! Markdown to HTML, with the page's own links, directives, formulas and colours.
 
-use super::book::Book;
+use super::book::split_heading;
 use super::chapter::Chapter;
 use super::directive;
-use super::faults::{Fault, line_of};
-use super::library::is_source;
+use super::fault::{Fault, line_of};
 use super::site::{Site, Uses};
-use super::text::{slug, typographic};
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{
     BrokenLink, CodeBlockKind, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as writer,
@@ -25,34 +23,51 @@ struct Place<'a> {
 }
 
 /// A chapter's text as HTML.
-pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses, faults: &mut Vec<Fault>) -> Markup {
+pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
     let place = Place {
         file: &chapter.file,
         lines_before: chapter.lines_before,
         chapter: Some(chapter),
         text: &chapter.body,
     };
-    convert(site, &place, uses, faults)
+    convert(site, &place, uses)
 }
 
-/// A short text as HTML, without the paragraph around it.
+/// A short text of the back matter as HTML, without the paragraph around it.
 pub fn short_text(
     site: &Site,
     file: &str,
     line: usize,
     text: &str,
     uses: &mut Uses,
-    faults: &mut Vec<Fault>,
-) -> Markup {
+) -> Result<Markup, Fault> {
     let place = Place { file, lines_before: line.saturating_sub(1), chapter: None, text: text.trim() };
-    let html = convert(site, &place, uses, faults).into_string();
+    let html = convert(site, &place, uses)?.into_string();
     let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
-    PreEscaped(inside.map_or(html.clone(), str::to_owned))
+    Ok(PreEscaped(inside.map_or(html.clone(), str::to_owned)))
+}
+
+/// A text with the apostrophes of print.
+pub fn typographic(text: &str) -> String {
+    text.replace('\'', "’")
+}
+
+/// Words as an anchor: `What a lane is` becomes `what-a-lane-is`.
+fn slug(words: &str) -> String {
+    let mut slug = String::new();
+    for c in words.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
+        match c.to_lowercase().next() {
+            Some(c) if c.is_ascii_alphanumeric() => slug.push(c),
+            _ if slug.ends_with('-') || slug.is_empty() => {}
+            _ => slug.push('-'),
+        }
+    }
+    slug.trim_end_matches('-').to_owned()
 }
 
 type Events<'a> = Peekable<IntoIter<(Event<'a>, Range<usize>)>>;
 
-fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses, faults: &mut Vec<Fault>) -> Markup {
+fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses) -> Result<Markup, Fault> {
     let options = Options::ENABLE_TABLES | Options::ENABLE_MATH | Options::ENABLE_SMART_PUNCTUATION;
     // `[@key]` is a link to something that Markdown does not know.
     let mut citation = |link: BrokenLink<'_>| {
@@ -61,22 +76,21 @@ fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses, faults: &mut Vec<Fau
     };
     let parser = Parser::new_with_broken_link_callback(place.text, options, Some(&mut citation));
     let events: Vec<(Event<'_>, Range<usize>)> = parser.into_offset_iter().collect();
-    let mut converter = Converter { site, place, uses, faults, closing: Vec::new() };
+    let mut converter = Converter { site, place, uses, closing: Vec::new() };
     let mut events = events.into_iter().peekable();
     let mut out = Vec::new();
     while let Some((event, range)) = events.next() {
-        converter.convert(event, range, &mut events, &mut out);
+        converter.convert(event, &range, &mut events, &mut out)?;
     }
     let mut html = String::new();
     writer::push_html(&mut html, out.into_iter());
-    PreEscaped(html)
+    Ok(PreEscaped(html))
 }
 
 struct Converter<'a> {
     site: &'a Site,
     place: &'a Place<'a>,
     uses: &'a mut Uses,
-    faults: &'a mut Vec<Fault>,
     /// What closes each open link.
     closing: Vec<Markup>,
 }
@@ -95,9 +109,8 @@ fn inline<'e>(markup: Markup) -> Event<'e> {
 }
 
 impl Converter<'_> {
-    fn fault(&mut self, range: &Range<usize>, message: impl std::fmt::Display) {
-        let line = self.line(range);
-        self.faults.push(Fault::new(self.place.file, line, message));
+    fn fault(&self, range: &Range<usize>, message: impl std::fmt::Display) -> Fault {
+        Fault::new(self.place.file, self.line(range), message)
     }
 
     fn line(&self, range: &Range<usize>) -> usize {
@@ -107,20 +120,16 @@ impl Converter<'_> {
     fn convert<'e>(
         &mut self,
         event: Event<'e>,
-        range: Range<usize>,
+        range: &Range<usize>,
         rest: &mut Events<'e>,
         out: &mut Vec<Event<'e>>,
-    ) {
+    ) -> Result<(), Fault> {
         match event {
-            Event::Start(Tag::Paragraph) => self.paragraph(range, rest, out),
+            Event::Start(Tag::Paragraph) => out.push(self.paragraph(range, rest)?),
             Event::Start(Tag::Heading { level, .. }) => {
-                let heading = self.heading(level as usize, &range, rest);
-                out.push(block(heading));
+                out.push(block(self.heading(level as usize, range, rest)?));
             }
-            Event::Start(Tag::CodeBlock(kind)) => {
-                let code = self.code(&kind, &range, rest);
-                out.push(block(code));
-            }
+            Event::Start(Tag::CodeBlock(kind)) => out.push(block(self.code(&kind, range, rest)?)),
             Event::Start(Tag::Table(columns)) => {
                 let open = "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table\">\n";
                 out.extend([Event::Html(open.into()), Event::Start(Tag::Table(columns))]);
@@ -131,65 +140,61 @@ impl Converter<'_> {
             Event::Start(Tag::Link { dest_url, .. }) if dest_url.starts_with(CITATION) => {
                 // The numbers replace the keys.
                 skip_to(rest, TagEnd::Link);
-                let numbers = self.citation(&dest_url, &range);
-                out.push(inline(numbers));
+                out.push(inline(self.citation(&dest_url, range)?));
             }
             Event::Start(Tag::Link { link_type, dest_url, .. }) => {
-                let (open, close) = self.link(link_type, &dest_url, &range);
+                let (open, close) = self.link(link_type, &dest_url, range)?;
                 self.closing.push(close);
                 out.push(inline(open));
             }
             Event::End(TagEnd::Link) => out.extend(self.closing.pop().map(inline)),
-            Event::InlineMath(latex) => match self.site.formulas.inline(&latex) {
-                Ok(formula) => out.push(inline(with_punctuation(&formula, rest))),
-                Err(message) => self.fault(&range, message),
-            },
-            Event::DisplayMath(latex) => match self.site.formulas.block(&latex) {
-                Ok(formula) => {
-                    let box_of_it =
-                        html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } };
-                    out.push(inline(box_of_it));
-                }
-                Err(message) => self.fault(&range, message),
-            },
-            Event::Html(_) | Event::InlineHtml(_) => {
-                self.fault(&range, "HTML is not allowed in the text; use Markdown or a directive");
+            Event::InlineMath(latex) => {
+                let formula = self.formula(&latex, false, range)?;
+                out.push(inline(with_punctuation(&formula, rest)));
             }
-            Event::Start(Tag::Image { .. }) => {
-                self.fault(
-                    &range,
-                    "pictures come from figures and diagrams; use {{figure ID}} or {{diagram NAME}}",
-                );
-                skip_to(rest, TagEnd::Image);
+            Event::DisplayMath(latex) => {
+                let formula = self.formula(&latex, true, range)?;
+                out.push(inline(
+                    html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
+                ));
             }
-            Event::Text(ref text) if text.contains("{{") => {
-                self.fault(
-                    &range,
-                    "a directive stands alone in its paragraph: leave a blank line above and below",
-                );
+            Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::Image { .. }) => {
+                let message = "HTML and pictures are not allowed in the text; use Markdown or a directive";
+                return Err(self.fault(range, message));
+            }
+            Event::Text(text) if text.contains("{{") => {
+                let message = "a directive stands alone in its paragraph: leave a blank line above and below";
+                return Err(self.fault(range, message));
             }
             event => out.push(event),
         }
+        Ok(())
     }
 
-    fn paragraph<'e>(&mut self, range: Range<usize>, rest: &mut Events<'e>, out: &mut Vec<Event<'e>>) {
+    fn formula(&self, latex: &str, is_block: bool, range: &Range<usize>) -> Result<Markup, Fault> {
+        self.site.formulas.convert(latex, is_block).map_err(|message| self.fault(range, message))
+    }
+
+    /// The beginning of a paragraph, or the directive that it consists of.
+    fn paragraph<'e>(&mut self, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Event<'e>, Fault> {
         let text = self.place.text[range.clone()].trim();
-        let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) else {
-            // A formula alone may be wider than the text.
-            let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
-            let wide = Event::Html("<p class=\"wide\">".into());
-            out.push(if is_formula { wide } else { Event::Start(Tag::Paragraph) });
-            return;
-        };
-        skip_to(rest, TagEnd::Paragraph);
-        let line = self.line(&range);
-        match directive::html(self.site, inside.trim(), self.uses) {
-            Ok(html) => out.push(block(html)),
-            Err(message) => self.faults.push(Fault::new(self.place.file, line, message)),
+        if let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) {
+            skip_to(rest, TagEnd::Paragraph);
+            let html = directive::html(self.site, inside.trim(), self.uses);
+            return html.map(block).map_err(|error| self.fault(range, format!("{error:#}")));
         }
+        // A formula alone may be wider than the text.
+        let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
+        let wide = Event::Html("<p class=\"wide\">".into());
+        Ok(if is_formula { wide } else { Event::Start(Tag::Paragraph) })
     }
 
-    fn heading<'e>(&mut self, level: usize, range: &Range<usize>, rest: &mut Events<'e>) -> Markup {
+    fn heading<'e>(
+        &mut self,
+        level: usize,
+        range: &Range<usize>,
+        rest: &mut Events<'e>,
+    ) -> Result<Markup, Fault> {
         let mut inner = Vec::new();
         let mut words = String::new();
         while let Some((event, at)) = rest.next() {
@@ -198,47 +203,58 @@ impl Converter<'_> {
                 Event::Text(text) | Event::Code(text) => words.push_str(text),
                 _ => {}
             }
-            self.convert(event, at, rest, &mut inner);
-        }
-        if !(2..=4).contains(&level) {
-            self.fault(range, "headings in a chapter have two to four #; the title is in the facts");
+            self.convert(event, &at, rest, &mut inner)?;
         }
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str()).unwrap_or_default();
         let anchor = format!("{chapter}-{}", slug(&words));
         if !self.uses.anchors.insert(anchor.clone()) {
-            self.fault(range, format!("another heading has the anchor #{anchor}; choose other words"));
+            let message = format!("another heading has the anchor #{anchor}; choose other words");
+            return Err(self.fault(range, message));
         }
-        let mut title = String::new();
-        writer::push_html(&mut title, inner.into_iter());
-        let mut title = PreEscaped(title);
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();
-        if let Some((number, words)) = Book::split(source) {
-            match self.site.book.heading(number) {
-                None => self.fault(range, format!("the book has no section {number}")),
-                Some(heading) if heading != words => {
-                    self.fault(range, format!("section {number} of the book is called {heading:?}"));
-                }
-                Some(heading) => {
-                    let url = self.site.book.url(number);
-                    title = html! {
-                        span .number { (number) } " " (typographic(heading)) " "
-                        @if let Some(url) = url {
-                            a .book href=(url) title={ "Section " (number) " in the book" } { "book" span .hidden { ", section " (number) } }
-                        }
-                    };
-                }
+        let title = match split_heading(source) {
+            Some((number, words)) => self.book_heading(number, words, range)?,
+            None => {
+                let mut title = String::new();
+                writer::push_html(&mut title, inner.into_iter());
+                PreEscaped(title)
             }
-        }
+        };
         let link = html! { a .anchor href={ "#" (anchor) } aria-label="Link to this section" { "#" } };
         // The page's title is h1 and a chapter's h2.
         match level {
-            3 => html! { h4 id=(anchor) { (title) (link) } },
-            4 => html! { h5 id=(anchor) { (title) (link) } },
-            _ => html! { h3 id=(anchor) { (title) (link) } },
+            2 => Ok(html! { h3 id=(anchor) { (title) (link) } }),
+            3 => Ok(html! { h4 id=(anchor) { (title) (link) } }),
+            4 => Ok(html! { h5 id=(anchor) { (title) (link) } }),
+            _ => {
+                Err(self.fault(range, "headings in a chapter have two to four #; the title is in the facts"))
+            }
         }
     }
 
-    fn code<'e>(&mut self, kind: &CodeBlockKind<'_>, range: &Range<usize>, rest: &mut Events<'e>) -> Markup {
+    /// The title of a section of the book, with a link to it.
+    fn book_heading(&self, number: &str, words: &str, range: &Range<usize>) -> Result<Markup, Fault> {
+        let book = &self.site.book;
+        match (book.heading(number), book.url(number)) {
+            (Some(heading), Some(url)) if heading == words => Ok(html! {
+                span .number { (number) } " " (typographic(heading)) " "
+                a .book href=(url) title={ "Section " (number) " in the book" } {
+                    "book" span .hidden { ", section " (number) }
+                }
+            }),
+            (Some(heading), _) => {
+                Err(self.fault(range, format!("section {number} of the book is called {heading:?}")))
+            }
+            _ => Err(self.fault(range, format!("the book has no section {number}"))),
+        }
+    }
+
+    fn code(
+        &self,
+        kind: &CodeBlockKind<'_>,
+        range: &Range<usize>,
+        rest: &mut Events<'_>,
+    ) -> Result<Markup, Fault> {
         let mut code = String::new();
         for (event, _) in rest.by_ref() {
             match event {
@@ -248,135 +264,116 @@ impl Converter<'_> {
             }
         }
         let language = match kind {
-            CodeBlockKind::Fenced(language) if !language.is_empty() => language.to_string(),
-            _ => "text".to_owned(),
+            CodeBlockKind::Fenced(language) if !language.is_empty() => language,
+            _ => "text",
         };
-        match self.site.highlighter.html(&language, &code) {
-            Ok(code) => html! {
-                pre .block tabindex="0" role="group" aria-label={ "Code" } { code { (code) } }
-            },
-            Err(error) => {
-                self.fault(range, error);
-                html! {}
-            }
-        }
+        let code = self.site.highlighter.html(language, &code).map_err(|error| self.fault(range, error))?;
+        Ok(html! { pre .block tabindex="0" role="group" aria-label={ "Code" } { code { (code) } } })
     }
 
-    fn citation(&mut self, target: &str, range: &Range<usize>) -> Markup {
-        let keys =
-            target.trim_start_matches(CITATION).split(';').map(|key| key.trim().trim_start_matches('@'));
+    fn citation(&self, target: &str, range: &Range<usize>) -> Result<Markup, Fault> {
+        let keys = target.trim_start_matches(CITATION).split(';');
         let mut links = Vec::new();
-        for key in keys {
-            match self.site.reference(key) {
-                Some((number, entry)) => {
-                    let title = format!("{}: {}", entry.value.authors, entry.value.title);
-                    links.push((number, html! { a href={ "#ref-" (key) } title=(title) { (number) } }));
-                }
-                None => self.fault(range, format!("references.toml has no entry {key:?}")),
-            }
+        for key in keys.map(|key| key.trim().trim_start_matches('@')) {
+            let Some((number, entry)) = self.site.reference(key) else {
+                return Err(self.fault(range, format!("references.toml has no entry {key:?}")));
+            };
+            let title = format!("{}: {}", entry.value.authors, entry.value.title);
+            links.push((number, html! { a href={ "#ref-" (key) } title=(title) { (number) } }));
         }
         links.sort_by_key(|(number, _)| *number);
-        html! {
+        Ok(html! {
             span .cite {
                 "[" @for (place, (_, link)) in links.iter().enumerate() { @if place > 0 { ", " } (link) } "]"
             }
-        }
+        })
     }
 
     /// What opens and what closes a link.
-    fn link(&mut self, link_type: LinkType, target: &str, range: &Range<usize>) -> (Markup, Markup) {
-        let close = PreEscaped("</a>".to_owned());
-        let open = |class: &str, href: &str, title: &str, id: Option<String>| {
-            let whole = html! {
-                a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href)
-                    title=[(!title.is_empty()).then_some(title)] {}
-            };
-            PreEscaped(whole.into_string().replace("</a>", ""))
-        };
-        let nothing = || (html! {}, html! {});
+    fn link(
+        &mut self,
+        link_type: LinkType,
+        target: &str,
+        range: &Range<usize>,
+    ) -> Result<(Markup, Markup), Fault> {
+        let site = self.site;
         let (scheme, rest) = target.split_once(':').unwrap_or(("", target));
-        let words = self.place.text[range.clone()].split("](").next().unwrap_or_default();
-        let there = if scheme == "book" { rest } else { rest.split_once('#').unwrap_or_default().1 };
-        if matches!(scheme, "book" | "page")
-            && let Some(section) = Book::named(words).filter(|section| *section != there)
-        {
-            let remedy = format!("write page:CHAPTER#{section} or book:{section}");
-            self.fault(range, format!("the link names section {section} but leads to {target:?}; {remedy}"));
-        }
-        match scheme {
-            "glossary" => match self.site.term(rest) {
-                Some(entry) => {
-                    let is_first = self.place.chapter.is_some_and(|chapter| {
-                        let is_new = !self.uses.terms.contains_key(&entry.key);
-                        self.uses.terms.entry(entry.key.clone()).or_insert_with(|| chapter.short.clone());
-                        is_new
-                    });
-                    (
-                        open("term", &format!("#term-{rest}"), "", is_first.then(|| format!("use-{rest}"))),
-                        close,
-                    )
+        let open = match scheme {
+            "glossary" => {
+                if !site.terms.iter().any(|entry| entry.key == rest) {
+                    return Err(self.fault(range, format!("the glossary has no term {rest:?}")));
                 }
-                None => {
-                    self.fault(range, format!("the glossary has no term {rest:?}"));
-                    nothing()
-                }
-            },
-            "book" => match self.site.book.url(rest) {
-                Some(url) => {
-                    let kind = if rest.contains('.') { "section" } else { "chapter" };
-                    let title = self.site.book.heading(rest).unwrap_or_default();
-                    (open("book", &url, &format!("The book, {kind} {rest}: {title}"), None), close)
-                }
-                None => {
-                    self.fault(range, format!("the book has no section {rest:?}"));
-                    nothing()
-                }
-            },
+                let id = self.first_use(rest).then(|| format!("use-{rest}"));
+                opened("term", &format!("#term-{rest}"), "", id)
+            }
+            "book" => {
+                let Some((url, title)) = site.book.url(rest).zip(site.book.heading(rest)) else {
+                    return Err(self.fault(range, format!("the book has no section {rest:?}")));
+                };
+                let kind = if rest.contains('.') { "section" } else { "chapter" };
+                opened("book", &url, &format!("The book, {kind} {rest}: {title}"), None)
+            }
             "page" => {
                 let (name, fragment) = rest.split_once('#').unwrap_or((rest, ""));
-                let Some(chapter) = self.site.chapters.iter().find(|chapter| chapter.id == name) else {
-                    self.fault(range, format!("the page has no chapter {name:?}"));
-                    return nothing();
+                let Some(chapter) = site.chapters.iter().find(|chapter| chapter.id == name) else {
+                    return Err(self.fault(range, format!("the page has no chapter {name:?}")));
                 };
-                let heading = self.site.book.heading(fragment).map(|heading| format!("{fragment} {heading}"));
+                let heading = site.book.heading(fragment).map(|heading| format!("{fragment} {heading}"));
                 let anchor = match &heading {
                     Some(heading) => format!("{name}-{}", slug(heading)),
                     None if fragment.is_empty() => name.to_owned(),
                     None => format!("{name}-{fragment}"),
                 };
-                let line = self.line(range);
-                self.uses.targets.push((anchor.clone(), self.place.file.to_owned(), line));
-                let number = chapter.shown_number().map(|number| format!("Chapter {number}: "));
-                let title = heading.map(|heading| format!("Section {heading}"));
-                let title = title.unwrap_or_else(|| number.unwrap_or_default() + &chapter.title);
-                (open("", &format!("#{anchor}"), &title, None), close)
+                let title = match (heading, chapter.shown_number()) {
+                    (Some(heading), _) => format!("Section {heading}"),
+                    (None, Some(number)) => format!("Chapter {number}: {}", chapter.facts.title),
+                    (None, None) => chapter.facts.title.clone(),
+                };
+                self.linked(&anchor, range);
+                opened("", &format!("#{anchor}"), &title, None)
             }
             "source" => {
-                if !is_source(rest) {
-                    self.fault(
-                        range,
-                        format!("there is no source {rest:?}; give its path in the repository"),
-                    );
-                }
                 // The page has no copy of the repository, so it cites the path as it cites references.
-                (html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } })
+                return Ok((html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } }));
             }
-            "https" | "mailto" => (open("", target, "", None), close),
+            "https" | "mailto" => opened("", target, "", None),
             "" if target.starts_with('#') => {
-                let line = self.line(range);
-                self.uses.targets.push((rest[1..].to_owned(), self.place.file.to_owned(), line));
-                (open("", target, "", None), close)
+                self.linked(&rest[1..], range);
+                opened("", target, "", None)
             }
             _ => {
                 let kinds =
                     "glossary:TERM, book:SECTION, page:CHAPTER, source:PATH, [@REFERENCE] or https://";
                 let form =
                     if link_type == LinkType::Inline { target.to_owned() } else { format!("[{target}]") };
-                self.fault(range, format!("{form:?} is no link of the page; use {kinds}"));
-                nothing()
+                return Err(self.fault(range, format!("{form:?} is no link of the page; use {kinds}")));
             }
-        }
+        };
+        Ok((open, PreEscaped("</a>".to_owned())))
     }
+
+    /// Notes a link to a term; returns whether it is the first in a chapter.
+    fn first_use(&mut self, term: &str) -> bool {
+        let Some(chapter) = self.place.chapter else { return false };
+        let is_first = !self.uses.terms.contains_key(term);
+        if is_first {
+            self.uses.terms.insert(term.to_owned(), chapter.short().to_owned());
+        }
+        is_first
+    }
+
+    fn linked(&mut self, anchor: &str, range: &Range<usize>) {
+        self.uses.targets.push((anchor.to_owned(), self.place.file.to_owned(), self.line(range)));
+    }
+}
+
+/// The tag that opens a link.
+fn opened(class: &str, href: &str, title: &str, id: Option<String>) -> Markup {
+    let whole = html! {
+        a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href)
+            title=[(!title.is_empty()).then_some(title)] {}
+    };
+    PreEscaped(whole.into_string().replace("</a>", ""))
 }
 
 /// The formula and a punctuation mark that follows it, which must not begin a line.
@@ -394,6 +391,3 @@ fn skip_to(rest: &mut Events<'_>, end: TagEnd) {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,5 +1,6 @@
 //! The excerpts that belong to a section of the book, for programs that show them beside a stage.
 
+use super::book::{is_section, split_heading};
 use super::chapter::Chapter;
 use super::excerpt::{self, Excerpt};
 use super::library::Library;
@@ -8,22 +9,22 @@ use super::library::Library;
 /// the book: the code that is new in `section` if `after` is the section before it that has a picture. Both are numbers
 /// such as "9.1"; an `after` of another chapter leaves nothing out.
 pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
+    // A test reads these texts, so they have no faults.
     let library = Library::Embedded;
-    let mut faults = Vec::new();
-    let declared = excerpt::read_all(&library, &mut faults);
-    let chapters = Chapter::read_all(&library, &mut faults);
+    let declared = excerpt::read_all(&library).unwrap_or_default();
+    let chapters = Chapter::read_all(&library).unwrap_or_default();
     let chapter_of = |section: &str| section.split('.').next().map(str::to_owned);
-    let Some(chapter) = chapters.iter().find(|chapter| chapter.book == chapter_of(section)) else {
+    let Some(chapter) = chapters.iter().find(|chapter| chapter.facts.book == chapter_of(section)) else {
         return Vec::new();
     };
     // Of the same chapter, only what comes later is new.
     let after = after.filter(|after| chapter_of(after) == chapter_of(section));
     let mut is_new = after.is_none();
-    let mut names = Vec::new();
+    let mut found = Vec::new();
     for line in chapter.body.lines() {
         if let Some(heading) = line.strip_prefix("## ") {
-            let number = heading.split(' ').next().unwrap_or_default();
-            if names_section(number) && is_later(number, section) {
+            let number = split_heading(heading).map_or("", |(number, _)| number);
+            if is_later(number, section) {
                 break;
             }
             is_new = is_new || after.is_some_and(|after| is_later(number, after));
@@ -32,21 +33,17 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
         {
             let mut words = inside.split_whitespace();
             if matches!(words.next(), Some("excerpt" | "pair")) {
-                names.extend(words.map(str::to_owned));
+                found.extend(words.filter_map(|name| declared.get(name).cloned()));
             }
         }
     }
-    names.iter().filter_map(|name| declared.get(name).cloned()).collect()
-}
-
-fn names_section(word: &str) -> bool {
-    word.contains('.') && word.split('.').all(|part| part.parse::<u8>().is_ok())
+    found
 }
 
 /// Whether a section comes after another one of the same chapter.
 fn is_later(section: &str, other: &str) -> bool {
     let part = |section: &str| section.split('.').nth(1).and_then(|part| part.parse::<u8>().ok());
-    names_section(section) && part(section) > part(other)
+    is_section(section) && part(section) > part(other)
 }
 
 #[cfg(test)]
@@ -56,11 +53,8 @@ mod tests {
     #[test]
     fn a_section_has_the_excerpts_since_the_one_before() {
         let first_lines = |after: Option<&str>, section: &str| -> Vec<String> {
-            let excerpts = excerpts_between(after, section);
-            excerpts
-                .iter()
-                .map(|excerpt| excerpt.text.lines().next().unwrap_or_default().to_owned())
-                .collect()
+            let first = |excerpt: Excerpt| excerpt.text.lines().next().unwrap_or_default().to_owned();
+            excerpts_between(after, section).into_iter().map(first).collect()
         };
         let glass = first_lines(Some("11.3"), "11.4");
         assert_eq!(glass.len(), 4, "{glass:?}");

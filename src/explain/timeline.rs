@@ -21,17 +21,14 @@ pub enum Activity {
 /// The steps of a packet: a row per lane, all equally long.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Timeline {
-    /// What each lane does in each step.
     pub lanes: Vec<Vec<Activity>>,
 }
 
 impl Timeline {
-    /// The number of steps.
     pub fn len(&self) -> usize {
         self.lanes.first().map_or(0, Vec::len)
     }
 
-    /// Whether there are no steps.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,27 +1,9 @@
 //! The figures in the book's order. The ids never change, because pages and command lines contain them.
 
 use super::{Figure, Panel};
-use crate::stages::Stage;
 
-/// The picture of the stage with this id; an unknown id does not compile.
-const fn panel(id: &str, label: &'static str) -> Panel {
-    let mut index = 0;
-    while index < Stage::ALL.len() {
-        let stage = &Stage::ALL[index];
-        if is_same(stage.id.as_bytes(), id.as_bytes()) {
-            return Panel { stage, label, alt: stage.alt };
-        }
-        index += 1;
-    }
-    panic!("no stage has this id")
-}
-
-const fn is_same(a: &[u8], b: &[u8]) -> bool {
-    let mut index = 0;
-    while index < a.len() && index < b.len() && a[index] == b[index] {
-        index += 1;
-    }
-    index == a.len() && index == b.len()
+const fn panel(stage_id: &'static str, label: &'static str) -> Panel {
+    Panel { stage_id, label }
 }
 
 pub(super) const FIGURES: &[Figure] = &[

@@ -1,10 +1,11 @@
 //! Renders the stills that are missing or have changed.
 
-use super::fingerprint::Fingerprints;
-use super::still::{self, Still, Stills};
-use super::{Quality, still::INDEX};
+use super::quality::Quality;
+use super::still::{self, INDEX, Still, Stills, fingerprint};
 use crate::backends::{self, BackendChoice};
-use crate::describe::describe;
+use crate::cli::ProgressChoice;
+use crate::console;
+use crate::describe::{counted, describe};
 use crate::failure::Failure;
 use crate::files::check_writable;
 use crate::film::key;
@@ -14,46 +15,25 @@ use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::recipe::Recipe;
 use crate::render::Renderer;
 use crate::stages::Stage;
-use anyhow::{Context, anyhow};
+use crate::terminal::{Display, print};
+use anyhow::{Context, Result, bail};
 use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
 
 /// Which stills are wanted, and where.
 #[derive(Clone, Debug)]
 pub struct Order<'a> {
     /// The directory of the stills, which is created if necessary.
     pub directory: &'a Path,
-    /// The stages; others are left as they are.
+    /// The stages; stills of others are left as they are.
     pub stages: &'a [&'static Stage],
     /// The effort for each still. A full still is kept when quick ones are wanted.
     pub quality: Quality,
-    /// The backend that renders.
     pub backend: &'a BackendChoice,
-}
-
-/// What happens while stills are rendered.
-#[derive(Debug)]
-pub enum Event<'a> {
-    /// A still is being rendered.
-    Rendering(&'a Work<'a>),
-    /// A still is finished and written.
-    Finished(&'a Still),
-    /// Something that the user should know, in words.
-    Warning(&'a str),
-}
-
-/// A still in progress.
-#[derive(Debug)]
-pub struct Work<'a> {
-    /// Its stage.
-    pub stage: &'static Stage,
-    /// Its place among those that must be rendered, from 1.
-    pub number: usize,
-    /// How many must be rendered.
-    pub count: usize,
-    /// The state of its render.
-    pub status: &'a Status,
-    /// The part of all work that is done, 0 to 1.
-    pub share: f64,
+    pub progress: ProgressChoice,
+    /// Whether each finished still is printed on a line.
+    pub prints_stills: bool,
 }
 
 /// The result of an order.
@@ -65,8 +45,26 @@ pub struct Outcome {
     pub rendered: usize,
     /// How many of the wanted ones did not have to be rendered.
     pub kept: usize,
-    /// How many are still missing because of Ctrl-C.
+    /// How many are still missing because of a signal.
     pub missing: usize,
+}
+
+impl Outcome {
+    /// Says what was done, and where the page is or how to continue.
+    ///
+    /// # Errors
+    /// If standard output cannot be written.
+    pub fn report(&self, noun: &str, page: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
+        if self.missing > 0 {
+            let missing = counted(self.missing as u64, noun);
+            console::note(&format!("interrupted: {missing} missing; run the same command again to go on"));
+            return Ok(interrupt.exit_code());
+        }
+        let rendered = counted(self.rendered as u64, noun);
+        print(&format!("{rendered} rendered, {} unchanged\nopen {}\n", self.kept, page.display()))
+            .map_err(Failure::Run)?;
+        Ok(ExitCode::SUCCESS)
+    }
 }
 
 /// A still that must be rendered.
@@ -74,14 +72,13 @@ struct Task {
     stage: &'static Stage,
     recipe: Recipe,
     fingerprint: String,
-    cost: f64,
 }
 
-/// A path among this many spheres or more costs several times as much.
-const MANY_SPHERES: usize = 16;
+/// Interval of progress lines when there is no terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
-/// How much more a path among many spheres costs, as measured with the book's final picture.
-const COST_OF_MANY: f64 = 5.0;
+/// The progress bar, whose steps are paths.
+const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
 
 /// Renders those of the wanted stills that are missing, damaged or made from other settings or by another tracer, and
 /// writes each with its description as soon as it is finished. After Ctrl-C, the still in progress is dropped.
@@ -89,161 +86,160 @@ const COST_OF_MANY: f64 = 5.0;
 /// # Errors
 /// [`Failure::Input`] if nothing was rendered, otherwise [`Failure::BrokeOff`] or [`Failure::Run`]. Finished stills are
 /// kept.
-pub fn render(
-    order: &Order<'_>,
-    interrupt: &Interrupt,
-    mut tell: impl FnMut(Event<'_>),
-) -> Result<Outcome, Failure> {
+pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failure> {
     let directory = order.directory;
     std::fs::create_dir_all(directory)
         .with_context(|| {
             format!("cannot create the directory {}; choose another with --out", directory.display())
         })
         .map_err(Failure::Input)?;
-    let (mut stills, note) = Stills::read(directory);
-    if let Some(note) = note {
-        tell(Event::Warning(&note));
-    }
+    let mut stills = Stills::read(directory);
     let tasks = tasks(order, &stills).map_err(Failure::Input)?;
-    let files = tasks.iter().map(|task| Still::file_name(task.stage)).chain([INDEX.to_owned()]);
-    for file in files {
+    for file in tasks.iter().map(|task| Still::file_name(task.stage)).chain([INDEX.to_owned()]) {
         check_writable(&directory.join(file)).map_err(Failure::input)?;
     }
     let kept = order.stages.len() - tasks.len();
     let mut rendered = 0;
     if !tasks.is_empty() {
-        let mut studio = Studio::open(order.backend)?;
-        let total: f64 = tasks.iter().map(|task| task.cost).sum();
-        let mut done = 0.0;
-        for task in &tasks {
-            let (count, number) = (tasks.len(), rendered + 1);
-            let still = studio.render(task, directory, interrupt, |happened| match happened {
-                Happened::Traced(status) => {
-                    let share = (done + task.cost * progress_of(status)) / total;
-                    tell(Event::Rendering(&Work { stage: task.stage, number, count, status, share }));
-                }
-                Happened::Warned(words) => tell(Event::Warning(words)),
-            });
-            let Some(still) = still.map_err(|error| broke_off(error, rendered))? else { break };
-            stills.set(still.clone());
-            stills.write().map_err(Failure::Run)?;
-            rendered += 1;
-            done += task.cost;
-            tell(Event::Finished(&still));
-        }
+        let mut studio = Studio::open(order, interrupt, &tasks)?;
+        let outcome = studio.render_all(&mut stills, &mut rendered);
+        studio.display.clear();
+        outcome.map_err(|error| match rendered {
+            0 => Failure::Run(error),
+            _ => {
+                let kept = counted(rendered as u64, "picture");
+                Failure::BrokeOff(error.context(format!("broke off; kept: {kept}")))
+            }
+        })?;
     }
     Ok(Outcome { stills, rendered, kept, missing: tasks.len() - rendered })
 }
 
 /// The stills that must be rendered.
-fn tasks(order: &Order<'_>, stills: &Stills) -> anyhow::Result<Vec<Task>> {
-    let mut fingerprints = Fingerprints::new()?;
+fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
     let mut tasks = Vec::new();
     for stage in order.stages {
         let recipe = order.quality.recipe(stage);
-        let fingerprint = fingerprints.of(&recipe)?;
-        let better = fingerprints.of(&Quality::Full.recipe(stage))?;
-        if stills.is_fresh(stage, &[fingerprint.clone(), better]) {
+        let fingerprint = fingerprint(&recipe);
+        let full = still::fingerprint(&Quality::Full.recipe(stage));
+        if stills.is_fresh(stage, &[&fingerprint, &full]) {
             continue;
         }
         recipe.job()?.check_memory(1)?;
-        let cost = cost(&recipe);
-        tasks.push(Task { stage, recipe, fingerprint, cost });
+        tasks.push(Task { stage, recipe, fingerprint });
     }
     Ok(tasks)
 }
 
-/// How long a still takes, in paths among few spheres.
-fn cost(recipe: &Recipe) -> f64 {
-    let settings = &recipe.settings;
-    let paths = f64::from(settings.width) * f64::from(settings.height) * recipe.samples_per_pixel as f64;
-    let is_crowd = recipe.scene.spheres.len() >= MANY_SPHERES;
-    paths * if is_crowd { COST_OF_MANY } else { 1.0 }
-}
-
-/// The part of a still that is done, 0 to 1.
-fn progress_of(status: &Status) -> f64 {
-    status.samples_per_pixel as f64 / status.planned_samples_per_pixel.max(1) as f64
-}
-
-fn broke_off(error: anyhow::Error, rendered: usize) -> Failure {
-    match rendered {
-        0 => Failure::Run(error),
-        _ => Failure::BrokeOff(error.context(format!("broke off after {rendered} pictures, which are kept"))),
-    }
-}
-
-enum Happened<'a> {
-    Traced(&'a Status),
-    Warned(&'a str),
-}
-
-/// What renders one still after the other.
+/// Renders one still after the other.
 struct Studio<'a> {
-    backend: &'a BackendChoice,
+    order: &'a Order<'a>,
+    interrupt: &'a Interrupt,
+    tasks: &'a [Task],
     renderer: Option<Box<dyn Renderer>>,
     progressive: Progressive,
+    display: Display,
 }
 
 impl<'a> Studio<'a> {
-    fn open(backend: &'a BackendChoice) -> Result<Self, Failure> {
-        let renderer = Some(backends::create(backend).map_err(Failure::input)?);
-        let progressive =
-            Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?;
-        Ok(Studio { backend, renderer, progressive })
+    fn open(order: &'a Order<'a>, interrupt: &'a Interrupt, tasks: &'a [Task]) -> Result<Self, Failure> {
+        Ok(Studio {
+            order,
+            interrupt,
+            tasks,
+            renderer: Some(backends::create(order.backend).map_err(Failure::input)?),
+            progressive: Progressive::spawn()
+                .context("cannot start the render thread")
+                .map_err(Failure::Run)?,
+            display: Display::new(order.progress, paths(tasks), TEMPLATE, "", LINE_INTERVAL),
+        })
     }
 
-    /// Renders and writes a still; `None` after Ctrl-C.
-    fn render(
-        &mut self,
-        task: &Task,
-        directory: &Path,
-        interrupt: &Interrupt,
-        mut happened: impl FnMut(Happened<'_>),
-    ) -> anyhow::Result<Option<Still>> {
+    /// Counts the finished stills in `rendered`. Ends early after a signal.
+    fn render_all(&mut self, stills: &mut Stills, rendered: &mut usize) -> Result<()> {
+        for (number, task) in self.tasks.iter().enumerate() {
+            let Some(still) = self.render(number, task)? else { break };
+            let line = still.line();
+            stills.set(still);
+            stills.write()?;
+            *rendered += 1;
+            if self.order.prints_stills {
+                self.display.above(|| print(&line))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders and writes a still; `None` after a signal.
+    fn render(&mut self, number: usize, task: &Task) -> Result<Option<Still>> {
         let recipe = &task.recipe;
         let stop = Stop::at_samples(recipe.samples_per_pixel);
+        let plan = Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
         let request = RenderRequest {
             renderer: self.renderer.take(),
-            ..RenderRequest::new(
-                recipe.job()?,
-                self.backend.clone(),
-                Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) },
-            )
+            ..RenderRequest::new(recipe.job()?, self.order.backend.clone(), plan)
         };
-        let mut told = 0;
+        let (display, interrupt) = (&mut self.display, self.interrupt);
         let status = self.progressive.watch(request, |progressive, status| {
-            for message in status.messages.iter().skip(told) {
-                happened(Happened::Warned(message));
-            }
-            told = status.messages.len();
-            happened(Happened::Traced(status));
+            let (words, done) = progress(self.tasks, number, status);
+            display.update(done, || words);
             if interrupt.is_set() && !status.phase.is_over() {
                 progressive.stop();
             }
         });
+        for message in &status.messages {
+            display.say(&format!("warning: {message}"));
+        }
         let film = self.progressive.take_film();
         if let Phase::Failed(reason) = &status.phase {
-            return Err(anyhow!("{}: {reason}", task.stage.id));
+            bail!("{}: {reason}", task.stage.id);
         }
         let film = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel);
         let Some(film) = film else { return Ok(None) };
 
-        let path = directory.join(Still::file_name(task.stage));
+        let path = self.order.directory.join(Still::file_name(task.stage));
         let _writing = interrupt.while_writing(path.display().to_string());
         let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
         let forms = Forms { png: PngForm::Small, ..Forms::default() };
         write_image_as(&path, &film, recipe.rules.transfer, &description, forms)?;
         let error = film.error();
+        let settings = &recipe.settings;
         Ok(Some(Still {
+            stage: task.stage.id.to_owned(),
+            file: Still::file_name(task.stage),
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name().to_owned(),
+            seed: settings.seed,
+            samples_per_pixel: recipe.samples_per_pixel,
             trace_seconds: status.trace.as_secs_f64(),
             rmse_estimate: error.map(|error| error.rmse),
             rmse_deviation: error.map(|error| error.rmse_deviation),
             backend: description.get(key::BACKEND).unwrap_or_default().to_owned(),
+            fingerprint: task.fingerprint.clone(),
             checksum: still::checksum(&path)?,
-            ..Still::new(task.stage, recipe, task.fingerprint.clone())
         }))
     }
+}
+
+/// The progress in words and in paths, while the task with this number is rendered.
+fn progress(tasks: &[Task], number: usize, status: &Status) -> (String, u64) {
+    let Task { stage, recipe, .. } = &tasks[number];
+    let done = status.samples_per_pixel;
+    let error = status.error.map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
+    let (count, planned) = (tasks.len(), recipe.samples_per_pixel);
+    let words = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
+    (words, paths(&tasks[..number]) + done * pixels(recipe))
+}
+
+/// The paths of all pictures.
+fn paths(tasks: &[Task]) -> u64 {
+    tasks.iter().map(|task| task.recipe.samples_per_pixel * pixels(&task.recipe)).sum()
+}
+
+fn pixels(recipe: &Recipe) -> u64 {
+    u64::from(recipe.settings.width) * u64::from(recipe.settings.height)
 }
 
 #[cfg(test)]
@@ -252,92 +248,22 @@ mod tests {
     use crate::render_cpu::CpuOptions;
 
     #[test]
-    fn a_path_among_many_spheres_costs_more() {
-        let cost_of = |count: usize| {
-            // A field has the ground besides.
-            let mut recipe = Recipe::builtin(&format!("field:{}", count - 1)).unwrap();
-            assert_eq!(recipe.scene.spheres.len(), count);
-            (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
-            cost(&recipe)
-        };
-        assert_eq!([15, 16, 17].map(cost_of), [24.0, 120.0, 120.0]);
-    }
-
-    #[test]
-    fn progress_is_the_part_of_the_planned_samples() {
-        for (done, planned, expected) in [(0, 0, 0.0), (0, 1, 0.0), (1, 1, 1.0), (1, 4, 0.25), (4, 4, 1.0)] {
-            let status =
-                Status { samples_per_pixel: done, planned_samples_per_pixel: planned, ..Status::default() };
-            assert_eq!(progress_of(&status), expected, "{done} of {planned}");
-        }
-    }
-
-    #[test]
-    fn all_stills_together_are_the_whole_work() {
-        let directory = tempfile::tempdir().unwrap();
-        let stages = ["ppm-tiny", "aliased"].map(|id| Stage::find(id).unwrap());
-        let backend = BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() });
-        let order = Order {
-            directory: directory.path(),
-            stages: &stages,
-            quality: Quality::Quick,
-            backend: &backend,
-        };
-        let (mut shares, mut works, mut finished, mut warned) =
-            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        let mut look = |event: Event<'_>| match event {
-            Event::Rendering(Work { stage, number, count, share, .. }) => {
-                works.push((stage.id, *number, *count));
-                shares.push(*share);
-            }
-            Event::Finished(still) => finished.push((still.stage.clone(), shares.last().copied())),
-            Event::Warning(words) => warned.push(words.to_owned()),
-        };
-        std::fs::write(directory.path().join(INDEX), "{").unwrap();
-        let interrupt = Interrupt::unheard();
-        let outcome = render(&order, &interrupt, &mut look).unwrap();
-        assert_eq!((outcome.rendered, outcome.kept, outcome.missing), (2, 0, 0));
-        let again = render(&order, &interrupt, &mut look).unwrap();
-        assert_eq!((again.rendered, again.kept, again.missing), (0, 2, 0));
-        assert_eq!(again.stills, outcome.stills);
-
-        works.dedup();
-        assert_eq!(works, [("ppm-tiny", 1, 2), ("aliased", 2, 2)]);
-        assert!(shares.is_sorted(), "{shares:?}");
-        // 16 x 9 and 480 x 270 pixels, one sample each.
-        let first = 144.0 / (144.0 + 129_600.0);
-        let expected = [("ppm-tiny".to_owned(), Some(first)), ("aliased".to_owned(), Some(1.0))];
-        assert_eq!(finished, expected);
-        assert!(matches!(warned.as_slice(), [one] if one.contains(INDEX)), "{warned:?}");
-    }
-
-    #[test]
-    fn a_failure_after_the_first_still_leaves_what_is_finished() {
-        assert!(matches!(broke_off(anyhow!("full"), 0), Failure::Run(error) if error.to_string() == "full"));
-        let Failure::BrokeOff(error) = broke_off(anyhow!("full"), 1) else { panic!("not broken off") };
-        assert_eq!(format!("{error:#}"), "broke off after 1 pictures, which are kept: full");
-    }
-
-    #[test]
-    fn a_warning_of_a_render_is_told_once_and_the_still_is_finished() {
+    fn a_broken_backend_is_replaced_and_finished_stills_are_kept() {
         let directory = tempfile::tempdir().unwrap();
         let broken = CpuOptions { threads: Some(1), panics_after: Some(0), ..CpuOptions::default() };
         let order = Order {
             directory: directory.path(),
-            stages: &[Stage::find("ppm-tiny").unwrap()],
+            stages: &["ppm-tiny", "aliased"].map(|id| Stage::find(id).unwrap()),
             quality: Quality::Quick,
             backend: &BackendChoice::Cpu(broken),
+            progress: ProgressChoice::Off,
+            prints_stills: false,
         };
-        let (mut warned, mut finished) = (Vec::new(), 0);
-        let outcome = render(&order, &Interrupt::unheard(), |event| match event {
-            Event::Warning(words) => warned.push(words.to_owned()),
-            Event::Finished(still) => {
-                finished += 1;
-                assert_eq!(still.samples_per_pixel, 1);
-            }
-            Event::Rendering(_) => {}
-        });
-        assert_eq!((outcome.unwrap().rendered, finished), (1, 1));
-        assert!(matches!(warned.as_slice(), [one] if one.contains("panicked")), "{warned:?}");
+        std::fs::write(directory.path().join(INDEX), "{").unwrap();
+        let outcome = render(&order, &Interrupt::unheard()).unwrap();
+        assert_eq!((outcome.rendered, outcome.kept, outcome.missing), (2, 0, 0));
+        let again = render(&order, &Interrupt::unheard()).unwrap();
+        assert_eq!((again.rendered, again.kept, again.missing), (0, 2, 0));
+        assert_eq!(again.stills, outcome.stills);
     }
 }

@@ -1,12 +1,14 @@
 //! The stills of a directory and what its `gallery.json` says about them.
 
 use crate::cli::JsonTarget;
+use crate::console;
 use crate::describe::{counted, seconds};
 use crate::files::{self, InputError};
-use crate::film::Checksum;
-use crate::recipe::Recipe;
+use crate::film::{Checksum, checkpoint::SAMPLE_VERSION};
+use crate::recipe::{Recipe, file::to_toml};
 use crate::stages::Stage;
 use crate::terminal::write_json;
+use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -26,19 +28,13 @@ pub struct Still {
     pub stage: String,
     /// The name of its file.
     pub file: String,
-    /// Width, pixels.
     pub width: u32,
-    /// Height, pixels.
     pub height: u32,
-    /// Most rays per path, including the camera's.
     pub max_depth: u32,
-    /// The sampler's name.
     pub sampler: String,
-    /// The sampler's seed.
     pub seed: u32,
-    /// Samples per pixel.
     pub samples_per_pixel: u64,
-    /// Wall time of tracing, seconds.
+    /// Wall time of tracing.
     pub trace_seconds: f64,
     /// Root of the mean squared error, linear radiance, estimated from two halves of the samples; `None` if there was
     /// one sample.
@@ -47,10 +43,19 @@ pub struct Still {
     pub rmse_deviation: Option<f64>,
     /// The backend that rendered it.
     pub backend: String,
-    /// See [`super::Fingerprints`].
+    /// See [`fingerprint`].
     pub fingerprint: String,
     /// Checksum of the file.
     pub checksum: String,
+}
+
+/// Identifies the picture that this program renders of a recipe: a checksum of the recipe and the version of the
+/// samples.
+pub fn fingerprint(recipe: &Recipe) -> String {
+    let mut checksum = Checksum::default();
+    checksum.text(to_toml(recipe).as_bytes());
+    checksum.word(SAMPLE_VERSION.into());
+    checksum.finish()
 }
 
 impl Still {
@@ -59,25 +64,12 @@ impl Still {
         format!("{}.png", stage.id)
     }
 
-    /// The still of `recipe` in the file of `stage`, before it is rendered.
-    pub(super) fn new(stage: &Stage, recipe: &Recipe, fingerprint: String) -> Still {
-        let settings = &recipe.settings;
-        Still {
-            stage: stage.id.to_owned(),
-            file: Still::file_name(stage),
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name().to_owned(),
-            seed: settings.seed,
-            samples_per_pixel: recipe.samples_per_pixel,
-            trace_seconds: 0.0,
-            rmse_estimate: None,
-            rmse_deviation: None,
-            backend: String::new(),
-            fingerprint,
-            checksum: String::new(),
-        }
+    /// The still on one line.
+    pub(super) fn line(&self) -> String {
+        let size = format!("{}x{}", self.width, self.height);
+        let (stage, samples) = (&self.stage, self.samples_per_pixel);
+        let (time, error) = (self.time_words(), self.error_words());
+        format!("{stage:<18} {size:>9}, {samples:>4} spp, {time:>15}, {error}\n")
     }
 
     /// Size, samples and rays in words.
@@ -124,38 +116,20 @@ struct Json {
 }
 
 impl Stills {
-    /// Reads what a directory's `gallery.json` says. Stills of stages that no longer exist are left out. The second
-    /// value is a note for the user if the file exists and cannot be used; there are no stills then.
-    pub fn read(directory: &Path) -> (Stills, Option<String>) {
+    /// Reads a directory's `gallery.json`. Stills of stages that no longer exist are left out. A file that cannot be
+    /// used costs only time: it is named in a warning, and there are no stills.
+    pub fn read(directory: &Path) -> Stills {
         let path = directory.join(INDEX);
-        let empty = Stills { directory: directory.to_owned(), pictures: Vec::new() };
-        if path.symlink_metadata().is_err() {
-            return (empty, None);
-        }
-        let read = files::read(&path, "the description of a gallery", LENGTH_LIMIT)
-            .map_err(|error: InputError| error.to_string())
-            .and_then(|bytes| {
-                let unreadable =
-                    |reason: serde_json::Error| format!("cannot read {}: {reason}", path.display());
-                serde_json::from_slice::<Json>(&bytes).map_err(unreadable)
-            })
-            .and_then(|json| match json.schema {
-                SCHEMA => Ok(json.pictures),
-                other => Err(format!("{} has version {other}, not {SCHEMA}", path.display())),
-            });
-        match read {
-            Ok(pictures) => {
-                let mut stills = empty;
-                pictures.into_iter().for_each(|still| stills.set(still));
-                (stills, None)
+        let mut stills = Stills { directory: directory.to_owned(), pictures: Vec::new() };
+        if path.symlink_metadata().is_ok() {
+            match read_index(&path) {
+                Ok(pictures) => pictures.into_iter().for_each(|still| stills.set(still)),
+                Err(error) => {
+                    console::note(&format!("warning: {error:#}; every picture is rendered again"));
+                }
             }
-            Err(reason) => (empty, Some(format!("{reason}; every picture is rendered again"))),
         }
-    }
-
-    /// The directory of the stills.
-    pub fn directory(&self) -> &Path {
-        &self.directory
+        stills
     }
 
     /// All stills, in the book's order.
@@ -180,19 +154,27 @@ impl Stills {
     }
 
     /// Writes `gallery.json`.
-    pub(super) fn write(&self) -> anyhow::Result<()> {
+    pub(super) fn write(&self) -> Result<()> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let json = Json { schema: SCHEMA, version, pictures: self.pictures.clone() };
         write_json(&json, &JsonTarget::File(self.directory.join(INDEX)))
     }
 
     /// Whether the still of `stage` has one of these fingerprints and its file is as it was written.
-    pub(super) fn is_fresh(&self, stage: &Stage, fingerprints: &[String]) -> bool {
+    pub(super) fn is_fresh(&self, stage: &Stage, fingerprints: &[&str]) -> bool {
         self.of(stage).is_some_and(|still| {
-            fingerprints.contains(&still.fingerprint)
+            fingerprints.contains(&still.fingerprint.as_str())
                 && checksum(&self.directory.join(&still.file)).is_ok_and(|found| found == still.checksum)
         })
     }
+}
+
+fn read_index(path: &Path) -> Result<Vec<Still>> {
+    let bytes = files::read(path, "the description of a gallery", LENGTH_LIMIT)?;
+    let json: Json =
+        serde_json::from_slice(&bytes).with_context(|| format!("cannot read {}", path.display()))?;
+    ensure!(json.schema == SCHEMA, "{} has version {}, not {SCHEMA}", path.display(), json.schema);
+    Ok(json.pictures)
 }
 
 /// The checksum of a file.
@@ -206,31 +188,77 @@ pub(super) fn checksum(path: &Path) -> Result<String, InputError> {
 mod tests {
     use super::*;
     use crate::gallery::Quality;
+    use crate::scene::Sphere;
+    use std::sync::Arc;
 
-    fn still(id: &str) -> Still {
-        let stage = Stage::find(id).unwrap();
-        Still::new(stage, &Quality::Full.recipe(stage), format!("of {id}"))
+    impl Still {
+        /// A full still, not rendered.
+        pub fn of(id: &str) -> Still {
+            let stage = Stage::find(id).unwrap();
+            let Recipe { settings, samples_per_pixel, .. } = Quality::Full.recipe(stage);
+            Still {
+                stage: stage.id.to_owned(),
+                file: Still::file_name(stage),
+                width: settings.width,
+                height: settings.height,
+                max_depth: settings.max_depth,
+                sampler: String::new(),
+                seed: 0,
+                samples_per_pixel,
+                trace_seconds: 0.0,
+                rmse_estimate: None,
+                rmse_deviation: None,
+                backend: String::new(),
+                fingerprint: format!("of {id}"),
+                checksum: String::new(),
+            }
+        }
     }
 
     #[test]
-    fn what_was_written_is_read_and_foreign_entries_are_left_out() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut stills = Stills::read(directory.path()).0;
-        assert_eq!((stills.all(), stills.directory()), (&[][..], directory.path()));
-        for id in ["metal", "sky", "metal"] {
-            stills.set(Still { rmse_estimate: Some(0.1 + 0.2), ..still(id) });
+    fn every_change_of_a_recipe_changes_the_fingerprint() {
+        let recipe = Quality::Quick.recipe(Stage::find("metal-fuzzy").unwrap());
+        let change = |change: &dyn Fn(&mut Recipe)| {
+            let mut recipe = recipe.clone();
+            change(&mut recipe);
+            fingerprint(&recipe)
+        };
+        assert_eq!(change(&|_| {}), fingerprint(&recipe));
+        let changes: [&dyn Fn(&mut Recipe); 4] = [
+            &|recipe| recipe.samples_per_pixel += 1,
+            &|recipe| recipe.settings.seed += 1,
+            &|recipe| recipe.rules.transfer = crate::stages::Transfer::Linear,
+            &|recipe| {
+                let Sphere { radius, .. } = &mut Arc::make_mut(&mut recipe.scene).spheres[1];
+                *radius += 1e-9;
+            },
+        ];
+        for (number, one) in changes.into_iter().enumerate() {
+            assert_ne!(change(one), fingerprint(&recipe), "change {number}");
         }
-        stills.set(Still { stage: "no-stage".to_owned(), ..still("book") });
-        stills.set(Still { file: "../book.png".to_owned(), ..still("book") });
-        stills.write().unwrap();
-        let (read, note) = Stills::read(directory.path());
-        assert_eq!((&read, note), (&stills, None));
-        assert_eq!(read.all().iter().map(|still| still.stage.as_str()).collect::<Vec<_>>(), ["sky", "metal"]);
+    }
 
+    #[test]
+    fn the_index_is_read_as_it_was_written_without_foreign_entries() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut stills = Stills::read(directory.path());
+        assert_eq!(stills.all(), []);
+        for id in ["metal", "sky", "metal"] {
+            stills.set(Still { rmse_estimate: Some(0.1 + 0.2), ..Still::of(id) });
+        }
+        stills.set(Still { stage: "no-stage".to_owned(), ..Still::of("book") });
+        stills.set(Still { file: "../book.png".to_owned(), ..Still::of("book") });
+        stills.write().unwrap();
+        let read = Stills::read(directory.path());
+        assert_eq!(read, stills);
+        assert_eq!(read.all().iter().map(|still| still.stage.as_str()).collect::<Vec<_>>(), ["sky", "metal"]);
         for damaged in ["", "{", "{\"schema\": 2, \"version\": \"\", \"pictures\": []}"] {
-            std::fs::write(directory.path().join(INDEX), damaged).unwrap();
-            let (read, note) = Stills::read(directory.path());
-            assert!(read.all().is_empty() && note.unwrap().contains(INDEX), "{damaged:?}");
+            let path = directory.path().join(INDEX);
+            std::fs::write(&path, damaged).unwrap();
+            assert!(
+                read_index(&path).is_err() && Stills::read(directory.path()).all().is_empty(),
+                "{damaged:?}"
+            );
         }
     }
 
@@ -240,10 +268,9 @@ mod tests {
         let stage = Stage::find("sky").unwrap();
         let path = directory.path().join("sky.png");
         std::fs::write(&path, "picture").unwrap();
-        let mut stills = Stills::read(directory.path()).0;
-        stills.set(Still { checksum: checksum(&path).unwrap(), ..still("sky") });
-        let is_fresh =
-            |fingerprint: &str| stills.is_fresh(stage, &["other".to_owned(), fingerprint.to_owned()]);
+        let mut stills = Stills::read(directory.path());
+        stills.set(Still { checksum: checksum(&path).unwrap(), ..Still::of("sky") });
+        let is_fresh = |fingerprint: &str| stills.is_fresh(stage, &["other", fingerprint]);
         assert!(is_fresh("of sky") && !is_fresh("of it"));
         std::fs::write(&path, "Picture").unwrap();
         assert!(!is_fresh("of sky"), "damaged");
@@ -252,39 +279,19 @@ mod tests {
     }
 
     #[test]
-    fn words_are_short() {
-        let mut still = still("metal");
-        assert_eq!(
-            still.settings_words(),
-            "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path"
-        );
-        assert_eq!(
-            (still.time_words().as_str(), still.error_words().as_str()),
-            ("less than 0.1 s", "no noise")
-        );
-        (still.rmse_estimate, still.rmse_deviation) = (Some(0.001_234), Some(1e-5));
-        still.trace_seconds = 8.26;
-        assert_eq!(
-            (still.time_words().as_str(), still.error_words().as_str()),
-            ("8.3 s", "error 1.2e-3 ± 0.8 %")
-        );
-        let sky = self::still("sky").settings_words();
-        assert_eq!(sky, "880 × 495 pixels, 1 ray through the centre of each pixel");
-    }
-
-    #[test]
-    fn an_error_has_its_deviation_only_if_there_is_one() {
-        let words = |rmse_estimate, rmse_deviation| {
-            Still { rmse_estimate, rmse_deviation, ..still("metal") }.error_words()
+    fn a_still_describes_itself() {
+        let metal = Still {
+            trace_seconds: 8.26,
+            rmse_estimate: Some(0.001_234),
+            rmse_deviation: Some(1e-5),
+            ..Still::of("metal")
         };
-        assert_eq!(words(Some(0.0), Some(0.0)), "no noise");
-        assert_eq!(words(Some(0.25), Some(0.0)), "error 2.5e-1 ± 0.1 %");
-        assert_eq!(words(Some(0.25), None), "no noise");
-    }
-
-    #[test]
-    fn a_time_is_told_from_a_tenth_of_a_second_on() {
-        let words = |trace_seconds| Still { trace_seconds, ..still("metal") }.time_words();
-        assert_eq!([0.099, 0.1, 0.12].map(words), ["less than 0.1 s", "0.1 s", "0.1 s"]);
+        let line = "metal                880x495, 1024 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
+        assert_eq!(metal.line(), line);
+        let settings = "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path";
+        assert_eq!(metal.settings_words(), settings);
+        let sky = Still::of("sky");
+        assert_eq!(sky.settings_words(), "880 × 495 pixels, 1 ray through the centre of each pixel");
+        assert_eq!((sky.time_words().as_str(), sky.error_words().as_str()), ("less than 0.1 s", "no noise"));
     }
 }

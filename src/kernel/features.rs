@@ -346,20 +346,6 @@ mod tests {
     }
 
     #[test]
-    fn a_summary_has_the_words_of_what_is_on() {
-        let features =
-            Features { few_spheres: true, opaque_count: 3, two_root_count: 2, ..Features::default() };
-        assert_eq!(
-            features.describe(),
-            "lambertian, metal, fuzz, glass, lens, two roots, anchored, eye on a surface, cavity, 5 spheres in constants"
-        );
-        let boxed = Features { hierarchy: true, surface: SurfaceRule::Acne, ..Features::default() };
-        assert!(boxed.describe().ends_with("cavity, hierarchy, acne"), "{}", boxed.describe());
-        let compressed = Features { cwbvh: true, ..boxed };
-        assert!(compressed.describe().ends_with("cavity, compressed hierarchy, acne"));
-    }
-
-    #[test]
     fn what_is_left_out_is_what_is_off() {
         let features = Features { lens: false, cavity: false, ..Features::default() };
         assert_eq!(
@@ -368,18 +354,6 @@ mod tests {
         );
         let with_rule = Features { hierarchy: true, surface: SurfaceRule::Book, ..Features::default() };
         assert_eq!(with_rule.left_out(), ["specks", "steep glass"]);
-    }
-
-    #[test]
-    fn each_part_is_either_present_or_left_out() {
-        assert_eq!(parts::describe(parts::GLASS), "glass");
-        assert_eq!(parts::left_out(parts::GLASS), ["lens", "extremes", "hierarchy", "stage rules"]);
-        assert_eq!(parts::left_out(parts::ALL), [""; 0]);
-        for combination in 0..=parts::ALL {
-            let left_out = parts::left_out(combination);
-            assert!(left_out.iter().all(|word| !parts::describe(combination).contains(word)));
-            assert_eq!(left_out.len() as u32 + combination.count_ones(), parts::ALL.count_ones());
-        }
     }
 
     #[test]

@@ -5,10 +5,7 @@
 //! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`], [`Progressive::finish`] and dropping
 //! the handle wait for the renderer; no other call blocks.
 
-mod cancel;
-mod guard;
 mod passes;
-mod pending;
 mod plan;
 mod render;
 mod shared;
@@ -25,10 +22,12 @@ pub use view::{FilmIdentity, ReferenceMeans, View, luminance, standard_error};
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
 use crate::render::{RenderJob, Renderer};
-use cancel::Cancel;
+use render::Cancel;
 use shared::Shared;
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -39,9 +38,7 @@ pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, Ba
 
 /// What a render thread is asked to render.
 pub struct RenderRequest {
-    /// The picture.
     pub job: RenderJob,
-    /// The backend that renders it.
     pub backend: BackendChoice,
     /// An existing renderer of `backend`; otherwise the render thread makes or reuses one.
     pub renderer: Option<Box<dyn Renderer>>,
@@ -52,7 +49,6 @@ pub struct RenderRequest {
 }
 
 impl RenderRequest {
-    /// A render from the beginning.
     pub fn new(job: RenderJob, backend: BackendChoice, plan: Plan) -> Self {
         RenderRequest { job, backend, renderer: None, plan, film: None }
     }
@@ -83,8 +79,14 @@ impl Progressive {
     pub fn with_factory(factory: Factory) -> io::Result<Self> {
         let (commands, receiver) = mpsc::channel();
         let shared = Arc::new(Shared::default());
-        let worker = Worker::new(receiver, Arc::clone(&shared), factory);
-        let thread = thread::Builder::new().name("render".to_owned()).spawn(move || worker.run())?;
+        let readers = Arc::clone(&shared);
+        let mut worker = Worker::new(receiver, Arc::clone(&shared), factory);
+        let work = move || {
+            if catch_unwind(AssertUnwindSafe(|| worker.run())).is_err() {
+                readers.died();
+            }
+        };
+        let thread = thread::Builder::new().name("render".to_owned()).spawn(work)?;
         Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: Some(thread) })
     }
 
@@ -105,9 +107,19 @@ impl Progressive {
     /// one each [`Progressive::LOOK`], and may send commands.
     pub fn watch(&mut self, request: RenderRequest, mut look: impl FnMut(&Progressive, &Status)) -> Status {
         self.start(request);
+        let this = &*self;
+        this.until_over(|status| look(this, status))
+    }
+
+    /// Waits until the render is over.
+    pub fn wait_until_over(&self) -> Status {
+        self.until_over(|_| ())
+    }
+
+    fn until_over(&self, mut look: impl FnMut(&Status)) -> Status {
         loop {
             let status = self.wait(Progressive::LOOK);
-            look(self, &status);
+            look(&status);
             if status.phase.is_over() || status.phase == Phase::Idle {
                 return status;
             }
@@ -117,7 +129,6 @@ impl Progressive {
     /// Longest time between two looks of [`Progressive::watch`].
     pub const LOOK: Duration = Duration::from_millis(50);
 
-    /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.abandon();
         self.send(RenderCommand::Abandon);
@@ -135,7 +146,7 @@ impl Progressive {
 
     /// Ends the render at the end of the pass, or while it prepares.
     pub fn stop(&self) {
-        self.cancel.stop();
+        self.cancel.stop.store(true, Ordering::Relaxed);
         self.send(RenderCommand::Stop);
     }
 
@@ -152,14 +163,6 @@ impl Progressive {
     /// The status after the last pass.
     pub fn status(&self) -> Status {
         self.shared.status()
-    }
-
-    /// Takes the newest picture, if there is a new one since the last call, and asks for the next: see
-    /// [`Progressive::ask_for_picture`].
-    pub fn take_picture(&self) -> Option<Picture> {
-        let picture = self.newest_picture();
-        self.ask_for_picture();
-        picture
     }
 
     /// Takes the newest picture, if there is a new one since the last call.
@@ -193,16 +196,6 @@ impl Progressive {
     /// Waits until the status changes, at most `timeout`, and returns it.
     pub fn wait(&self, timeout: Duration) -> Status {
         self.shared.wait(timeout)
-    }
-
-    /// Waits until the render is over.
-    pub fn wait_until_over(&self) -> Status {
-        loop {
-            let status = self.wait(Duration::from_millis(200));
-            if status.phase.is_over() || status.phase == Phase::Idle {
-                return status;
-            }
-        }
     }
 
     /// Ends the render after the current pass and returns the film; `None` if there is no film.

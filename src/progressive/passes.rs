@@ -119,16 +119,6 @@ mod tests {
     }
 
     #[test]
-    fn the_first_pass_can_be_longer() {
-        let first = |half_count, samples, planned| {
-            PassSizer::new(half_count).begin_with(samples).next(&SampleRanges::default(), planned, None)
-        };
-        assert_eq!(first(1, 4, 0..100), Some(0..4));
-        assert_eq!(first(1, 4, 0..3), Some(0..2), "no more than is planned");
-        assert_eq!(first(2, 1, 0..100), Some(0..2));
-    }
-
-    #[test]
     fn passes_are_aligned_fill_every_gap_and_never_overlap() {
         for half_count in [1, 2] {
             for planned in [0..1, 0..77, 3..17, 64..1000, 5..6] {
@@ -142,17 +132,6 @@ mod tests {
                 }
                 assert_eq!(held.first_gap(planned, u64::MAX), None);
             }
-        }
-    }
-
-    #[test]
-    fn a_pass_is_at_most_twice_as_long_as_the_one_before() {
-        // At a position where alignment does not shorten the pass.
-        let (mut sizer, held, planned) = (PassSizer::new(2), SampleRanges::default(), 1 << 20..1 << 21);
-        for length in [2, 4, 8, 16] {
-            let pass = sizer.next(&held, planned.clone(), None).unwrap();
-            assert_eq!(pass.end - pass.start, length);
-            sizer.measured(length, FAST, TARGET);
         }
     }
 

@@ -40,7 +40,6 @@ impl Stop {
 pub struct Plan {
     /// The first sample of each pixel. Samples that are already in the film are skipped.
     pub first_sample: u64,
-    /// The stop conditions.
     pub stop: Stop,
     /// The duration that a pass should have, and the longest that a stop should take. Commands are obeyed between passes.
     pub pass_target: Duration,
@@ -93,7 +92,6 @@ impl Plan {
     }
 }
 
-/// Why a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndReason {
     /// The film holds all samples of the plan.
@@ -159,11 +157,5 @@ mod tests {
         ] {
             assert_eq!(plan.later_pass_target(heeds_stop), factor * plan.pass_target, "{plan:?}");
         }
-    }
-
-    #[test]
-    fn a_plan_without_samples_goes_on_to_the_last_that_a_film_can_hold() {
-        assert_eq!(Plan { first_sample: 5, ..Plan::endless() }.range(), 5..SAMPLE_LIMIT);
-        assert_eq!(Plan { first_sample: 5, ..Plan::samples(20) }.range(), 5..20);
     }
 }

@@ -10,11 +10,8 @@ use std::time::Duration;
 pub struct Picture {
     /// The run it belongs to, as [`Status::run`].
     pub run: u64,
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Samples per pixel in the picture.
     pub samples_per_pixel: u64,
     /// Three bytes a pixel, top row first.
     pub rgb8: Vec<u8>,
@@ -114,18 +111,6 @@ mod tests {
     use std::sync::atomic::AtomicU32;
 
     #[test]
-    fn a_death_of_the_render_thread_is_told() {
-        let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
-        let noted = Arc::clone(&count);
-        shared.set_notice(Box::new(move || {
-            noted.fetch_add(1, Ordering::Relaxed);
-        }));
-        shared.died();
-        assert!(shared.status().phase.is_over());
-        assert_eq!(count.load(Ordering::Relaxed), 1);
-    }
-
-    #[test]
     fn only_another_phase_gives_notice_and_an_earlier_run_is_ignored() {
         let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
         let noted = Arc::clone(&count);
@@ -141,20 +126,5 @@ mod tests {
         assert_eq!(told(2, Phase::Tracing, 8), (2, 8, 1));
         assert_eq!(told(1, Phase::Paused, 16), (2, 8, 1));
         assert_eq!(told(3, Phase::Paused, 0), (3, 0, 2));
-    }
-
-    #[test]
-    fn a_picture_is_asked_for_once_and_taken_once() {
-        let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
-        let noted = Arc::clone(&count);
-        shared.set_notice(Box::new(move || {
-            noted.fetch_add(1, Ordering::Relaxed);
-        }));
-        assert!(!shared.is_picture_wanted() && shared.take_picture().is_none());
-        assert!(shared.want_picture() && !shared.want_picture() && shared.is_picture_wanted());
-        let picture = Picture { run: 1, width: 1, height: 1, samples_per_pixel: 2, rgb8: vec![1, 2, 3] };
-        shared.put_picture(picture.clone());
-        assert!(!shared.is_picture_wanted() && count.load(Ordering::Relaxed) == 1);
-        assert_eq!((shared.take_picture(), shared.take_picture()), (Some(picture), None));
     }
 }

@@ -6,7 +6,6 @@ use crate::render::{BackendInfo, Stats};
 use serde::Serialize;
 use std::time::Duration;
 
-/// The phase of a render.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Phase {
     /// No render was started, or it was abandoned.
@@ -14,7 +13,6 @@ pub enum Phase {
     Idle,
     /// The prepared scene, its hierarchy and kernels are being built.
     Preparing,
-    /// Samples are being added.
     Tracing,
     /// The render waits to be resumed.
     Paused,
@@ -36,18 +34,15 @@ impl Phase {
     }
 }
 
-/// The error at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistoryPoint {
     /// The backend that traced the newest samples: [`BackendInfo::name`].
     pub backend: &'static str,
-    /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
     /// Wall seconds of tracing since the start.
     pub trace_seconds: f64,
     /// Estimated RMSE, linear radiance.
     pub rmse_estimate: f64,
-    /// Estimated relative MSE.
     pub rel_mse_estimate: f64,
 }
 
@@ -57,7 +52,6 @@ pub struct Contribution {
     /// The backend that added them.
     #[serde(flatten)]
     pub backend: BackendInfo,
-    /// Samples per pixel.
     pub samples_per_pixel: u64,
 }
 
@@ -67,11 +61,8 @@ pub struct Contribution {
 pub struct Status {
     /// The run that this belongs to: 0 before the first start, then one more for each start.
     pub run: u64,
-    /// The current phase.
     pub phase: Phase,
-    /// The backend in use.
     pub backend: Option<BackendInfo>,
-    /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
     /// Samples per pixel that the film should reach.
     pub planned_samples_per_pixel: u64,
@@ -79,7 +70,6 @@ pub struct Status {
     pub rejected_samples: u64,
     /// Statistics summed over the passes.
     pub stats: Stats,
-    /// Wall time of preparation.
     pub prepare: Duration,
     /// What the current kernel contains, in words.
     pub kernel: String,
@@ -106,12 +96,10 @@ pub struct Status {
 }
 
 impl Status {
-    /// Paths per second of tracing.
     pub fn paths_per_second(&self) -> f64 {
         per_second(self.stats.paths, self.trace)
     }
 
-    /// Rays per second of tracing.
     pub fn rays_per_second(&self) -> f64 {
         per_second(self.stats.rays, self.trace)
     }
@@ -144,7 +132,7 @@ impl Status {
         self.contributions.iter().map(|part| part.samples_per_pixel).sum()
     }
 
-    pub(super) fn say(&mut self, messages: Vec<String>) {
+    pub(super) fn say(&mut self, messages: impl IntoIterator<Item = String>) {
         for message in messages {
             if !self.messages.contains(&message) {
                 log::warn!("{message}");
@@ -172,17 +160,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeds_are_counts_over_the_seconds_of_tracing() {
-        let stats = Stats { paths: 100, rays: 300, busy_lanes: 6, offered_lanes: 8, ..Stats::default() };
-        let trace = Duration::from_secs(2);
-        let mut status = Status { stats, trace, elapsed: Duration::from_secs(5), ..Status::default() };
-        assert_eq!((status.paths_per_second(), status.rays_per_second()), (50.0, 150.0));
-        assert_eq!(status.lane_occupancy(), Some(0.75));
-        (status.stats, status.trace) = (Stats::default(), Duration::ZERO);
-        assert_eq!((status.paths_per_second(), status.lane_occupancy()), (0.0, None));
-    }
-
-    #[test]
     fn backends_with_other_options_are_credited_apart() {
         let info = |lanes| BackendInfo { name: "cpu", device: "x".to_owned(), lanes, threads: 1 };
         let mut status = Status::default();
@@ -192,23 +169,6 @@ mod tests {
         let found: Vec<_> =
             status.contributions.iter().map(|part| (part.backend.lanes, part.samples_per_pixel)).collect();
         assert_eq!(found, [(8, 20), (1, 2)]);
-    }
-
-    #[test]
-    fn the_status_fits_the_film() {
-        let info = |lanes| BackendInfo { name: "cpu", device: String::new(), lanes, threads: 1 };
-        let part = |lanes, samples_per_pixel| Contribution { backend: info(lanes), samples_per_pixel };
-        let status = Status {
-            backend: Some(info(8)),
-            contributions: vec![part(8, 30), part(4, 10)],
-            trace: Duration::from_secs(40),
-            ..Status::default()
-        };
-        let mut film = Film::new(1, 1, 1);
-        film.record(0..70, 0).unwrap();
-        let fitted = status.of_film(&film, 20);
-        assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
-        assert_eq!(fitted.trace, Duration::from_secs(50));
     }
 
     #[test]
@@ -240,27 +200,5 @@ mod tests {
         assert_eq!(later.contributions, [part("gpu", 30), part("cpu", 14)]);
         let nothing = Status::default();
         assert_eq!(nothing.of_film(&film(8), 4), nothing);
-    }
-
-    #[test]
-    fn phases_that_are_over_do_not_work() {
-        for (phase, is_working, is_over) in [
-            (Phase::Idle, false, false),
-            (Phase::Preparing, true, false),
-            (Phase::Tracing, true, false),
-            (Phase::Paused, false, false),
-            (Phase::Done(EndReason::Samples), false, true),
-            (Phase::Failed(String::new()), false, true),
-        ] {
-            assert_eq!((phase.is_working(), phase.is_over()), (is_working, is_over), "{phase:?}");
-        }
-    }
-
-    #[test]
-    fn what_was_said_is_not_said_again() {
-        let mut status = Status::default();
-        status.say(vec!["a".to_owned(), "b".to_owned()]);
-        status.say(vec!["b".to_owned(), "c".to_owned(), "c".to_owned()]);
-        assert_eq!(status.messages, ["a", "b", "c"]);
     }
 }

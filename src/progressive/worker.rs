@@ -1,9 +1,6 @@
 //! The render thread: it alternates between obeying commands and rendering passes.
 
-use super::cancel::Cancel;
-use super::guard::Backend;
-use super::guard::{dismiss, guarded};
-use super::render::Render;
+use super::render::{Backend, Cancel, Render, dismiss, guarded};
 use super::shared::Shared;
 use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
@@ -39,31 +36,13 @@ pub(super) struct Worker {
     view: View,
 }
 
-/// Tells the readers if the thread ends by a panic.
-struct DeathNote(Arc<Shared>);
-
-impl Drop for DeathNote {
-    fn drop(&mut self) {
-        if std::thread::panicking() {
-            self.0.died();
-        }
-    }
-}
-
 impl Worker {
     pub(super) fn new(commands: Receiver<RenderCommand>, shared: Arc<Shared>, factory: Factory) -> Self {
-        Worker {
-            commands,
-            shared,
-            factory: Arc::new(Mutex::new(factory)),
-            backend: None,
-            render: None,
-            view: View::Picture,
-        }
+        let factory = Arc::new(Mutex::new(factory));
+        Worker { commands, shared, factory, backend: None, render: None, view: View::Picture }
     }
 
-    pub(super) fn run(mut self) {
-        let _note = DeathNote(Arc::clone(&self.shared));
+    pub(super) fn run(&mut self) {
         loop {
             // No panic can corrupt the film: renderers promise not to touch it, and everything else only reads it.
             match catch_unwind(AssertUnwindSafe(|| self.turn())) {
@@ -78,25 +57,15 @@ impl Worker {
 
     /// Obeys a command or renders a pass. Returns whether there is more to do.
     fn turn(&mut self) -> bool {
-        let is_working = self.render.as_ref().is_some_and(Render::is_working);
-        let command = if is_working {
-            match self.commands.try_recv() {
-                Ok(command) => Some(command),
-                Err(TryRecvError::Empty) => None,
-                Err(TryRecvError::Disconnected) => Some(RenderCommand::Finish),
-            }
+        let received = if self.render.as_ref().is_some_and(Render::is_working) {
+            self.commands.try_recv()
         } else {
-            Some(self.commands.recv().unwrap_or(RenderCommand::Finish))
+            self.commands.recv().map_err(TryRecvError::from)
         };
-        match command {
-            Some(RenderCommand::Finish) => return false,
-            Some(RenderCommand::Take(taker)) => {
-                // If the receiver is gone, nobody needs the film.
-                let _ = taker.send(self.take_film());
-                return true;
-            }
-            Some(command) => self.obey(command),
-            None => self.step(),
+        match received {
+            Ok(RenderCommand::Finish) | Err(TryRecvError::Disconnected) => return false,
+            Ok(command) => self.obey(command),
+            Err(TryRecvError::Empty) => self.step(),
         }
         if let Some(render) = &mut self.render {
             let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
@@ -104,51 +73,44 @@ impl Worker {
                 render.show(&self.shared, &self.view, renderer);
                 Ok(())
             });
-            if let Err(error) = shown {
-                render.complain(&error);
-            }
+            render.complain(shown);
         }
         true
     }
 
     fn obey(&mut self, command: RenderCommand) {
-        if let RenderCommand::Start { run, request, cancel } = command {
-            self.start(run, *request, cancel);
-            return;
-        }
-        if let RenderCommand::SetView(view) = command {
-            self.view = view;
-            if let Some(render) = &mut self.render {
-                render.forget_picture();
-            }
-            return;
-        }
-        if !matches!(command, RenderCommand::Abandon | RenderCommand::Look | RenderCommand::SetPlan(_)) {
-            self.collect();
-        }
-        let Some(render) = &mut self.render else { return };
-        if matches!(command, RenderCommand::Stop) {
-            render.stop_is_obeyed();
-        }
-        let is_stopped = render.status.phase == Phase::Done(EndReason::Stopped);
         match command {
-            RenderCommand::Abandon => {
-                self.abandon();
+            RenderCommand::Start { run, request, cancel } => return self.start(run, *request, cancel),
+            RenderCommand::Abandon => return self.abandon(),
+            RenderCommand::SetView(view) => {
+                self.view = view;
+                self.render.iter_mut().for_each(|render| render.pictured_samples = None);
                 return;
             }
+            RenderCommand::Take(taker) => {
+                // If the receiver is gone, nobody needs the film.
+                let _ = taker.send(self.take_film());
+                return;
+            }
+            RenderCommand::Look | RenderCommand::SetPlan(_) => {}
+            _ => self.collect(),
+        }
+        let Some(render) = &mut self.render else { return };
+        match command {
             RenderCommand::Pause if render.is_working() => render.status.phase = Phase::Paused,
-            RenderCommand::Resume if is_stopped || render.status.phase == Phase::Paused => render.go_on(),
-            RenderCommand::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
+            RenderCommand::Resume => match render.status.phase {
+                Phase::Paused | Phase::Done(EndReason::Stopped) => render.go_on(),
+                _ => {}
+            },
+            RenderCommand::Stop => render.stop(),
             RenderCommand::Switch(choice) => render.switch(choice, &self.factory),
             RenderCommand::SetPlan(plan) => render.set_plan(plan),
             RenderCommand::Inspect(look) => {
                 let looked = guarded("whoever looked at the film", || {
-                    look(render.film());
+                    look(&render.film);
                     Ok(())
                 });
-                if let Err(error) = looked {
-                    render.complain(&error);
-                }
+                render.complain(looked);
             }
             _ => {}
         }
@@ -199,7 +161,7 @@ impl Worker {
 
     fn take_film(&mut self) -> Option<Film> {
         self.collect();
-        let (film, status) = self.render.take()?.into_film();
+        let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
             self.shared.publish(&Status { phase: Phase::Idle, ..status });
         }

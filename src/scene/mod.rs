@@ -64,7 +64,6 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a material and returns its index.
     pub fn add_material(&mut self, name: impl Into<String>, material: Material) -> usize {
         self.materials.push(NamedMaterial { name: name.into(), material });
         self.materials.len() - 1

@@ -25,9 +25,7 @@ pub struct Stage {
     pub id: &'static str,
     /// Number of the book's section, such as "11.4".
     pub section: &'static str,
-    /// The section's heading in the book.
     pub section_title: &'static str,
-    /// The chapter's heading in the book.
     pub chapter_title: &'static str,
     /// Weekender's own heading.
     pub title: &'static str,
@@ -43,7 +41,6 @@ pub struct Stage {
     pub alt: &'static str,
     /// The stage that the wipe compares with this one by default.
     pub pair: Option<&'static str>,
-    /// The scene and settings of the picture.
     pub setup: Setup,
 }
 
@@ -52,15 +49,10 @@ pub struct Stage {
 pub struct Setup {
     /// Creates the scene; the result is always the same.
     pub scene: fn() -> Scene,
-    /// The camera of the picture.
     pub camera: Camera,
-    /// The rules in effect.
     pub rules: Rules,
-    /// Picture width in pixels.
     pub width: u32,
-    /// Picture height in pixels.
     pub height: u32,
-    /// Samples per pixel.
     pub samples_per_pixel: u64,
     /// Most rays per path, including the camera ray.
     pub max_depth: u32,
@@ -81,12 +73,10 @@ impl Stage {
         })
     }
 
-    /// The next stage in the book.
     pub fn next(&self) -> Option<&'static Stage> {
         Self::ALL.get(self.index() + 1)
     }
 
-    /// The previous stage in the book.
     pub fn previous(&self) -> Option<&'static Stage> {
         Self::ALL.get(self.index().checked_sub(1)?)
     }
@@ -96,7 +86,6 @@ impl Stage {
         Self::ALL.iter().position(|stage| stage.id == self.id).unwrap_or(Self::ALL.len())
     }
 
-    /// The number of the stage's chapter.
     pub fn chapter(&self) -> &'static str {
         self.section.split('.').next().unwrap_or(self.section)
     }
@@ -134,13 +123,10 @@ impl PartialEq for Stage {
 
 impl Eq for Stage {}
 
-/// No stage has this id.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("there is no stage {id:?}; {}", or_nearest(near))]
 pub struct UnknownStage {
-    /// The requested id.
     pub id: String,
-    /// Similar ids, the most similar first.
     pub near: Vec<&'static str>,
 }
 
@@ -155,13 +141,5 @@ mod tests {
             assert_eq!(stage.book_width(), expected, "{}", stage.id);
         }
         assert_eq!(Stage::find("book").map(Stage::chapter), Ok("14"));
-    }
-
-    #[test]
-    fn a_chapter_and_a_section_have_addresses_of_their_own() {
-        let chapter = "Surface Normals and Multiple Objects";
-        let address = format!("{BOOK_URL}#surfacenormalsandmultipleobjects");
-        assert_eq!(book_url(chapter, None), address);
-        assert_eq!(book_url(chapter, Some("An Interval Class")), format!("{address}/anintervalclass"));
     }
 }

@@ -28,7 +28,6 @@ pub struct Rules {
 }
 
 impl Default for Rules {
-    /// Returns [`Rules::FINISHED`].
     fn default() -> Self {
         Rules::FINISHED
     }

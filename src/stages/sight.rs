@@ -3,7 +3,6 @@
 /// How the thing to look for in a stage is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// What is shown.
     pub means: Means,
     /// The part of the picture that fills the window: left, top, right and bottom as shares of width and height, from the
     /// upper left. `None` is the whole picture.
@@ -15,13 +14,9 @@ pub struct Sight {
 /// What makes something visible.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Means {
-    /// The picture itself.
     Picture,
-    /// The albedo of the materials at the first hit.
     Albedo,
-    /// The number of rays of a path.
     RaysPerPath,
-    /// The standard error of each pixel.
     StandardError,
     /// Luminance in false colours, between these two powers of two.
     Luminance([f64; 2]),

@@ -8,10 +8,8 @@
 mod data;
 mod sliders;
 
-pub use data::LiveError;
-
 use crate::stages::Stage;
-use data::LiveData;
+use anyhow::Result;
 
 /// The script: plain JavaScript without dependencies.
 pub const HOST_SCRIPT: &str = concat!(
@@ -26,9 +24,9 @@ pub const HOST_STYLE: &str = include_str!("../../assets/web/live.css");
 /// The data of these stages as JSON that can stand in a `<script>` element.
 ///
 /// # Errors
-/// [`LiveError`] if a stage cannot be rendered.
-pub fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Result<String, LiveError> {
-    let json = serde_json::to_string(&LiveData::new(stages)?)?;
+/// If a stage cannot be rendered.
+pub fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Result<String> {
+    let json = data::live_data(stages)?.to_string();
     // Only strings contain these characters, and HTML would end the element there or begin a comment.
     Ok(json.replace("</", "<\\/").replace("<!--", "\\u003c!--"))
 }

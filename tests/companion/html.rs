@@ -39,11 +39,3 @@ impl<'a> Html<'a> {
         self.values("id")
     }
 }
-
-#[test]
-fn attributes_are_found() {
-    let html = Html::new(
-        "<a id=\"x\" href=\"#y\">1 < 2</a><script>\"<b id='z' id=\\\"q\\\">\"</script><p id=\"y\">",
-    );
-    assert_eq!((html.ids(), html.values("href")), (vec!["x", "y"], vec!["#y"]));
-}

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender};
-use std::time::Duration;
+use std::sync::mpsc::channel;
+use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
-use weekender::progressive::{Factory, Plan, Progressive, RenderRequest, Status};
-use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
+use weekender::progressive::{EndReason, Phase, Picture, Plan, Progressive, RenderRequest, Status};
+use weekender::render::{
+    BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats, TileOccupancy,
+};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
@@ -20,6 +22,7 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 /// Adds to each pixel a number that depends only on pixel and sample.
 pub struct Fake {
     pub name: &'static str,
+    pub threads: usize,
     pub pause: Duration,
     pub fails_at: Option<u64>,
     pub panics_at: Option<u64>,
@@ -31,6 +34,7 @@ pub struct Fake {
     pub trial: Option<[Duration; 2]>,
     /// Whether passes after the first last until they are stopped, and are given up.
     pub waits_for_stop: bool,
+    pub tiles: Option<TileOccupancy>,
 }
 
 impl Fake {
@@ -38,6 +42,7 @@ impl Fake {
     pub fn new(name: &'static str) -> Self {
         Fake {
             name,
+            threads: 1,
             pause: PAUSE,
             fails_at: None,
             panics_at: None,
@@ -45,22 +50,31 @@ impl Fake {
             message: None,
             trial: None,
             waits_for_stop: false,
+            tiles: None,
         }
     }
 }
 
-pub fn sample(pixel: usize, index: u64) -> PixelSum {
+pub fn pulled_out(backend: &'static str) -> RenderError {
+    RenderError::Backend { backend, reason: "pulled out".into() }
+}
+
+fn sample(pixel: usize, index: u64) -> PixelSum {
     let mixed = (pixel as u64 * 0x9E37_79B9 + index).wrapping_mul(0xD6E8_FEB8_6659_FD93) >> 40;
     PixelSum([mixed, mixed / 2, mixed / 3])
 }
 
 impl Renderer for Fake {
     fn info(&self) -> BackendInfo {
-        BackendInfo { name: self.name, device: "fake".into(), lanes: 1, threads: 1 }
+        BackendInfo { name: self.name, device: "fake".into(), lanes: 1, threads: self.threads }
     }
 
     fn take_messages(&mut self) -> Vec<String> {
         self.message.into_iter().map(str::to_owned).collect()
+    }
+
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        self.tiles.clone()
     }
 
     fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
@@ -97,7 +111,7 @@ impl Renderer for Fake {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         if self.fails_at.is_some_and(|at| range.end > at) {
-            return Err(RenderError::Backend { backend: self.name, reason: "pulled out".into() });
+            return Err(pulled_out(self.name));
         }
         assert!(self.panics_at.is_none_or(|at| range.end <= at), "a slip of the tracer");
         for index in range.clone() {
@@ -115,23 +129,22 @@ impl Renderer for Fake {
     }
 }
 
-/// Spoils the film in its second pass, and tells so.
-pub struct Spoiling {
+/// A fake renderer whose passes are made by a closure.
+pub struct Scripted<A> {
     pub fake: Fake,
-    pub passes: u32,
-    /// Is told when the film has been spoilt.
-    pub spoilt: Option<Sender<()>>,
+    pub pass: A,
 }
 
-impl Spoiling {
-    pub fn new(name: &'static str) -> Self {
-        Spoiling { fake: Fake::new(name), passes: 0, spoilt: None }
-    }
-}
-
-impl Renderer for Spoiling {
+impl<A> Renderer for Scripted<A>
+where
+    A: FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send,
+{
     fn info(&self) -> BackendInfo {
         self.fake.info()
+    }
+
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        self.fake.tile_occupancy()
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
@@ -140,50 +153,39 @@ impl Renderer for Spoiling {
 
     fn accumulate(
         &mut self,
-        job: &RenderJob,
+        _: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.passes += 1;
-        if self.passes == 1 {
-            return self.fake.accumulate(job, range, film, cancel);
+        (self.pass)(&mut self.fake, range, film, cancel)
+    }
+}
+
+pub fn scripted<A>(name: &'static str, pass: A) -> Box<dyn Renderer>
+where
+    A: FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send + 'static,
+{
+    Box::new(Scripted { fake: Fake::new(name), pass })
+}
+
+/// Spoils the film in its second pass; `spoilt` is called then.
+pub fn spoiling(name: &'static str, mut spoilt: impl FnMut() + Send + 'static) -> Box<dyn Renderer> {
+    let mut passes = 0;
+    scripted(name, move |fake, range, film, cancel| {
+        passes += 1;
+        if passes == 1 {
+            return fake.accumulate(&job(2), range, film, cancel);
         }
         film.halves_mut()[0][0].add(PixelSum([1; 3]));
-        if let Some(spoilt) = &self.spoilt {
-            spoilt.send(()).unwrap();
-        }
-        Err(RenderError::FilmLost { backend: self.fake.name, reason: "pulled out".into() })
-    }
+        spoilt();
+        Err(RenderError::FilmLost { backend: name, reason: "pulled out".into() })
+    })
 }
 
-/// Waits for a signal before its first pass.
-pub struct Waiting {
-    pub fake: Fake,
-    pub signal: Option<Receiver<()>>,
-}
-
-impl Renderer for Waiting {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.fake.prepare(job, cancel)
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        if let Some(signal) = self.signal.take() {
-            signal.recv_timeout(PATIENCE).unwrap();
-        }
-        self.fake.accumulate(job, range, film, cancel)
-    }
+/// Adds nothing to the film, and does not say so.
+pub fn forgetful() -> Box<dyn Renderer> {
+    scripted("cpu", |_, _, _, _| Ok(Stats::default()))
 }
 
 /// Holds samples back until they are collected, as a GPU does.
@@ -237,47 +239,14 @@ impl<F: FnMut(&Range<u64>, u32) + Send> Renderer for Holding<F> {
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
         let held = std::mem::take(&mut self.held);
-        let Some(left) = self.good_collections.checked_sub(1) else {
-            return Err(RenderError::Backend { backend: self.fake.name, reason: "pulled out".into() });
-        };
-        self.good_collections = left;
+        self.good_collections =
+            self.good_collections.checked_sub(1).ok_or_else(|| pulled_out(self.fake.name))?;
         let mut stats = Stats::default();
         for range in held {
             stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
         }
         Ok(stats)
     }
-}
-
-/// Adds nothing to the film, and does not say so.
-pub struct Forgetful;
-
-impl Renderer for Forgetful {
-    fn info(&self) -> BackendInfo {
-        BackendInfo { name: "cpu", device: "fake".into(), lanes: 1, threads: 1 }
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        _: &RenderJob,
-        _: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        Ok(Stats::default())
-    }
-}
-
-/// In these tests, the reference fails after sample 16, and every CPU backend works.
-pub fn factory() -> Factory {
-    Box::new(|choice| {
-        let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
-        Ok(Box::new(Fake { fails_at, ..Fake::new(choice.name()) }))
-    })
 }
 
 pub const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
@@ -299,17 +268,44 @@ pub fn job(width: u32) -> RenderJob {
     RenderJob::new(Scene::default(), Camera::default(), settings, Rules::default()).unwrap()
 }
 
-pub fn expected(samples: u64) -> Film {
+/// A film with samples in these ranges.
+pub fn film(ranges: impl IntoIterator<Item = Range<u64>>) -> Film {
     let mut film = job(2).new_film();
     let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("alone") };
-    fake.accumulate(&job(2), 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+    for range in ranges {
+        fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+    }
     film
 }
 
-pub fn started(backend: BackendChoice, plan: Plan) -> Progressive {
-    let mut progressive = Progressive::with_factory(factory()).unwrap();
+pub fn expected(samples: u64) -> Film {
+    film([0..samples])
+}
+
+/// A render thread with these renderers.
+pub fn idle(mut make: impl FnMut(&BackendChoice) -> Box<dyn Renderer> + Send + 'static) -> Progressive {
+    Progressive::with_factory(Box::new(move |choice| Ok(make(choice)))).unwrap()
+}
+
+/// A render with these renderers.
+pub fn started_with(
+    backend: BackendChoice,
+    plan: Plan,
+    make: impl FnMut(&BackendChoice) -> Box<dyn Renderer> + Send + 'static,
+) -> Progressive {
+    let mut progressive = idle(make);
     progressive.start(RenderRequest::new(job(2), backend, plan));
     progressive
+}
+
+/// The reference fails after sample 16, and every CPU backend works.
+pub fn usual(choice: &BackendChoice) -> Box<dyn Renderer> {
+    let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
+    Box::new(Fake { fails_at, ..Fake::new(choice.name()) })
+}
+
+pub fn started(backend: BackendChoice, plan: Plan) -> Progressive {
+    started_with(backend, plan, usual)
 }
 
 pub fn wait_for(progressive: &Progressive, samples: u64) {
@@ -317,9 +313,45 @@ pub fn wait_for(progressive: &Progressive, samples: u64) {
 }
 
 pub fn wait_until(progressive: &Progressive, is_so: impl Fn(&Status) -> bool) {
-    let begin = std::time::Instant::now();
+    let begin = Instant::now();
     while !is_so(&progressive.status()) {
         assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
         std::thread::sleep(Duration::from_millis(1));
     }
+}
+
+/// The status when all requests so far are obeyed.
+pub fn settled(progressive: &Progressive) -> Status {
+    let (seen, is_seen) = channel();
+    progressive.inspect(move |_| seen.send(()).unwrap());
+    // Without a film, the request is dropped, which ends the wait, too.
+    let _ = is_seen.recv_timeout(PATIENCE);
+    progressive.status()
+}
+
+/// Stops the render; returns its last status. All samples must be there.
+pub fn stopped(progressive: Progressive) -> Status {
+    progressive.stop();
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
+    assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+    status
+}
+
+/// The next picture with this many samples.
+pub fn picture(progressive: &Progressive, samples: u64) -> Picture {
+    let begin = Instant::now();
+    loop {
+        progressive.ask_for_picture();
+        match progressive.newest_picture() {
+            Some(picture) if picture.samples_per_pixel == samples => return picture,
+            _ => std::thread::sleep(Duration::from_millis(1)),
+        }
+        assert!(begin.elapsed() < PATIENCE, "no picture: {:?}", progressive.status());
+    }
+}
+
+/// The names of the backends that added samples, with the number of samples.
+pub fn parts(status: &Status) -> Vec<(&'static str, u64)> {
+    status.contributions.iter().map(|part| (part.backend.name, part.samples_per_pixel)).collect()
 }

@@ -1,97 +1,80 @@
-//! Failures and panics of backends.
+//! Failures and panics of backends, listeners and the render thread.
 
-use super::common::{CPU, FAILING, Fake, Forgetful, expected, job, other_cpu, started, wait_for};
-use std::sync::atomic::AtomicBool;
+use super::common::{
+    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, spoiling,
+    started, started_with, stopped, wait_for, wait_until,
+};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use weekender::backends::{BackendChoice, Together};
+use weekender::backends::BackendError;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
 use weekender::recipe::Recipe;
-use weekender::render::{BackendInfo, RenderError, RenderSettings, Renderer};
+use weekender::render::{RenderError, RenderSettings, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
+use weekender::render_gpu::GpuError;
 
 #[test]
 fn a_failing_backend_hands_its_film_to_the_cpu() {
     let progressive = started(FAILING, Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    assert_eq!(status.messages.len(), 1, "{:?}", status.messages);
-    assert!(status.messages[0].contains("pulled out"));
-    let parts: Vec<_> = status.contributions.iter().map(|c| (c.backend.name, c.samples_per_pixel)).collect();
-    assert_eq!(parts, [("reference", 16), ("cpu", 84)]);
+    assert_eq!(status.messages, ["reference failed: pulled out; the CPU continues the same picture"]);
+    assert_eq!(status.given_up, ["reference"]);
+    assert_eq!(parts(&status), [("reference", 16), ("cpu", 84)]);
+    // A point of the history names its backend and has the error of its samples.
+    for point in &status.history {
+        let backend = if point.samples_per_pixel <= 16 { "reference" } else { "cpu" };
+        let error = expected(point.samples_per_pixel).error().unwrap();
+        assert_eq!((point.backend, point.rmse_estimate), (backend, error.rmse), "{point:?}");
+    }
     assert_eq!(progressive.finish(), Some(expected(100)));
 }
 
 #[test]
-fn a_failing_fallback_ends_with_what_there_is() {
-    let fails = |_: &BackendChoice| {
-        let fake = Fake { pause: Duration::ZERO, fails_at: Some(8), ..Fake::new("cpu") };
-        Ok(Box::new(fake) as Box<dyn Renderer>)
-    };
-    let mut progressive = Progressive::with_factory(Box::new(fails)).unwrap();
-    progressive.start(RenderRequest::new(job(2), other_cpu(), Plan::samples(100)));
-    let status = progressive.wait_until_over();
-    assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("pulled out")), "{status:?}");
-    assert_eq!(progressive.finish(), Some(expected(8)));
+fn when_every_backend_fails_or_panics_the_film_of_the_last_whole_pass_is_left() {
+    for panics in [false, true] {
+        let asked = Arc::new(Mutex::new(Vec::new()));
+        let seen = Arc::clone(&asked);
+        let progressive = started_with(CPU, Plan::samples(100), move |choice| {
+            seen.lock().unwrap().push(choice.words());
+            let [fails_at, panics_at] = [!panics, panics].map(|is_so| is_so.then_some(16));
+            Box::new(Fake { fails_at, panics_at, ..Fake::new(choice.name()) })
+        });
+        let status = progressive.wait_until_over();
+        let reason = if panics { "a slip of the tracer" } else { "pulled out" };
+        assert!(matches!(&status.phase, Phase::Failed(told) if told.contains(reason)), "{status:?}");
+        assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
+        assert_eq!(progressive.finish(), Some(expected(16)));
+    }
 }
 
 #[test]
-fn a_panic_keeps_the_film_and_another_backend_goes_on() {
-    let progressive = Progressive::with_factory(Box::new(|choice| {
-        let panics_at = (*choice == CPU).then_some(16);
-        Ok(Box::new(Fake { panics_at, ..Fake::new(choice.name()) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    let [message] = status.messages.as_slice() else { unreachable!("{:?}", status.messages) };
-    assert!(message.contains("a slip of the tracer") && message.contains("continues"), "{message}");
-    assert_eq!(progressive.finish(), Some(expected(100)));
-}
-
-#[test]
-fn a_panic_of_every_backend_leaves_the_film_of_the_last_whole_pass() {
-    let asked = Arc::new(Mutex::new(Vec::new()));
-    let seen = Arc::clone(&asked);
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
-        seen.lock().unwrap().push(choice.words());
-        Ok(Box::new(Fake { panics_at: Some(16), ..Fake::new(choice.name()) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
-    let status = progressive.wait_until_over();
-    assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("a slip of the tracer")));
-    assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
-    assert_eq!(progressive.finish(), Some(expected(16)));
-}
-
-#[test]
-fn a_panic_while_preparing_or_looking_ends_nothing() {
+fn a_panic_while_preparing_tracing_or_looking_ends_nothing() {
     let mut is_first = true;
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
+    let progressive = started_with(FAILING, Plan::samples(2000), move |choice| {
         assert!(!std::mem::take(&mut is_first), "no such backend");
-        Ok(Box::new(Fake::new(choice.name())))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(2000)));
+        let panics_at = (*choice == CPU).then_some(16);
+        Box::new(Fake { panics_at, ..Fake::new(choice.name()) })
+    });
     wait_for(&progressive, 8);
     progressive.inspect(|_| unreachable!("a slip of the onlooker"));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     let said = status.messages.join("; ");
-    assert!(said.contains("no such backend") && said.contains("a slip of the onlooker"), "{said}");
+    for slip in ["no such backend", "a slip of the tracer", "a slip of the onlooker"] {
+        assert!(said.contains(slip), "{said}");
+    }
     assert_eq!(progressive.finish(), Some(expected(2000)));
 }
 
 #[test]
-fn samples_that_were_asked_for_and_not_added_are_missed() {
-    let progressive = Progressive::with_factory(Box::new(|choice| {
+fn samples_that_were_not_added_are_missed() {
+    let progressive = started_with(CPU, Plan::samples(64), |choice| {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
-        Ok(if *choice == CPU { Box::new(Forgetful) as Box<dyn Renderer> } else { Box::new(fake) })
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));
+        if *choice == CPU { forgetful() } else { Box::new(fake) }
+    });
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     assert!(status.messages.iter().any(|said| said.contains("trace 64 samples")), "{:?}", status.messages);
@@ -99,72 +82,159 @@ fn samples_that_were_asked_for_and_not_added_are_missed() {
 }
 
 #[test]
-fn a_member_that_panics_leaves_its_samples_to_the_others() {
-    let fake = |name, panics_at| -> Box<dyn Renderer> { Box::new(Fake { panics_at, ..Fake::new(name) }) };
-    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(4))]);
-    let mut film = job(2).new_film();
-    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    assert!(film == expected(64));
-    let said = together.take_messages().join("; ");
-    assert!(said.contains("a slip of the tracer") && said.contains("cpu continues"), "{said}");
-}
-
-#[test]
-fn members_are_described_and_credited_together() {
-    let fake = |name, fails_at| -> Box<dyn Renderer> { Box::new(Fake { fails_at, ..Fake::new(name) }) };
-    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", None)]);
-    let BackendInfo { name, threads, .. } = together.info();
-    assert_eq!((name, threads), ("cpu,gpu", 2));
-    let mut film = job(2).new_film();
-    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    let credits = together.credits(64);
-    assert_eq!(credits.iter().map(|(_, samples)| samples).sum::<u64>(), 64);
-    assert_eq!(credits.iter().map(|(info, _)| info.name).collect::<Vec<_>>(), ["cpu", "gpu"]);
-    // Who has failed has a share in the samples until then, but not in later ones.
-    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(48))]);
-    let mut film = job(2).new_film();
-    for range in [0..64, 64..128] {
-        together.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
-        let sum: u64 = together.credits(64).iter().map(|(_, samples)| samples).sum();
-        assert_eq!(sum, 64);
+fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_backend() {
+    let short_passes = Plan { pass_target: PAUSE, ..Plan::endless() };
+    for is_switch in [false, true] {
+        let (traced, is_traced) = channel();
+        // The new backend is ready once the old one holds samples that it will lose: those after the first collection.
+        let (go_on, is_let_go_on) = channel();
+        let progressive = started_with(CPU, short_passes.clone(), move |choice| {
+            let fake = Fake::new(choice.name());
+            if *choice == CPU {
+                let traced = traced.clone();
+                // The test may have heard enough.
+                let tell = move |_: &_, good_collections| _ = traced.send(good_collections);
+                return Box::new(Holding::new(fake, u32::from(is_switch), tell));
+            }
+            if is_switch {
+                is_let_go_on.recv_timeout(PATIENCE).unwrap();
+            }
+            Box::new(fake)
+        });
+        is_traced.recv_timeout(PATIENCE).unwrap();
+        if is_switch {
+            progressive.switch_backend(other_cpu());
+            while is_traced.recv_timeout(PATIENCE).unwrap() != 0 {}
+            go_on.send(()).unwrap();
+            wait_until(&progressive, |status| !status.messages.is_empty());
+        } else {
+            progressive.pause();
+            wait_until(&progressive, |status| status.phase == Phase::Paused);
+            progressive.resume();
+        }
+        let samples = progressive.status().samples_per_pixel;
+        wait_for(&progressive, samples + 64);
+        let said = stopped(progressive).messages;
+        assert!(said.len() == 1 && said[0].starts_with("cpu failed: pulled out"), "{said:?}");
     }
-    // Who fails before its first sample has no share in the picture.
-    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(0))]);
-    let mut film = job(2).new_film();
-    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    let credits: Vec<_> =
-        together.credits(64).into_iter().map(|(info, samples)| (info.name, samples)).collect();
-    assert_eq!(credits, [("cpu", 64)]);
 }
 
 #[test]
-fn what_is_said_after_every_pass_is_told_once() {
-    let progressive = Progressive::with_factory(Box::new(|choice| {
-        Ok(Box::new(Fake { message: Some("a layer is too thin"), ..Fake::new(choice.name()) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));
-    assert_eq!(progressive.wait_until_over().messages, ["a layer is too thin"]);
+fn if_another_backend_is_not_available_the_old_one_continues() {
+    let mut progressive = Progressive::with_factory(Box::new(|choice| match *choice == FAILING {
+        true => Err(BackendError::Gpu(GpuError::None)),
+        false => Ok(Box::new(Fake::new("cpu"))),
+    }))
+    .unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+    wait_for(&progressive, 4);
+    progressive.switch_backend(FAILING);
+    wait_until(&progressive, |status| !status.messages.is_empty());
+    let told = format!("reference failed: {}; the cpu continues", GpuError::None);
+    assert_eq!(progressive.status().given_up, ["reference"]);
+    // So it does for a new render.
+    progressive.start(RenderRequest::new(job(2), FAILING, Plan::endless()));
+    wait_for(&progressive, 4);
+    assert_eq!(stopped(progressive).messages, [told]);
+}
+
+#[test]
+fn a_pending_backend_that_panics_can_be_tried_again() {
+    let mut is_first = true;
+    let progressive = started_with(CPU, Plan::endless(), move |choice| {
+        assert!(*choice == CPU || !std::mem::take(&mut is_first), "no such backend");
+        Box::new(Fake::new(choice.name()))
+    });
+    wait_for(&progressive, 2);
+    progressive.switch_backend(FAILING);
+    wait_until(&progressive, |status| !status.messages.is_empty());
+    let said = progressive.status().messages;
+    assert_eq!(said, ["reference failed: its preparation ended by a panic; the cpu continues"]);
+    progressive.switch_backend(FAILING);
+    wait_until(&progressive, |status| status.contributions.len() == 2);
+    stopped(progressive);
+}
+
+#[test]
+fn a_film_that_was_spoilt_is_begun_again() {
+    let progressive = started_with(CPU, Plan::samples(100), |choice| match *choice == CPU {
+        true => spoiling("cpu", || ()),
+        false => Box::new(Fake::new(choice.name())),
+    });
+    let status = progressive.wait_until_over();
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 100));
+    assert_eq!(progressive.finish(), Some(expected(100)));
+
+    let progressive = started_with(CPU, Plan::samples(100), |choice| spoiling(choice.name(), || ()));
+    let status = progressive.wait_until_over();
+    assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("pulled out")), "{status:?}");
+    assert_eq!(status.samples_per_pixel, 0);
+    assert_eq!(progressive.finish(), Some(job(2).new_film()));
+}
+
+/// A paused render and a listener that panics the next times that it is called.
+fn paused_with_a_listener_that_panics(times: u32) -> Progressive {
+    let progressive = started(CPU, Plan::endless());
+    wait_for(&progressive, 2);
+    progressive.pause();
+    wait_until(&progressive, |status| status.phase == Phase::Paused);
+    listen_and_panic(&progressive, times);
+    progressive
+}
+
+fn listen_and_panic(progressive: &Progressive, times: u32) {
+    let calls = AtomicU32::new(0);
+    progressive.set_notice(move || {
+        assert!(calls.fetch_add(1, Ordering::Relaxed) >= times, "a slip of the listener");
+    });
+}
+
+#[test]
+fn a_listener_that_panics_does_not_end_the_render() {
+    let progressive = paused_with_a_listener_that_panics(1);
+    let held = progressive.status().samples_per_pixel;
+    progressive.resume();
+    wait_for(&progressive, held + 16);
+    let said = stopped(progressive).messages.join("; ");
+    assert!(said.contains("a slip of the listener") && said.contains("continues the same picture"), "{said}");
+
+    let progressive = started(CPU, Plan::samples(8));
+    progressive.wait_until_over();
+    listen_and_panic(&progressive, 1);
+    progressive.ask_for_picture();
+    // The next command brings the news.
+    progressive.inspect(|_| ());
+    wait_until(&progressive, |status| !status.messages.is_empty());
+    assert_eq!(progressive.finish(), Some(expected(8)));
+}
+
+#[test]
+fn a_render_thread_that_dies_says_that_the_film_is_lost() {
+    // It panics again while the first panic is handled.
+    let progressive = paused_with_a_listener_that_panics(2);
+    progressive.resume();
+    wait_until(&progressive, |status| status.phase.is_over());
+    let lost = "the render thread failed; its film is lost";
+    assert_eq!(progressive.status().phase, Phase::Failed(lost.to_owned()));
+    assert_eq!(progressive.finish(), None);
 }
 
 /// A panic of the real tracer in the middle of a tile.
 #[test]
 fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
     let recipe = Recipe::find("three-spheres").unwrap();
-    for (half_count, estimate_error) in [(1, false), (2, true)] {
+    for estimate_error in [false, true] {
         let size = RenderSettings { width: 100, height: 70, estimate_error, ..recipe.settings };
-        let job = recipe.job().unwrap().seen_by(*recipe.job().unwrap().camera(), size).unwrap();
+        let job = recipe.job().unwrap().seen_by(recipe.camera, size).unwrap();
         let never = AtomicBool::new(false);
         let mut film = job.new_film();
-        assert_eq!(film.halves().len(), half_count);
         CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..6, &mut film, &never).unwrap();
         let before = film.clone();
         let options = CpuOptions { panics_after: Some(3), threads: Some(2), ..CpuOptions::default() };
         let mut renderer = CpuRenderer::new(options).unwrap();
         let error = renderer.accumulate(&job, 6..40, &mut film, &never).unwrap_err();
-        println!("{error}");
         assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
-        assert!(error.to_string().contains("panicked") && error.to_string().contains("blocks"), "{error}");
+        assert!(error.to_string().contains("panicked"), "{error}");
         assert!(film == before);
         // The next attempt works.
         renderer.accumulate(&job, 6..40, &mut film, &never).unwrap();

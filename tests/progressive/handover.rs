@@ -1,27 +1,19 @@
 //! Films, pictures and samples that pass between render, renderer and user.
 
 use super::common::{
-    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, factory, job, other_cpu, started, wait_for,
+    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture,
+    scripted, started, started_with, stopped, usual, wait_for, wait_until,
 };
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
+use weekender::backends::BackendError;
 use weekender::film::Film;
-use weekender::progressive::{Phase, Plan, Progressive, RenderRequest};
-use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
-
-/// The history of a render whose samples take at least a known time.
-#[test]
-fn a_point_of_the_history_has_the_seconds_of_its_own_samples() {
-    let progressive = started(CPU, Plan::samples(128));
-    let status = progressive.wait_until_over();
-    for point in &status.history {
-        let least = PAUSE.as_secs_f64() * point.samples_per_pixel as f64;
-        assert!(point.trace_seconds >= least, "{point:?} before {least} s");
-    }
-    assert_eq!(status.history.last().map(|point| point.trace_seconds), Some(status.trace.as_secs_f64()));
-}
+use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Stop, View};
+use weekender::render::{Renderer, Stats, TileOccupancy};
+use weekender::render_gpu::GpuError;
+use weekender::stages::Transfer;
 
 #[test]
 fn another_backend_goes_on_with_the_same_film() {
@@ -31,233 +23,285 @@ fn another_backend_goes_on_with_the_same_film() {
         progressive.switch_backend(backend);
     }
     let status = progressive.wait_until_over();
-    assert_eq!(status.contributions.iter().map(|c| c.samples_per_pixel).sum::<u64>(), 3000);
+    assert_eq!(parts(&status).iter().map(|(_, samples)| samples).sum::<u64>(), 3000);
     assert_eq!(progressive.finish(), Some(expected(3000)));
 }
 
 /// A user changes their mind while the other backend is still being made.
 #[test]
 fn switching_back_calls_the_switch_off() {
-    let (made, is_made) = std::sync::mpsc::channel();
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
+    let (made, is_made) = channel();
+    let progressive = started_with(CPU, Plan::endless(), move |choice| {
         if *choice != CPU {
             std::thread::sleep(Duration::from_millis(50));
             made.send(()).unwrap();
         }
-        Ok(Box::new(Fake::new(choice.name())))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+        Box::new(Fake::new(choice.name()))
+    });
     wait_for(&progressive, 2);
     progressive.switch_backend(FAILING);
     progressive.switch_backend(CPU);
     is_made.recv_timeout(PATIENCE).unwrap();
     let samples = progressive.status().samples_per_pixel;
     wait_for(&progressive, samples + 2000);
-    let status = progressive.status();
-    let at_work: Vec<&str> = status.contributions.iter().map(|part| part.backend.name).collect();
-    assert_eq!(at_work, [CPU.name()]);
+    assert_eq!(parts(&stopped(progressive)).len(), 1);
 }
 
 #[test]
-fn a_pause_brings_home_what_the_device_holds() {
+fn a_pause_adds_what_the_device_holds() {
     let traced = Arc::new(Mutex::new(0));
     let count = Arc::clone(&traced);
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
+    // With short passes, samples accumulate while the test waits.
+    let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
+    let progressive = started_with(CPU, plan, move |choice| {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         let count = Arc::clone(&count);
         let add = move |range: &Range<u64>, _| *count.lock().unwrap() += range.end - range.start;
-        Ok(Box::new(Holding::new(fake, u32::MAX, add)))
-    }));
-    let mut progressive = progressive.unwrap();
-    // With short passes, samples accumulate while the test waits.
-    let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
-    progressive.start(RenderRequest::new(job(2), CPU, plan));
+        Box::new(Holding::new(fake, u32::MAX, add))
+    });
     for more in [64, 512] {
-        let begin = std::time::Instant::now();
         let first = *traced.lock().unwrap();
-        while *traced.lock().unwrap() < first + more {
-            assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
-            std::thread::sleep(PAUSE);
-        }
+        wait_until(&progressive, |_| *traced.lock().unwrap() >= first + more);
         progressive.pause();
-        while progressive.wait(Duration::from_millis(20)).phase != Phase::Paused {
-            assert!(begin.elapsed() < PATIENCE, "no pause: {:?}", progressive.status());
-        }
+        wait_until(&progressive, |status| status.phase == Phase::Paused);
         // All traced samples are in the film and are reported.
         let held = *traced.lock().unwrap();
         let status = progressive.status();
         assert_eq!((status.samples_per_pixel, status.stats.paths), (held, 4 * held));
         progressive.resume();
     }
-    progressive.stop();
-    let status = progressive.wait_until_over();
-    let held = *traced.lock().unwrap();
-    assert_eq!(status.samples_per_pixel, held);
-    assert_eq!(progressive.finish(), Some(expected(held)));
+    assert_eq!(stopped(progressive).samples_per_pixel, *traced.lock().unwrap());
+}
+
+/// A render of a film that holds samples.
+fn continued(film: Film, plan: Plan) -> Progressive {
+    let mut progressive = idle(usual);
+    progressive.start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, plan) });
+    progressive
 }
 
 #[test]
 fn a_film_goes_on_where_it_has_gaps() {
-    let mut film = job(2).new_film();
-    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
-    for range in [3..5, 10..30] {
-        fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
-    }
-    let mut progressive = Progressive::with_factory(factory()).unwrap();
-    progressive
-        .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(100)) });
+    let progressive = continued(film([3..5, 10..30]), Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
-    // The history covers only this render, since the film's earlier samples have no times.
-    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
-    assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
-    assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);
     assert_eq!(progressive.finish(), Some(expected(100)));
+
+    // Ten of the twelve samples 8..20 are new, and thirteen others stay.
+    let plan = |samples| Plan { first_sample: 8, ..Plan::samples(samples) };
+    let progressive = continued(film([0..3, 12..14, 1000..1010]), plan(20));
+    let status = progressive.wait_until_over();
+    assert_eq!((status.planned_samples_per_pixel, status.samples_per_pixel), (25, 25));
+    assert_eq!(parts(&status), [("cpu", 10)]);
+    // A longer plan begins where the first one did.
+    progressive.set_plan(plan(30));
+    wait_for(&progressive, 35);
+    assert_eq!(progressive.wait_until_over().planned_samples_per_pixel, 35);
+    assert_eq!(progressive.finish().unwrap().samples().to_string(), "0..3, 8..30, 1000..1010");
 }
 
-/// A point for each power of two that the film's samples have passed, even where they never are one.
 #[test]
-fn the_history_of_a_film_with_other_samples_misses_no_power_of_two() {
-    let mut film = job(2).new_film();
-    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
-    fake.accumulate(&job(2), 1000..1003, &mut film, &AtomicBool::new(false)).unwrap();
-    let mut progressive = Progressive::with_factory(factory()).unwrap();
-    progressive
-        .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(128)) });
-    let status = progressive.wait_until_over();
+fn a_film_that_needs_no_more_samples_needs_no_backend() {
+    for (stop, reason) in [
+        (Stop::at_samples(8), EndReason::Samples),
+        (Stop { seconds: Some(0.0), ..Stop::at_samples(9) }, EndReason::TimeLimit),
+    ] {
+        let mut progressive =
+            Progressive::with_factory(Box::new(|_| Err(BackendError::Gpu(GpuError::None)))).unwrap();
+        let request = RenderRequest::new(job(2), CPU, Plan::until(stop));
+        progressive.start(RenderRequest { film: Some(expected(8)), ..request });
+        let status = progressive.wait_until_over();
+        assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(reason), 8));
+        assert!(status.given_up.is_empty(), "{:?}", status.messages);
+        assert_eq!(progressive.finish(), Some(expected(8)));
+    }
+}
+
+/// A point for each power of two that the film's samples have passed, even where they never are one, with the time of
+/// its own samples.
+#[test]
+fn the_history_misses_no_power_of_two() {
+    let status = continued(film(std::iter::once(1000..1003)), Plan::samples(128)).wait_until_over();
     let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
     // The passes end at 2, 4, 8 ... of the plan, to which the film has 3 more.
     assert_eq!(history, [5, 11, 19, 35, 67, 131]);
-}
-
-/// A film that has samples before, in and behind those of the plan.
-#[test]
-fn what_is_planned_counts_the_samples_that_the_film_has_elsewhere() {
-    let mut film = job(2).new_film();
-    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
-    for range in [0..3, 12..14, 1000..1010] {
-        fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+    for point in &status.history {
+        let least = PAUSE.as_secs_f64() * (point.samples_per_pixel - 3) as f64;
+        assert!(point.trace_seconds >= least, "{point:?} before {least} s");
     }
-    let mut progressive = Progressive::with_factory(factory()).unwrap();
-    let plan = Plan { first_sample: 8, ..Plan::samples(20) };
-    progressive.start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, plan) });
-    let status = progressive.wait_until_over();
-    // Ten of the twelve samples 8..20 are new, and thirteen others stay.
-    assert_eq!((status.planned_samples_per_pixel, status.samples_per_pixel), (25, 25));
-    assert_eq!(status.contributions.iter().map(|part| part.samples_per_pixel).sum::<u64>(), 10);
-    // A longer plan begins where the first one did.
-    progressive.set_plan(Plan { first_sample: 8, ..Plan::samples(30) });
-    wait_for(&progressive, 35);
-    let status = progressive.wait_until_over();
-    assert_eq!((status.planned_samples_per_pixel, status.samples_per_pixel), (35, 35));
-    let film = progressive.finish().unwrap();
-    assert_eq!(film.samples().to_string(), "0..3, 8..30, 1000..1010");
-}
-
-#[test]
-fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
-    let progressive = started(CPU, Plan::samples(64));
-    progressive.wait_until_over();
-    assert_eq!(progressive.take_picture(), None);
-    let begin = std::time::Instant::now();
-    let picture = loop {
-        if let Some(picture) = progressive.take_picture() {
-            break picture;
-        }
-        assert!(begin.elapsed() < PATIENCE);
-        std::thread::sleep(Duration::from_millis(1));
-    };
-    assert_eq!(
-        (picture.width, picture.height, picture.samples_per_pixel, picture.rgb8.len()),
-        (2, 2, 64, 12)
-    );
-    let (sender, receiver) = std::sync::mpsc::channel();
-    progressive.inspect(move |film| sender.send(film.clone()).unwrap());
-    assert_eq!(receiver.recv_timeout(PATIENCE).unwrap(), expected(64));
-}
-
-/// Notes how many samples its passes have.
-struct Noting {
-    fake: Fake,
-    passes: Arc<Mutex<Vec<u64>>>,
-}
-
-impl Renderer for Noting {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.fake.prepare(job, cancel)
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.passes.lock().unwrap().push(range.end - range.start);
-        self.fake.accumulate(job, range, film, cancel)
-    }
-}
-
-#[test]
-fn the_history_has_each_power_of_two_once() {
-    let progressive = Progressive::with_factory(Box::new(|choice| {
-        // Passes stay at two samples.
-        Ok(Box::new(Fake { pause: Plan::INTERACTIVE_PASS / 2, ..Fake::new(choice.name()) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(12)));
-    let history = progressive.wait_until_over().history;
-    let samples: Vec<u64> = history.iter().map(|point| point.samples_per_pixel).collect();
-    assert_eq!(samples, [2, 4, 8]);
-}
-
-#[test]
-fn after_a_failure_passes_are_short_again() {
-    let passes = Arc::new(Mutex::new(Vec::new()));
-    let noted = Arc::clone(&passes);
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
-        if *choice == FAILING {
-            let pause = Duration::ZERO;
-            return Ok(Box::new(Fake { pause, fails_at: Some(1024), ..Fake::new(choice.name()) }));
-        }
-        Ok(Box::new(Noting { fake: Fake::new(choice.name()), passes: Arc::clone(&noted) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), FAILING, Plan::samples(2048)));
-    assert_eq!(progressive.wait_until_over().samples_per_pixel, 2048);
-    assert_eq!(passes.lock().unwrap()[0], 2);
+    assert_eq!(status.history.last().map(|point| point.trace_seconds), Some(status.trace.as_secs_f64()));
 }
 
 /// A pass of many samples by a fast backend can take a slow one minutes.
 #[test]
 fn another_backend_begins_with_short_passes() {
-    let passes = Arc::new(Mutex::new(Vec::new()));
-    let noted = Arc::clone(&passes);
-    let progressive = Progressive::with_factory(Box::new(move |choice| {
-        let pause = if *choice == CPU { Duration::ZERO } else { PAUSE };
-        let fake = Fake { pause, ..Fake::new(choice.name()) };
-        if *choice == CPU {
-            return Ok(Box::new(fake));
+    for fails in [false, true] {
+        let passes = Arc::new(Mutex::new(Vec::new()));
+        let noted = Arc::clone(&passes);
+        let progressive = started_with(CPU, Plan::endless(), move |choice| {
+            if *choice == CPU {
+                let fails_at = fails.then_some(4096);
+                return Box::new(Fake { pause: Duration::ZERO, fails_at, ..Fake::new("cpu") });
+            }
+            let noted = Arc::clone(&noted);
+            scripted("cpu", move |fake, range, film, cancel| {
+                noted.lock().unwrap().push(range.end - range.start);
+                fake.accumulate(&job(2), range, film, cancel)
+            })
+        });
+        wait_for(&progressive, 4096);
+        if !fails {
+            progressive.switch_backend(other_cpu());
         }
-        Ok(Box::new(Noting { fake, passes: Arc::clone(&noted) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
-    wait_for(&progressive, 4096);
-    progressive.switch_backend(other_cpu());
-    let begin = std::time::Instant::now();
-    while passes.lock().unwrap().len() < 4 {
-        assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
-        std::thread::sleep(PAUSE);
+        wait_until(&progressive, |_| passes.lock().unwrap().len() >= 4);
+        progressive.finish();
+        let passes = passes.lock().unwrap();
+        assert_eq!(passes[0], 2, "{passes:?}");
+        assert!(passes.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{passes:?}");
     }
-    progressive.finish();
-    let passes = passes.lock().unwrap();
-    assert_eq!(passes[0], 2, "{passes:?}");
-    assert!(passes.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{passes:?}");
+}
+
+#[test]
+fn a_renderer_that_is_given_is_used_and_kept_for_the_next_render() {
+    let made = Arc::new(Mutex::new(Vec::new()));
+    let noted = Arc::clone(&made);
+    let mut progressive = idle(move |choice| {
+        noted.lock().unwrap().push(choice.words());
+        Box::new(Fake::new(choice.name()))
+    });
+    let mut who = |request: RenderRequest| {
+        progressive.start(request);
+        parts(&progressive.wait_until_over())[0].0
+    };
+    let request = |choice| RenderRequest::new(job(2), choice, Plan::samples(4));
+    let renderer: Option<Box<dyn Renderer>> = Some(Box::new(Fake::new("given")));
+    assert_eq!(who(RenderRequest { renderer, ..request(CPU) }), "given");
+    assert_eq!(
+        [who(request(CPU)), who(request(other_cpu())), who(request(other_cpu()))],
+        ["given", "cpu", "cpu"]
+    );
+    assert_eq!(*made.lock().unwrap(), ["the CPU"], "only once");
+}
+
+#[test]
+fn a_watch_sees_the_render_and_ends_with_it() {
+    let mut progressive = idle(usual);
+    let mut looks = 0;
+    let status =
+        progressive.watch(RenderRequest::new(job(2), CPU, Plan::endless()), |progressive, status| {
+            looks += 1;
+            if status.samples_per_pixel >= 2 {
+                progressive.stop();
+            }
+        });
+    assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
+    assert!(looks >= 2 && status.samples_per_pixel >= 2, "{status:?}");
+    // A render whose film is taken away is over, too.
+    let status = progressive.watch(RenderRequest::new(job(2), CPU, Plan::endless()), |progressive, _| {
+        progressive.take_film();
+    });
+    assert_eq!((status.phase, status.run), (Phase::Idle, 2));
+}
+
+#[test]
+fn a_film_is_shown_when_asked_for_and_again_only_in_another_view() {
+    let mut progressive = started(CPU, Plan::samples(64));
+    progressive.wait_until_over();
+    assert_eq!(progressive.newest_picture(), None);
+    assert_eq!(picture(&progressive, 64).rgb8, expected(64).to_rgb8(Transfer::Gamma2));
+    progressive.ask_for_picture();
+    let (seen, is_seen) = channel();
+    progressive.inspect(move |film| seen.send(film.clone()).unwrap());
+    assert_eq!(is_seen.recv_timeout(PATIENCE).unwrap(), expected(64));
+    assert_eq!(progressive.newest_picture(), None);
+    let view = View::Luminance([-8.0, 4.0]);
+    progressive.set_view(view.clone());
+    assert_eq!(picture(&progressive, 64).rgb8, view.resolve(&expected(64), Transfer::Gamma2, None));
+    // A render that starts anew keeps the view.
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
+    progressive.wait_until_over();
+    let picture = picture(&progressive, 4);
+    assert_eq!(picture.run, 2);
+    assert_eq!(picture.rgb8, view.resolve(&expected(4), Transfer::Gamma2, None));
+}
+
+/// The first picture is worth the wait for what the device holds.
+#[test]
+fn the_first_picture_is_collected() {
+    let mut progressive = idle(|choice| Box::new(Holding::new(Fake::new(choice.name()), 1000, |_, _| ())));
+    progressive.ask_for_picture();
+    let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
+    progressive.start(RenderRequest::new(job(2), CPU, plan));
+    wait_for(&progressive, 2);
+    progressive.stop();
+    progressive.wait_until_over();
+    assert_eq!(progressive.newest_picture().map(|picture| picture.width), Some(2));
+}
+
+#[test]
+fn a_preview_is_smooth_and_its_first_pass_is_long_enough() {
+    let film = expected(4);
+    let transfer = Transfer::Gamma2;
+    let shown = |preview: Option<u64>, view: View| {
+        let progressive = started(CPU, Plan { preview, ..Plan::samples(4) });
+        progressive.set_view(view);
+        let first = progressive.wait_until_over().history[0].samples_per_pixel;
+        (picture(&progressive, 4).rgb8, first)
+    };
+    assert_ne!(film.smoothed().to_rgb8(transfer), film.to_rgb8(transfer), "there is noise to smooth");
+    assert_eq!(shown(Some(4), View::Picture), (film.smoothed().to_rgb8(transfer), 4));
+    assert_eq!(shown(None, View::Picture), (film.to_rgb8(transfer), 2));
+    assert_eq!(shown(Some(4), View::Exposed(1.0)).0, film.smoothed().exposed(transfer, 1.0));
+    // A heat map shows the noise that is there.
+    let view = View::Luminance([-8.0, 4.0]);
+    assert_eq!(shown(Some(4), view.clone()).0, view.resolve(&film, transfer, None));
+}
+
+#[test]
+fn the_status_describes_the_backend_at_work() {
+    const PREPARATION: Duration = Duration::from_millis(20);
+    let progressive = started_with(CPU, Plan::endless(), |choice| {
+        let (name, message) = (choice.name(), Some("a layer is too thin"));
+        Box::new(Fake { preparation: PREPARATION, message, ..Fake::new(name) })
+    });
+    wait_for(&progressive, 2);
+    let first = progressive.status();
+    assert!(first.prepare >= PREPARATION, "{first:?}");
+    progressive.switch_backend(FAILING);
+    wait_until(&progressive, |status| status.contributions.len() == 2);
+    let status = stopped(progressive);
+    assert!(status.prepare >= first.prepare + PREPARATION, "{status:?}");
+    let names = [first.backend, status.backend].map(|backend| backend.map(|backend| backend.name));
+    assert_eq!(names, [Some("cpu"), Some("reference")]);
+    assert_eq!(status.messages, ["a layer is too thin"], "only once");
+
+    // A backend can give up a thread during use.
+    let progressive = started_with(CPU, Plan::samples(8), |_| {
+        scripted("cpu", |fake, range, film, cancel| {
+            fake.threads += 1;
+            fake.accumulate(&job(2), range, film, cancel)
+        })
+    });
+    let status = progressive.wait_until_over();
+    assert!(status.backend.is_some_and(|backend| backend.threads > 1));
+}
+
+#[test]
+fn rejected_samples_and_the_occupancy_of_tiles_are_reported() {
+    let tiles = TileOccupancy { side: 1, columns: 2, tiles: vec![[1, 4], [2, 4], [3, 4], [4, 4]] };
+    let own = tiles.clone();
+    let progressive = started_with(CPU, Plan::samples(8), move |_| {
+        let pass = |_: &mut Fake, range: Range<u64>, film: &mut Film, _: &_| {
+            let rejected = range.end - range.start;
+            film.record(range, rejected)?;
+            Ok(Stats { rejected, ..Stats::default() })
+        };
+        let fake = Fake { tiles: Some(own.clone()), ..Fake::new("cpu") };
+        Box::new(super::common::Scripted { fake, pass })
+    });
+    progressive.set_view(View::Occupancy);
+    let status = progressive.wait_until_over();
+    assert_eq!((status.rejected_samples, status.stats.rejected), (8, 8));
+    let shown = View::Occupancy.resolve(&job(2).new_film(), Transfer::Gamma2, Some(&tiles));
+    assert_eq!(picture(&progressive, 8).rgb8, shown);
 }

@@ -1,16 +1,24 @@
 //! What ends a render, pauses it, or starts another.
 
-use super::common::{CPU, Fake, PATIENCE, expected, job, started, wait_for, wait_until};
+use super::common::{
+    CPU, FAILING, Fake, PATIENCE, expected, idle, job, other_cpu, scripted, settled, started, started_with,
+    stopped, usual, wait_for, wait_until,
+};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
-use weekender::backends::{BackendChoice, BackendError};
 use weekender::film::{Film, PixelSum};
-use weekender::progressive::{
-    EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Status, Stop,
-};
+use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+
+fn to_noise(noise: f64) -> Plan {
+    Plan::until(Stop { noise: Some(noise), ..Stop::default() })
+}
+
+fn samples_of_history(status: &Status) -> Vec<u64> {
+    status.history.iter().map(|point| point.samples_per_pixel).collect()
+}
 
 #[test]
 fn a_plan_of_samples_is_met_exactly() {
@@ -18,47 +26,46 @@ fn a_plan_of_samples_is_met_exactly() {
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     assert_eq!((status.samples_per_pixel, status.stats.paths), (200, 800));
-    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
-    assert_eq!(history, [2, 4, 8, 16, 32, 64, 128]);
+    assert_eq!(samples_of_history(&status), [2, 4, 8, 16, 32, 64, 128]);
     assert_eq!(progressive.finish(), Some(expected(200)));
-}
-
-/// The samples in the film at the end of each pass that reaches another power of two.
-fn history(trial: Option<[Duration; 2]>, plan: Plan) -> Vec<u64> {
-    let factory = move |choice: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
-        Ok(Box::new(Fake { trial, pause: Duration::ZERO, ..Fake::new(choice.name()) }))
-    };
-    let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, plan));
-    let status = progressive.wait_until_over();
-    assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
-    status.history.iter().map(|point| point.samples_per_pixel).collect()
 }
 
 #[test]
 fn the_first_pass_is_as_long_as_the_others_where_nobody_watches() {
-    let trial = |milliseconds| Some([Duration::from_millis(milliseconds); 2]);
+    /// The samples in the film at the end of each pass that reaches another power of two.
+    fn history(trial: Option<[u64; 2]>, plan: Plan) -> Vec<u64> {
+        let trial = trial.map(|times| times.map(Duration::from_millis));
+        let progressive = started_with(CPU, plan, move |choice| {
+            Box::new(Fake { trial, pause: Duration::ZERO, ..Fake::new(choice.name()) })
+        });
+        let status = progressive.wait_until_over();
+        assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
+        samples_of_history(&status)
+    }
     let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
     let samples = batch(Stop::at_samples(200));
-    let doubling = [2, 4, 8, 16, 32, 64, 128];
-    // 900 ms have room for 900, 90 and 9 samples, and for less than the two that a pass has at least.
-    assert_eq!(history(trial(1), samples.clone()), [128]);
-    assert_eq!(history(trial(10), samples.clone()), [64, 128]);
-    assert_eq!(history(trial(100), samples.clone()), [8, 16, 32, 64, 128]);
-    assert_eq!(history(trial(10_000), samples.clone()), doubling);
-    assert_eq!(history(Some([Duration::ZERO; 2]), samples.clone()), [128]);
-    // A quick trial suffices if there is room for all samples even at a quarter of its speed.
-    let two_trials = |quick, thorough| Some([quick, thorough].map(Duration::from_millis));
-    assert_eq!(history(two_trials(1, 100), samples.clone()), [128]);
-    assert_eq!(history(two_trials(2, 100), samples.clone()), [8, 16, 32, 64, 128]);
-    assert_eq!(history(None, samples), doubling, "the renderer cannot tell");
-    assert_eq!(history(trial(1), Plan::samples(200)), doubling, "someone watches");
+    let doubling = &[2, 4, 8, 16, 32, 64, 128][..];
+    // 900 ms have room for 900, 90 and 9 samples, and for less than the two that a pass has at least. A quick trial
+    // suffices if there is room for all samples even at a quarter of its speed.
+    for (trial, expected) in [
+        (Some([1, 1]), &[128][..]),
+        (Some([10, 10]), &[64, 128]),
+        (Some([100, 100]), &[8, 16, 32, 64, 128]),
+        (Some([10_000, 10_000]), doubling),
+        (Some([0, 0]), &[128]),
+        (Some([1, 100]), &[128]),
+        (Some([2, 100]), &[8, 16, 32, 64, 128]),
+        (None, doubling),
+    ] {
+        assert_eq!(history(trial, samples.clone()), expected, "{trial:?}");
+    }
+    assert_eq!(history(Some([1, 1]), Plan::samples(200)), doubling, "someone watches");
     // Of a time limit the first pass takes no more than there is: 20 samples.
     let in_time = batch(Stop { seconds: Some(0.2), ..Stop::at_samples(200) });
-    assert_eq!(history(trial(10), in_time)[0], 16);
+    assert_eq!(history(Some([10, 10]), in_time)[0], 16);
     // It must not go far beyond a noise target.
-    let target = Stop { noise: Some(expected(64).error().unwrap().rmse), ..Stop::default() };
-    assert_eq!(history(trial(1), batch(target))[..4], [2, 4, 8, 16]);
+    let target = to_noise(expected(64).error().unwrap().rmse).stop;
+    assert_eq!(history(Some([1, 1]), batch(target))[..4], [2, 4, 8, 16]);
 }
 
 #[test]
@@ -78,12 +85,18 @@ fn pauses_lose_nothing() {
 }
 
 #[test]
-fn the_time_limit_ends_it_with_at_least_one_pass() {
-    for limit in [1e-9, 0.1] {
-        let progressive = started(CPU, Plan::until(Stop { seconds: Some(limit), ..Stop::default() }));
+fn the_time_limit_includes_preparation_but_at_least_one_pass_is_rendered() {
+    let preparation = Duration::from_millis(100);
+    for (limit, preparation) in [(1e-9, Duration::ZERO), (0.1, Duration::ZERO), (0.05, preparation)] {
+        let plan = Plan::until(Stop { seconds: Some(limit), ..Stop::default() });
+        let progressive =
+            started_with(CPU, plan, move |choice| Box::new(Fake { preparation, ..Fake::new(choice.name()) }));
         let status = progressive.wait_until_over();
         assert_eq!(status.phase, Phase::Done(EndReason::TimeLimit));
         assert!(status.samples_per_pixel >= 2 && status.elapsed < Duration::from_secs(5), "{status:?}");
+        if limit != 0.1 {
+            assert_eq!(status.samples_per_pixel, 2, "only the first pass");
+        }
         assert_eq!(progressive.finish(), Some(expected(status.samples_per_pixel)));
     }
 }
@@ -91,11 +104,13 @@ fn the_time_limit_ends_it_with_at_least_one_pass() {
 #[test]
 fn the_noise_target_ends_it() {
     let target = expected(64).error().unwrap().rmse;
-    let progressive = started(CPU, Plan::until(Stop { noise: Some(target), ..Stop::default() }));
+    let progressive = started(CPU, to_noise(target));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert!(status.error.unwrap().rmse <= target);
     assert_eq!(status.error, progressive.finish().unwrap().error());
+    // The first samples already meet this target, but their estimate is too rough to be trusted.
+    assert_eq!(started(CPU, to_noise(1e9)).wait_until_over().samples_per_pixel, 16);
 }
 
 /// Adds samples of this value to every pixel, with `is_late` each pass when the next one comes or is waited for, as a GPU
@@ -149,12 +164,9 @@ impl Renderer for Valued {
 
 /// A render of up to 256 samples of this value that ends at an error of .01.
 fn ended(value: fn(u64) -> u64, is_late: bool) -> (Status, Film) {
-    let factory = move |_: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
-        Ok(Box::new(Valued { value, is_late, held: None }))
-    };
-    let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
     let stop = Stop { noise: Some(0.01), ..Stop::at_samples(256) };
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::until(stop)));
+    let progressive =
+        started_with(CPU, Plan::until(stop), move |_| Box::new(Valued { value, is_late, held: None }));
     (progressive.wait_until_over(), progressive.finish().unwrap())
 }
 
@@ -171,7 +183,7 @@ fn a_picture_without_light_meets_no_noise_target() {
 }
 
 #[test]
-fn samples_that_come_late_are_heard_before_a_noise_target_ends_it() {
+fn samples_that_come_late_count_before_a_noise_target_ends_it() {
     let (status, _) = ended(|index| if index < 16 { 1 << 24 } else { (1 - index % 2) << 25 }, true);
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
     assert!(status.error.unwrap().rmse > 0.01);
@@ -182,23 +194,10 @@ fn samples_that_come_late_are_heard_before_a_noise_target_ends_it() {
 /// At the end, the error is that of all samples, even if estimates take so long that none is due.
 #[test]
 fn the_error_at_the_end_is_that_of_the_whole_film() {
-    let mut progressive = Progressive::with_factory(Box::new(|choice| {
-        Ok(Box::new(Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) }))
-    }))
-    .unwrap();
+    let mut progressive = idle(|choice| Box::new(Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) }));
     progressive.start(RenderRequest::new(job(16_384), CPU, Plan::samples(6)));
     let status = progressive.wait_until_over();
     assert_eq!(status.error, progressive.finish().unwrap().error());
-}
-
-/// The first samples already meet this target, but their estimate is too rough to be trusted.
-#[test]
-fn a_noise_target_is_not_looked_at_before_its_first_samples() {
-    let progressive =
-        started(CPU, Plan { stop: Stop { noise: Some(1e9), ..Stop::default() }, ..Plan::endless() });
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
-    assert_eq!((status.samples_per_pixel, NOISE_TARGET_FIRST_SAMPLES), (16, 16));
 }
 
 #[test]
@@ -206,8 +205,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
     let progressive = started(CPU, Plan::samples(2000));
     wait_for(&progressive, 8);
     progressive.stop();
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
+    assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Stopped));
     progressive.resume();
     wait_until(&progressive, |status| status.phase == Phase::Done(EndReason::Samples));
     progressive.set_plan(Plan::samples(2100));
@@ -218,11 +216,9 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
 
 #[test]
 fn a_stop_during_a_pass_leaves_what_was_there_before_it() {
-    let factory = |choice: &BackendChoice| -> Result<Box<dyn Renderer>, BackendError> {
-        Ok(Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) }))
-    };
-    let mut progressive = Progressive::with_factory(Box::new(factory)).unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+    let progressive = started_with(CPU, Plan::endless(), |choice| {
+        Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) })
+    });
     wait_for(&progressive, 2);
     // A render that goes on can be stopped again.
     for _ in 0..2 {
@@ -232,18 +228,12 @@ fn a_stop_during_a_pass_leaves_what_was_there_before_it() {
         progressive.resume();
         wait_until(&progressive, |status| status.phase == Phase::Tracing);
     }
-    progressive.stop();
-    progressive.wait_until_over();
-    assert_eq!(progressive.finish(), Some(expected(2)));
+    stopped(progressive);
 }
 
 #[test]
 fn a_new_job_takes_over_in_the_middle_of_a_pass() {
-    let mut progressive = Progressive::with_factory(Box::new(|_| {
-        let pause = Duration::from_millis(1);
-        Ok(Box::new(Fake { pause, ..Fake::new("cpu") }))
-    }))
-    .unwrap();
+    let mut progressive = idle(|_| Box::new(Fake { pause: Duration::from_millis(1), ..Fake::new("cpu") }));
     progressive.start(RenderRequest::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
     wait_for(&progressive, 16);
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
@@ -252,56 +242,25 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     assert_eq!(progressive.finish(), Some(expected(4)));
 }
 
-#[test]
-fn abandoned_work_leaves_nothing() {
-    let mut progressive = started(CPU, Plan::endless());
-    wait_for(&progressive, 2);
-    progressive.abandon();
-    assert_eq!(progressive.wait_until_over().phase, Phase::Idle);
-    assert_eq!(progressive.finish(), None);
-}
-
-/// A pass of it ends only when it is cancelled; `ended` is told whether it was.
-struct Endless {
-    begun: Sender<()>,
-    ended: Sender<bool>,
-}
-
-impl Renderer for Endless {
-    fn info(&self) -> BackendInfo {
-        Fake::new("cpu").info()
+/// Says that it begins, waits until it is cancelled, and says whether it was.
+fn until_cancelled(begun: &Sender<()>, ended: &Sender<bool>, cancel: &AtomicBool) -> RenderError {
+    let _ = begun.send(());
+    let begin = Instant::now();
+    while !cancel.load(Ordering::Relaxed) && begin.elapsed() < PATIENCE {
+        std::thread::yield_now();
     }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        _: &RenderJob,
-        _: Range<u64>,
-        _: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        let _ = self.begun.send(());
-        let begin = Instant::now();
-        while !cancel.load(Ordering::Relaxed) && begin.elapsed() < PATIENCE {
-            std::thread::yield_now();
-        }
-        let _ = self.ended.send(cancel.load(Ordering::Relaxed));
-        Err(RenderError::Cancelled)
-    }
+    let _ = ended.send(cancel.load(Ordering::Relaxed));
+    RenderError::Cancelled
 }
 
 #[test]
 fn abandoning_and_dropping_cancel_the_pass() {
     for is_dropped in [false, true] {
         let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
-        let progressive = Progressive::with_factory(Box::new(move |_| {
-            Ok(Box::new(Endless { begun: begun.clone(), ended: ended.clone() }))
-        }));
-        let mut progressive = progressive.unwrap();
-        progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+        let mut progressive = started_with(CPU, Plan::endless(), move |_| {
+            let (begun, ended) = (begun.clone(), ended.clone());
+            scripted("cpu", move |_, _, _, cancel| Err(until_cancelled(&begun, &ended, cancel)))
+        });
         has_begun.recv_timeout(PATIENCE).unwrap();
         if is_dropped {
             drop(progressive);
@@ -314,10 +273,12 @@ fn abandoning_and_dropping_cancel_the_pass() {
     }
 }
 
-/// The first time, it prepares until it is cancelled.
+/// Prepares until it is cancelled, as often as this, and then works.
 struct SlowToPrepare {
     fake: Fake,
-    begun: Option<Sender<()>>,
+    times: u32,
+    begun: Sender<()>,
+    ended: Sender<bool>,
 }
 
 impl Renderer for SlowToPrepare {
@@ -326,13 +287,13 @@ impl Renderer for SlowToPrepare {
     }
 
     fn prepare(&mut self, _: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        let Some(begun) = self.begun.take() else { return Ok(()) };
-        begun.send(()).unwrap();
-        let begin = Instant::now();
-        while !cancel.load(Ordering::Relaxed) && begin.elapsed() < PATIENCE {
-            std::thread::yield_now();
+        match self.times.checked_sub(1) {
+            None => Ok(()),
+            Some(left) => {
+                self.times = left;
+                Err(until_cancelled(&self.begun, &self.ended, cancel))
+            }
         }
-        if cancel.load(Ordering::Relaxed) { Err(RenderError::Cancelled) } else { Ok(()) }
     }
 
     fn accumulate(
@@ -349,12 +310,15 @@ impl Renderer for SlowToPrepare {
 
 #[test]
 fn a_stop_does_not_wait_for_preparation() {
-    let (begun, has_begun) = channel();
-    let mut progressive = Progressive::with_factory(Box::new(move |_| {
-        Ok(Box::new(SlowToPrepare { fake: Fake::new("cpu"), begun: Some(begun.clone()) }))
-    }))
-    .unwrap();
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(8)));
+    let ((begun, has_begun), (ended, _has_ended)) = (channel(), channel());
+    let progressive = started_with(CPU, Plan::samples(8), move |_| {
+        Box::new(SlowToPrepare {
+            fake: Fake::new("cpu"),
+            times: 1,
+            begun: begun.clone(),
+            ended: ended.clone(),
+        })
+    });
     has_begun.recv_timeout(PATIENCE).unwrap();
     progressive.stop();
     let status = progressive.wait_until_over();
@@ -366,25 +330,113 @@ fn a_stop_does_not_wait_for_preparation() {
 }
 
 #[test]
-fn a_preparation_that_was_cancelled_can_begin_again() {
-    let mut renderer = weekender::backends::create(&CPU).unwrap();
-    let outcome = renderer.prepare(&job(2), &AtomicBool::new(true));
-    assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
-    assert_eq!(renderer.kernel(), "");
-    renderer.prepare(&job(2), &AtomicBool::new(false)).unwrap();
-    assert_ne!(renderer.kernel(), "");
+fn nobody_waits_for_a_preparation_whose_render_is_abandoned() {
+    for (is_pending, is_followed) in [(false, false), (false, true), (true, false), (true, true)] {
+        let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
+        let mut progressive = idle(move |choice| {
+            let (begun, ended) = (begun.clone(), ended.clone());
+            let times = if *choice == FAILING { u32::MAX } else { 0 };
+            Box::new(SlowToPrepare { fake: Fake::new(choice.name()), times, begun, ended })
+        });
+        if is_pending {
+            progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+            wait_for(&progressive, 2);
+            progressive.switch_backend(FAILING);
+        } else {
+            progressive.start(RenderRequest::new(job(2), FAILING, Plan::samples(4)));
+        }
+        has_begun.recv_timeout(PATIENCE).unwrap();
+        if is_followed {
+            progressive.start(RenderRequest::new(job(2), other_cpu(), Plan::samples(4)));
+            assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
+            assert_eq!(progressive.finish(), Some(expected(4)));
+        } else {
+            progressive.abandon();
+            wait_until(&progressive, |status| status.phase == Phase::Idle);
+            assert_eq!(progressive.finish(), None);
+        }
+        assert_eq!(has_ended.recv_timeout(PATIENCE), Ok(true), "pending: {is_pending}");
+    }
+}
+
+type Ask = fn(&Progressive);
+
+const PAUSE: Ask = Progressive::pause;
+const RESUME: Ask = Progressive::resume;
+const STOP: Ask = Progressive::stop;
+
+/// Sends these requests; the phase and the samples must stay as they are.
+fn changes_nothing(progressive: &Progressive, requests: &[Ask]) {
+    let before = settled(progressive);
+    for (number, ask) in requests.iter().enumerate() {
+        ask(progressive);
+        let after = settled(progressive);
+        assert_eq!((after.phase, after.run), (before.phase.clone(), before.run), "request {number}");
+        assert_eq!(after.samples_per_pixel, before.samples_per_pixel, "request {number}");
+    }
+}
+
+/// A render without an end that was paused after some samples, and their number.
+fn paused() -> (Progressive, u64) {
+    let progressive = started(CPU, Plan::endless());
+    wait_for(&progressive, 2);
+    progressive.pause();
+    let status = settled(&progressive);
+    assert_eq!(status.phase, Phase::Paused);
+    (progressive, status.samples_per_pixel)
 }
 
 #[test]
-fn the_time_limit_includes_preparation() {
-    const PREPARATION: Duration = Duration::from_millis(100);
-    let progressive = Progressive::with_factory(Box::new(|choice| {
-        Ok(Box::new(Fake { preparation: PREPARATION, ..Fake::new(choice.name()) }))
-    }));
-    let mut progressive = progressive.unwrap();
-    let stop = Stop { seconds: Some(PREPARATION.as_secs_f64() / 2.0), ..Stop::default() };
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::until(stop)));
-    let status = progressive.wait_until_over();
-    assert_eq!(status.phase, Phase::Done(EndReason::TimeLimit));
-    assert_eq!(status.samples_per_pixel, 2, "only the first pass, which is always rendered");
+fn a_paused_render_can_be_stopped_taken_abandoned_or_get_another_plan() {
+    let (progressive, held) = paused();
+    changes_nothing(&progressive, &[PAUSE]);
+    progressive.stop();
+    let status = settled(&progressive);
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Stopped), held));
+    assert_eq!(status.error, expected(held).error());
+    changes_nothing(&progressive, &[PAUSE, STOP]);
+    progressive.resume();
+    wait_for(&progressive, held + 2);
+    stopped(progressive);
+
+    let (progressive, held) = paused();
+    progressive.set_plan(Plan::samples(held + 8));
+    let status = settled(&progressive);
+    assert_eq!((status.phase, status.samples_per_pixel), (Phase::Paused, held));
+    assert_eq!(status.planned_samples_per_pixel, held + 8);
+    progressive.resume();
+    assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
+    assert_eq!(progressive.finish(), Some(expected(held + 8)));
+
+    let (progressive, held) = paused();
+    assert_eq!(progressive.take_film(), Some(expected(held)));
+    assert_eq!(progressive.status().phase, Phase::Idle);
+    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
+
+    let (mut progressive, _) = paused();
+    progressive.abandon();
+    assert_eq!(settled(&progressive).phase, Phase::Idle);
+    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
+    assert_eq!(progressive.finish(), None);
+}
+
+#[test]
+fn requests_out_of_season_change_nothing() {
+    let mut progressive = idle(usual);
+    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
+    assert_eq!(progressive.status(), Status::default());
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(8)));
+    assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
+    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
+    assert_eq!(progressive.take_film(), Some(expected(8)));
+    assert_eq!(
+        (progressive.take_film(), progressive.status().phase),
+        (None, Phase::Done(EndReason::Samples))
+    );
+
+    let failing = started_with(other_cpu(), Plan::samples(100), |choice| {
+        Box::new(Fake { fails_at: Some(8), ..Fake::new(choice.name()) })
+    });
+    assert!(matches!(failing.wait_until_over().phase, Phase::Failed(_)));
+    changes_nothing(&failing, &[PAUSE, RESUME, STOP]);
 }

@@ -1,65 +1,28 @@
 //! Several renderers at work on one film, of which some fail.
 
-use super::common::{Fake, Forgetful, Spoiling, Waiting, expected, job};
+use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::channel;
 use weekender::backends::Together;
-use weekender::render::{BackendInfo, RenderError, Renderer};
+use weekender::film::Film;
+use weekender::render::{BackendInfo, RenderError, Renderer, Stats};
 
-#[test]
-fn a_member_that_spoils_its_film_leaves_all_its_samples_to_the_others() {
-    let (spoilt, is_spoilt) = channel();
-    // The other member takes the rest only once the film is spoilt.
-    let cpu = Waiting { fake: Fake::new("cpu"), signal: Some(is_spoilt) };
-    let gpu = Spoiling { spoilt: Some(spoilt), ..Spoiling::new("gpu") };
-    let mut together = Together::new(vec![Box::new(cpu), Box::new(gpu)]);
+fn fake(name: &'static str, fails_at: Option<u64>) -> Box<dyn Renderer> {
+    Box::new(Fake { fails_at, ..Fake::new(name) })
+}
+
+/// The film of 64 samples and who added how many of them.
+fn rendered(together: &mut Together) -> (Film, Vec<(&'static str, u64)>) {
     let mut film = job(2).new_film();
     together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    assert!(film == expected(64));
-    let credits: Vec<_> =
-        together.credits(64).into_iter().map(|(info, samples)| (info.name, samples)).collect();
-    assert_eq!(credits, [("cpu", 64)]);
-}
-
-#[test]
-fn a_pass_that_is_cancelled_says_so() {
-    let mut together = Together::new(vec![Box::new(Fake::new("cpu")), Box::new(Fake::new("gpu"))]);
-    let mut film = job(2).new_film();
-    let outcome = together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(true));
-    assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
-    assert!(film == job(2).new_film());
-}
-
-#[test]
-fn when_every_member_has_failed_none_is_left() {
-    let fake = |name| -> Box<dyn Renderer> { Box::new(Fake { fails_at: Some(0), ..Fake::new(name) }) };
-    let mut together = Together::new(vec![fake("cpu"), fake("gpu")]);
-    let mut film = job(2).new_film();
-    let outcome = together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false));
-    assert!(matches!(outcome, Err(RenderError::Backend { .. })), "{outcome:?}");
-    assert!(film == job(2).new_film());
-    let nobody = BackendInfo { name: "none", device: String::new(), lanes: 0, threads: 0 };
-    assert_eq!(together.info(), nobody);
-}
-
-#[test]
-fn a_member_that_adds_nothing_is_left_out() {
-    let mut together = Together::new(vec![Box::new(Forgetful), Box::new(Fake::new("gpu"))]);
-    let mut film = job(2).new_film();
-    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
-    assert!(film == expected(64));
-    let lost = "cpu failed: it did not add the samples that it was to trace";
-    assert_eq!(together.take_messages(), [format!("{lost}; gpu continues the same picture")]);
-    assert_eq!(together.info().name, "gpu");
-
-    let mut together = Together::new(vec![Box::new(Forgetful)]);
-    let outcome = together.accumulate(&job(2), 0..64, &mut job(2).new_film(), &AtomicBool::new(false));
-    assert_eq!(outcome.unwrap_err().to_string(), lost);
+    (film, together.credits(64).into_iter().map(|(info, samples)| (info.name, samples)).collect())
 }
 
 #[test]
 fn members_add_up_what_they_have_traced() {
-    let mut together = Together::new(vec![Box::new(Fake::new("cpu")), Box::new(Fake::new("gpu"))]);
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", None)]);
+    let BackendInfo { name, threads, .. } = together.info();
+    assert_eq!((name, threads), ("cpu,gpu", 2));
     let mut film = job(2).new_film();
     for range in [0..30, 30..30, 30..64] {
         let samples = range.end - range.start;
@@ -71,5 +34,61 @@ fn members_add_up_what_they_have_traced() {
     assert!(film == expected(64));
     let again = together.accumulate(&job(2), 60..66, &mut film, &AtomicBool::new(false));
     assert!(matches!(again, Err(RenderError::Film(_))), "{again:?}");
+    let cancelled = together.accumulate(&job(2), 64..66, &mut film, &AtomicBool::new(true));
+    assert!(matches!(cancelled, Err(RenderError::Cancelled)), "{cancelled:?}");
     assert!(film == expected(64));
+}
+
+#[test]
+fn a_member_that_fails_leaves_its_samples_to_the_others() {
+    // One has a share until it fails, but not if it fails before its first sample.
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(48))]);
+    let (film, credits) = rendered(&mut together);
+    assert!(film == expected(64));
+    assert_eq!(credits.iter().map(|(_, samples)| samples).sum::<u64>(), 64);
+    for broken in [
+        fake("gpu", Some(0)),
+        Box::new(Fake { panics_at: Some(0), ..Fake::new("gpu") }),
+        scripted("gpu", |_, _, _, _| Ok(Stats::default())),
+    ] {
+        let mut together = Together::new(vec![fake("cpu", None), broken]);
+        let (film, credits) = rendered(&mut together);
+        assert!(film == expected(64));
+        assert_eq!(credits, [("cpu", 64)]);
+        let said = together.take_messages();
+        assert!(
+            said.len() == 1 && said[0].starts_with("gpu failed") && said[0].contains("cpu continues"),
+            "{said:?}"
+        );
+        assert_eq!(together.info().name, "cpu");
+    }
+}
+
+#[test]
+fn a_member_that_spoils_its_film_leaves_all_its_samples_to_the_others() {
+    let (spoilt, is_spoilt) = channel();
+    // The other member takes the rest only once the film is spoilt.
+    let mut signal = Some(is_spoilt);
+    let cpu = scripted("cpu", move |fake, range, film, cancel| {
+        if let Some(signal) = signal.take() {
+            signal.recv_timeout(PATIENCE).unwrap();
+        }
+        fake.accumulate(&job(2), range, film, cancel)
+    });
+    let gpu = spoiling("gpu", move || spoilt.send(()).unwrap());
+    let (film, credits) = rendered(&mut Together::new(vec![cpu, gpu]));
+    assert!(film == expected(64));
+    assert_eq!(credits, [("cpu", 64)]);
+}
+
+#[test]
+fn when_every_member_has_failed_the_film_is_unchanged() {
+    for members in [vec![fake("cpu", Some(0)), fake("gpu", Some(0))], vec![forgetful()]] {
+        let mut together = Together::new(members);
+        let mut film = job(2).new_film();
+        let outcome = together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false));
+        assert!(matches!(outcome, Err(RenderError::Backend { .. })), "{outcome:?}");
+        assert!(film == job(2).new_film());
+        assert_eq!(together.info().name, "none");
+    }
 }

@@ -14,7 +14,7 @@ use weekender::render_gpu::Exported;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::sampling::{SampleBlock, pcg4d};
 use weekender::scene::{Camera, Material, Scene};
-use weekender::stages::{Shading, Stage};
+use weekender::stages::Stage;
 use weekender::web;
 
 /// Random numbers that are the same in each run.
@@ -225,17 +225,6 @@ fn buffers_are_those_of_the_program() {
 }
 
 #[test]
-fn a_stage_begins_with_its_own_settings() {
-    let data = data_of(Stage::ALL);
-    for Stage { id, setup, .. } in Stage::ALL {
-        let told = &data["stages"][*id];
-        assert_eq!([&told["width"], &told["height"]], [setup.width, setup.height], "{id}");
-        assert_eq!(told["samples"], setup.samples_per_pixel, "{id}");
-        assert_eq!(told["depth"], setup.max_depth, "{id}");
-    }
-}
-
-#[test]
 fn blocks_hold_each_sample_once() {
     let wishes = [(1_u32, 128_u32), (2, 128), (3, 1), (200, 128), (500, 7), (4096, 128), (1000, 1000)];
     let input = json!({ "data": data_of(&[]), "blocks": wishes });
@@ -307,30 +296,5 @@ fn a_page_can_hold_data_and_script() {
         let size = stage.to_string().len();
         let limit = if id == "book" { 70_000 } else { 4_000 };
         assert!(size < limit, "{id} takes {size} bytes");
-    }
-}
-
-/// What a stage has no use for is not offered.
-#[test]
-fn sliders_fit_their_stages() {
-    let data = data_of(Stage::ALL);
-    for stage in Stage::ALL {
-        let sliders = data["stages"][stage.id]["sliders"].as_array().unwrap();
-        let has = |key: &str| sliders.iter().any(|slider| slider["key"] == key);
-        let shading = stage.setup.rules.shading;
-        assert_eq!(has("vfov"), shading != Shading::ImageGradient, "{}", stage.id);
-        assert_eq!(has("samples"), stage.setup.samples_per_pixel > 1, "{}", stage.id);
-        let scene = (stage.setup.scene)();
-        let has_bounces = shading == Shading::Path && !scene.spheres.is_empty();
-        assert_eq!(has("depth"), has_bounces, "{}", stage.id);
-        let is_used = |kind: &str| scene.materials.iter().any(|named| named.material.kind() == kind);
-        assert_eq!(has("fuzz"), is_used("metal"), "{}", stage.id);
-        // Of many metals, that of the largest sphere has a slider.
-        let metals = scene.spheres.iter().filter(|sphere| scene.material_of(sphere).kind() == "metal");
-        if let Some(largest) = metals.max_by(|a, b| a.radius.total_cmp(&b.radius)) {
-            let label = format!("Fuzz ({})", scene.materials[largest.material].name);
-            assert!(sliders.iter().any(|slider| slider["label"] == label.as_str()), "{}: {label}", stage.id);
-        }
-        assert_eq!(has("index"), is_used("dielectric"), "{}", stage.id);
     }
 }

@@ -10,7 +10,7 @@ pub fn url(page: &Path, stage: Option<&Stage>) -> String {
     let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
     let path = path.replace(' ', "%20").replace('\\', "/");
     let shows = |stage: &Stage| {
-        let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage == stage);
+        let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage() == stage);
         Figure::ALL.iter().find(has_stage)
     };
     let anchor = stage.and_then(shows).map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
@@ -30,7 +30,7 @@ mod tests {
             let url = url(page, Some(stage));
             let id = url.strip_prefix(begin).unwrap().strip_prefix("#figure-").unwrap();
             let figure = Figure::ALL.iter().find(|figure| figure.id == id).unwrap();
-            assert!(figure.panels.iter().any(|panel| panel.stage.id == stage.id), "{url}: {}", stage.id);
+            assert!(figure.panels.iter().any(|panel| panel.stage().id == stage.id), "{url}: {}", stage.id);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::app::answers::Answer;
 use crate::film::Description;
-use crate::gallery::{Fingerprints, is_about_pixels};
+use crate::gallery::{fingerprint, is_about_pixels};
 use crate::output::{read_rgb8, write_image};
 use crate::recipe::Recipe;
 use crate::render::Renderer;
@@ -54,7 +54,7 @@ pub(super) fn begin(request: Request) -> io::Result<()> {
 fn work(request: Request) -> Result<()> {
     let Request { answers, scale, directory, alive } = request;
     let directory = directory.map(|directory| directory.join("thumbnails"));
-    let mut maker = Maker::open(scale)?;
+    let mut maker = Maker::new(scale);
     for (stage, answer) in answers {
         if alive.strong_count() == 0 {
             break;
@@ -68,25 +68,21 @@ fn work(request: Request) -> Result<()> {
 
 struct Maker {
     scale: u32,
-    fingerprints: Fingerprints,
     /// Started with the first picture that is not in the cache.
     renderer: Option<CpuRenderer>,
     rendered: usize,
 }
 
 impl Maker {
-    fn open(scale: u32) -> Result<Self> {
-        Ok(Maker { scale, fingerprints: Fingerprints::new()?, renderer: None, rendered: 0 })
+    fn new(scale: u32) -> Self {
+        Maker { scale, renderer: None, rendered: 0 }
     }
 
     /// The size and the bytes of a stage's picture. It is rendered unless `directory` has it.
     fn picture(&mut self, stage: &Stage, directory: Option<&Path>) -> Result<([u32; 2], Vec<u8>)> {
         let recipe = recipe(stage, self.scale);
         let size = [recipe.settings.width, recipe.settings.height];
-        let place = match directory {
-            Some(directory) => Some(KeptFile::of(directory, &recipe, &self.fingerprints.of(&recipe)?)),
-            None => None,
-        };
+        let place = directory.map(|directory| KeptFile::of(directory, &recipe, &fingerprint(&recipe)));
         if let Some(place) = &place
             && let Ok((found, rgb8)) = read_rgb8(&place.path)
             && found == size

@@ -1,14 +1,69 @@
 //! The backends of a render: preparing one, switching to another, and falling back after a failure.
 
-use super::Render;
-use crate::backends::BackendChoice;
-use crate::progressive::guard::{Backend, dismiss, guarded};
-use crate::progressive::pending::Pending;
+use super::{Cancel, Render};
+use crate::backends::{BackendChoice, close};
 use crate::progressive::{Factory, Phase};
-use crate::render::RenderError;
-use std::sync::mpsc::TryRecvError;
+use crate::render::{RenderError, RenderJob, Renderer};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// A renderer and what it was made from.
+pub type Backend = (BackendChoice, Box<dyn Renderer>);
+
+/// Runs `work`. A panic becomes an error of `backend`. The film is unchanged then, as renderers promise.
+pub fn guarded<T>(
+    backend: &'static str,
+    work: impl FnOnce() -> Result<T, RenderError>,
+) -> Result<T, RenderError> {
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|payload| Err(RenderError::of_panic(backend, payload.as_ref())))
+}
+
+/// Closes a backend that is not used any more.
+pub fn dismiss(backend: Option<Backend>) {
+    if backend.is_some() {
+        close(backend);
+    }
+}
+
+fn make(factory: &Mutex<Factory>, choice: &BackendChoice) -> Result<Box<dyn Renderer>, RenderError> {
+    let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(choice);
+    made.map_err(|error| RenderError::Backend { backend: choice.name(), reason: error.to_string() })
+}
+
+/// A backend that is prepared on its own thread and takes over when it is ready, while the old one continues.
+pub(super) struct Pending {
+    choice: BackendChoice,
+    /// Delivers one result: the prepared renderer, and the time this took.
+    outcome: Receiver<Result<(Box<dyn Renderer>, Duration), RenderError>>,
+}
+
+impl Pending {
+    /// Starts to prepare `job`; `None` if the system cannot start a thread.
+    fn start(
+        choice: BackendChoice,
+        job: &RenderJob,
+        factory: &Arc<Mutex<Factory>>,
+        cancel: &Arc<Cancel>,
+    ) -> Option<Self> {
+        let (sender, outcome) = mpsc::channel();
+        let (wanted, job) = (choice.clone(), job.clone());
+        let (factory, cancel) = (Arc::clone(factory), Arc::clone(cancel));
+        let prepare = move || {
+            let begin = Instant::now();
+            let ready = make(&factory, &wanted).and_then(|mut renderer| {
+                renderer.prepare(&job, &cancel.pass)?;
+                Ok((renderer, begin.elapsed()))
+            });
+            // If another backend was chosen meanwhile, nobody receives this.
+            let _ = sender.send(ready);
+        };
+        std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
+        Some(Pending { choice, outcome })
+    }
+}
 
 impl Render {
     /// Switches to another backend once it is ready. Until then the current one continues.
@@ -17,10 +72,7 @@ impl Render {
             return;
         }
         self.pending = None;
-        if choice == self.choice {
-            return;
-        }
-        if self.is_prepared {
+        if choice != self.choice && self.is_prepared {
             self.pending = Pending::start(choice.clone(), &self.job, factory, &self.cancel);
         }
         if self.pending.is_none() {
@@ -28,39 +80,35 @@ impl Render {
         }
     }
 
-    /// Hands over to a backend that has become ready.
-    pub(super) fn welcome_pending(&mut self, backend: &mut Option<Backend>) {
-        let Some(pending) = self.pending.take() else { return };
+    /// Switches to the pending backend once it is ready.
+    pub(super) fn take_over(&mut self, backend: &mut Option<Backend>) {
+        let Some(pending) = &self.pending else { return };
         let outcome = match pending.outcome.try_recv() {
-            Ok(outcome) => outcome,
-            Err(TryRecvError::Empty) => {
-                self.pending = Some(pending);
-                return;
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => {
+                let reason = "its preparation ended by a panic".to_owned();
+                Err(RenderError::Backend { backend: pending.choice.name(), reason })
             }
-            Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
+            Ok(outcome) => outcome,
         };
+        let choice = pending.choice.clone();
+        self.pending = None;
         match outcome {
-            Ok(mut ready) => {
+            Ok((mut renderer, took)) => {
                 if let Some((_, old)) = backend
                     && let Err(error) = self.collect(old.as_mut())
                 {
-                    self.status.say(vec![error.to_string()]);
+                    self.status.say([error.to_string()]);
                     self.requested = self.film.samples().clone();
                 }
-                self.status.backend = Some(ready.renderer.info());
-                self.status.say(ready.renderer.take_messages());
-                self.status.kernel = ready.renderer.kernel();
-                self.status.left_out = ready.renderer.kernel_contents().left_out;
-                self.status.hierarchy += ready.renderer.hierarchy_time();
-                self.status.prepare += ready.took;
-                log::info!("switched from {} to {}", self.choice.name(), pending.choice.name());
-                self.choice = pending.choice;
-                dismiss(backend.replace((self.choice.clone(), ready.renderer)));
+                self.note_prepared(renderer.as_mut(), took);
+                self.choice = choice.clone();
+                dismiss(backend.replace((choice, renderer)));
                 self.sizer.restart();
             }
-            Err(reason) => {
-                self.status.given_up.push(pending.choice.name());
-                self.status.say(vec![format!("{reason}; the {} continues", self.choice.name())]);
+            Err(error) => {
+                self.status.given_up.push(choice.name());
+                self.status.say([format!("{error}; the {} continues", self.choice.name())]);
             }
         }
     }
@@ -90,8 +138,7 @@ impl Render {
         log::error!("{} failed: {error}", self.choice.name());
         match BackendChoice::fallback(&self.failed) {
             Some(fallback) => {
-                let name = fallback.words();
-                self.status.say(vec![format!("{error}; {name} continues the same picture")]);
+                self.status.say([format!("{error}; {} continues the same picture", fallback.words())]);
                 self.change_backend(fallback);
             }
             None => self.status.phase = Phase::Failed(error.to_string()),
@@ -103,53 +150,43 @@ impl Render {
         &mut self,
         backend: &mut Option<Backend>,
         factory: &Mutex<Factory>,
-        begin: Instant,
     ) -> Result<(), RenderError> {
         // A complete film needs no renderer.
         if self.next_pass().is_none() {
             self.end_of_plan();
             return Ok(());
         }
+        let begin = Instant::now();
         if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
-            let choice = &self.choice;
-            let make = || Ok(factory.lock().unwrap_or_else(PoisonError::into_inner)(choice));
-            match (guarded(choice.name(), make)?, &backend) {
+            match (guarded(self.choice.name(), || make(factory, &self.choice)), &backend) {
                 (Ok(renderer), _) => dismiss(backend.replace((self.choice.clone(), renderer))),
                 (Err(error), Some((old, _))) => {
-                    self.status.messages.push(format!("{error}; the {} continues", old.name()));
+                    self.status.say([format!("{error}; the {} continues", old.name())]);
                     self.choice = old.clone();
                 }
-                (Err(error), None) => {
-                    let (backend, reason) = (self.choice.name(), error.to_string());
-                    return Err(RenderError::Backend { backend, reason });
-                }
+                (Err(error), None) => return Err(error),
             }
         }
-        if let Some((_, renderer)) = backend {
-            match guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel.stop)) {
-                // The command to stop comes next.
-                Err(RenderError::Cancelled) if !self.cancel.is_abandoned() => return Ok(()),
-                outcome => outcome?,
-            }
-            self.status.backend = Some(renderer.info());
-            self.status.say(renderer.take_messages());
-            self.status.kernel = renderer.kernel();
-            self.status.left_out = renderer.kernel_contents().left_out;
-            self.status.hierarchy += renderer.hierarchy_time();
-            self.is_prepared = true;
-            self.status.phase = Phase::Tracing;
-            self.status.prepare += begin.elapsed();
-            let info = renderer.info();
-            log::info!(
-                "prepared in {:.3} s: {} {}, {} lanes, {} threads; kernel: {}",
-                begin.elapsed().as_secs_f64(),
-                info.name,
-                info.device,
-                info.lanes,
-                info.threads,
-                self.status.kernel
-            );
+        let Some((_, renderer)) = backend else { return Ok(()) };
+        match guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel.stop)) {
+            // The command to stop comes next.
+            Err(RenderError::Cancelled) if !self.cancel.is_abandoned() => return Ok(()),
+            outcome => outcome?,
         }
+        self.note_prepared(renderer.as_mut(), begin.elapsed());
+        self.is_prepared = true;
+        self.status.phase = Phase::Tracing;
         Ok(())
+    }
+
+    fn note_prepared(&mut self, renderer: &mut dyn Renderer, took: Duration) {
+        let info = renderer.info();
+        self.status.kernel = renderer.kernel();
+        self.status.left_out = renderer.kernel_contents().left_out;
+        self.status.hierarchy += renderer.hierarchy_time();
+        self.status.prepare += took;
+        self.status.say(renderer.take_messages());
+        log::info!("prepared {info:?} in {:.3} s; kernel: {}", took.as_secs_f64(), self.status.kernel);
+        self.status.backend = Some(info);
     }
 }

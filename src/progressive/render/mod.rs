@@ -1,29 +1,53 @@
 //! The current render: its film, its backends and its status.
 
 mod backends;
-mod notes;
 
-use super::cancel::Cancel;
-use super::guard::{Backend, guarded};
-use super::pending::Pending;
+pub use backends::{Backend, dismiss, guarded};
+
 use super::shared::{Picture, Shared};
-use super::{EndReason, Factory, PassSizer, Phase, Plan, Status, View};
+use super::{
+    EndReason, Factory, HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, PassSizer, Phase, Plan, Status, View,
+};
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
-use crate::render::{RenderError, RenderJob, Renderer, TileOccupancy};
+use crate::render::{RenderError, RenderJob, Renderer, Stats};
+use backends::Pending;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// The current render.
+/// Estimating the error may take at most one part in this many of the time.
+const ERROR_ESTIMATE_SHARE: u32 = 20;
+
+/// Flags that end a long call of a renderer early, set by the handle.
+#[derive(Default)]
+pub struct Cancel {
+    /// Ends a pass, which spoils the film.
+    pub pass: AtomicBool,
+    /// Ends preparing, which can begin again, and a pass that can be taken away more quickly than finished.
+    pub stop: AtomicBool,
+}
+
+impl Cancel {
+    /// Ends whatever is going on, for good.
+    pub fn abandon(&self) {
+        self.pass.store(true, Ordering::Relaxed);
+        self.stop.store(true, Ordering::Relaxed);
+    }
+
+    fn is_abandoned(&self) -> bool {
+        self.pass.load(Ordering::Relaxed)
+    }
+}
+
 pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
-    film: Film,
+    pub film: Film,
     /// The samples of the film, and those that the renderer has not added to it yet.
     requested: SampleRanges,
     cancel: Arc<Cancel>,
     choice: BackendChoice,
-    /// The backends that have failed.
     failed: Vec<BackendChoice>,
     is_prepared: bool,
     pending: Option<Pending>,
@@ -32,7 +56,8 @@ pub(super) struct Render {
     estimated_samples: u64,
     estimated_at: Instant,
     estimate_took: Duration,
-    pictured_samples: Option<u64>,
+    /// Samples in the last picture; `None` if the next request is to resolve one even of the same film.
+    pub pictured_samples: Option<u64>,
     pub status: Status,
 }
 
@@ -72,24 +97,6 @@ impl Render {
         self.status.phase.is_working()
     }
 
-    pub fn film(&self) -> &Film {
-        &self.film
-    }
-
-    pub fn into_film(self) -> (Film, Status) {
-        (self.film, self.status)
-    }
-
-    /// Makes the next request resolve a picture even if the film has not changed.
-    pub fn forget_picture(&mut self) {
-        self.pictured_samples = None;
-    }
-
-    /// Lets preparing and passes go on if the render is resumed after the stop that is now obeyed.
-    pub fn stop_is_obeyed(&self) {
-        self.cancel.stop_is_obeyed();
-    }
-
     /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&mut self, plan: Plan) {
         self.plan = plan;
@@ -115,9 +122,17 @@ impl Render {
         self.status.phase = if self.is_prepared { Phase::Tracing } else { Phase::Preparing };
     }
 
-    pub fn end(&mut self, reason: EndReason) {
+    /// Obeys a stop. If the render is resumed, what the stop ended begins again.
+    pub fn stop(&mut self) {
+        self.cancel.stop.store(self.cancel.is_abandoned(), Ordering::Relaxed);
+        if !self.status.phase.is_over() {
+            self.end(EndReason::Stopped);
+        }
+    }
+
+    fn end(&mut self, reason: EndReason) {
         self.estimate_error();
-        self.status.say(self.status.doubt.iter().cloned().collect());
+        self.status.say(self.status.doubt.clone());
         log::info!("the render ended ({reason:?}) with {} samples per pixel", self.film.sample_count());
         self.status.phase = Phase::Done(reason);
     }
@@ -135,20 +150,19 @@ impl Render {
         factory: &Mutex<Factory>,
         is_picture_wanted: bool,
     ) -> Result<(), RenderError> {
-        self.welcome_pending(backend);
+        self.take_over(backend);
         let begin = Instant::now();
         let outcome = match backend {
-            _ if !self.is_prepared => self.prepare(backend, factory, begin),
-            Some((_, renderer)) => self.pass(renderer.as_mut(), is_picture_wanted),
-            None => Ok(()),
+            Some((_, renderer)) if self.is_prepared => self.pass(renderer.as_mut(), is_picture_wanted),
+            _ => self.prepare(backend, factory),
         };
         self.status.elapsed += begin.elapsed();
         outcome
     }
 
     /// Reports a problem that does not affect the film.
-    pub fn complain(&mut self, error: &RenderError) {
-        self.status.say(vec![error.to_string()]);
+    pub fn complain(&mut self, outcome: Result<(), RenderError>) {
+        self.status.say(outcome.err().map(|error| error.to_string()));
     }
 
     /// The next samples; `None` if none are missing or no time is left for them.
@@ -179,42 +193,27 @@ impl Render {
             self.end_of_plan();
             return Ok(());
         };
-        let begin = Instant::now();
-        let added = range.end - range.start;
-        let held = self.film.sample_count();
-        let outcome = guarded(self.choice.name(), || {
-            let (range, film, cancel) = (range.clone(), &mut self.film, &self.cancel);
-            if self.requested.count() == 0 {
-                // A stop is not to leave a film without a sample.
-                renderer.advance(&self.job, range, film, &cancel.pass).map(Some)
+        // A stop is not to leave a film without a sample.
+        let is_first = self.requested.count() == 0;
+        let (samples, begin) = (range.clone(), Instant::now());
+        let outcome = self.add(renderer, |renderer, job, film, cancel| {
+            if is_first {
+                renderer.advance(job, samples, film, &cancel.pass).map(Some)
             } else {
-                renderer.advance_unless(&self.job, range, film, &cancel.pass, &cancel.stop)
+                renderer.advance_unless(job, samples, film, &cancel.pass, &cancel.stop)
             }
         });
-        // Measured before the samples are noted, because the history includes the seconds of their tracing.
         let took = begin.elapsed();
-        self.status.trace += took;
-        if matches!(outcome, Ok(None)) {
-            log::debug!(
-                "pass of samples {}..{} given up after {:.3} s",
-                range.start,
-                range.end,
-                took.as_secs_f64()
-            );
+        log::debug!("samples {range:?} in {:.3} ms: {outcome:?}", took.as_secs_f64() * 1e3);
+        if outcome?.is_none() {
             return Ok(());
         }
-        let outcome = outcome.map(Option::unwrap_or_default);
-        self.note_added(renderer, held, &outcome);
-        log::debug!(
-            "pass of samples {}..{} took {:.3} ms; the film holds {}",
-            range.start,
-            range.end,
-            took.as_secs_f64() * 1e3,
-            self.film.sample_count()
+        self.sizer.measured(
+            range.end - range.start,
+            took,
+            self.plan.later_pass_target(renderer.heeds_stop()),
         );
-        outcome?;
         self.requested.insert(range)?;
-        self.sizer.measured(added, took, self.plan.later_pass_target(renderer.heeds_stop()));
         // A renderer can change during use (it lost an adapter or gave up threads) and then reports it here.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
@@ -236,37 +235,26 @@ impl Render {
             return Ok(());
         }
         let begin = Instant::now();
-        let mut estimate = None;
         // A small part of the picture does if all samples fit, even should the rest take four times as long.
         for (one_in, caution) in [(128, 4.0), (16, 1.0)] {
-            let outcome = guarded(self.choice.name(), || {
+            let estimate = guarded(self.choice.name(), || {
                 Ok(renderer.try_out(&mut self.film, one_in, &self.cancel.pass))
             });
-            estimate = outcome?;
-            let fits = |per_sample: &Duration| {
-                caution * wanted as f64 * per_sample.as_secs_f64() <= target.as_secs_f64()
-            };
-            if estimate.as_ref().is_none_or(fits) {
+            let Some(per_sample) = estimate? else { break };
+            log::debug!("a trial of one pixel in {one_in}: {per_sample:?} or less for a sample");
+            self.sizer.estimated(per_sample, target);
+            if caution * wanted as f64 * per_sample.as_secs_f64() <= target.as_secs_f64() {
                 break;
             }
         }
         self.status.trace += begin.elapsed();
-        if let Some(per_sample) = estimate {
-            log::debug!("a trial: a sample takes {:.3} ms or less", per_sample.as_secs_f64() * 1e3);
-            self.sizer.estimated(per_sample, target);
-        }
         Ok(())
     }
 
     /// Adds the renderer's outstanding samples to the film.
     pub fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         if self.requested != *self.film.samples() {
-            let begin = Instant::now();
-            let held = self.film.sample_count();
-            let outcome = guarded(self.choice.name(), || renderer.collect(&mut self.film));
-            self.status.trace += begin.elapsed();
-            self.note_added(renderer, held, &outcome);
-            outcome?;
+            self.add(renderer, |renderer, _, film, _| renderer.collect(film).map(Some))?;
         }
         if self.requested != *self.film.samples() {
             let reason = format!(
@@ -279,32 +267,97 @@ impl Render {
         Ok(())
     }
 
+    /// Lets the renderer add samples to the film, and notes who added how many in what time. Some can have arrived
+    /// before a failure.
+    fn add(
+        &mut self,
+        renderer: &mut dyn Renderer,
+        work: impl FnOnce(&mut dyn Renderer, &RenderJob, &mut Film, &Cancel) -> Result<Option<Stats>, RenderError>,
+    ) -> Result<Option<Stats>, RenderError> {
+        let begin = Instant::now();
+        let held = self.film.sample_count();
+        let outcome = guarded(self.choice.name(), || work(renderer, &self.job, &mut self.film, &self.cancel));
+        // Before the samples are noted, because the history includes the seconds of their tracing.
+        self.status.trace += begin.elapsed();
+        let added = self.film.sample_count().saturating_sub(held);
+        if added > 0 {
+            if let Ok(Some(stats)) = &outcome {
+                self.status.stats.add(stats);
+            }
+            for (info, samples) in renderer.credits(added) {
+                self.status.credit(&info, samples);
+            }
+            self.note_film();
+        }
+        outcome
+    }
+
     /// Resolves a picture if one was requested and there is something new to show.
     pub fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);
-        if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.is_abandoned() {
-            self.pictured_samples = Some(samples);
-            let renderer = renderer.filter(|_| *view == View::Occupancy);
-            let occupancy = renderer.and_then(Renderer::tile_occupancy);
-            shared.put_picture(Picture {
-                run: self.status.run,
-                width: self.film.width(),
-                height: self.film.height(),
+        if !is_new || samples == 0 || !shared.is_picture_wanted() || self.cancel.is_abandoned() {
+            return;
+        }
+        self.pictured_samples = Some(samples);
+        let renderer = renderer.filter(|_| *view == View::Occupancy);
+        let occupancy = renderer.and_then(Renderer::tile_occupancy);
+        let transfer = self.job.rules().transfer;
+        // A preview is smoothed; heat maps show what is there.
+        let is_smooth = self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
+        let rgb8 = if is_smooth {
+            view.resolve(&self.film.smoothed(), transfer, None)
+        } else {
+            view.resolve(&self.film, transfer, occupancy.as_ref())
+        };
+        let (width, height) = (self.film.width(), self.film.height());
+        shared.put_picture(Picture { run: self.status.run, width, height, samples_per_pixel: samples, rgb8 });
+    }
+
+    /// Updates the status from the film.
+    fn note_film(&mut self) {
+        let samples = self.film.sample_count();
+        self.status.samples_per_pixel = samples;
+        self.status.rejected_samples = self.film.rejected();
+        let is_history = samples >= self.next_history_samples;
+        if is_history || self.estimated_at.elapsed() >= self.estimate_took * ERROR_ESTIMATE_SHARE {
+            self.estimate_error();
+        }
+        if !is_history {
+            return;
+        }
+        self.next_history_samples = (samples + 1).next_power_of_two();
+        if let Some(error) = self.status.error {
+            self.status.history.push(HistoryPoint {
+                backend: self.status.backend.as_ref().map_or("", |backend| backend.name),
                 samples_per_pixel: samples,
-                rgb8: self.resolve(view, occupancy.as_ref()),
+                trace_seconds: self.status.trace.as_secs_f64(),
+                rmse_estimate: error.rmse,
+                rel_mse_estimate: error.rel_mse,
             });
         }
     }
 
-    /// Resolves the film. A preview is smoothed; heat maps show what is there.
-    fn resolve(&self, view: &View, occupancy: Option<&TileOccupancy>) -> Vec<u8> {
-        let transfer = self.job.rules().transfer;
-        match view {
-            View::Picture | View::Exposed(_) if self.plan.preview.is_some() => {
-                view.resolve(&self.film.smoothed(), transfer, occupancy)
-            }
-            _ => view.resolve(&self.film, transfer, occupancy),
+    /// Whether the film meets the noise target, by its latest estimate.
+    fn meets_noise_target(&self) -> bool {
+        let error = self.status.error.as_ref();
+        self.film.sample_count() >= NOISE_TARGET_FIRST_SAMPLES
+            && self.plan.stop.noise.is_some_and(|target| self.film.meets(target, error, self.brightest()))
+    }
+
+    /// The largest radiance that a sample can have.
+    fn brightest(&self) -> f64 {
+        self.job.rules().brightest(self.job.scene())
+    }
+
+    fn estimate_error(&mut self) {
+        if self.estimated_samples != self.film.sample_count() {
+            let begin = Instant::now();
+            self.status.error = self.film.error();
+            self.status.doubt = self.status.error.as_ref().and_then(|error| self.film.doubt(error));
+            self.estimated_samples = self.film.sample_count();
+            self.estimate_took = begin.elapsed();
+            self.estimated_at = Instant::now();
         }
     }
 }

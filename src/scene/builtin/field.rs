@@ -55,7 +55,6 @@ pub fn is_field(scene: &Scene, count: u64) -> bool {
 
 /// The ground of a field.
 struct Ground {
-    /// Number of cells in a row.
     columns: u64,
     /// Half the field's side, scene units.
     half_width: f64,
@@ -176,12 +175,5 @@ mod tests {
         let mut other = scene.clone();
         other.spheres[17].material = 0;
         assert!(!is_field(&other, 17), "another sphere");
-    }
-
-    #[test]
-    fn hues_run_from_red_over_green_to_blue() {
-        assert_eq!(hue(0.0, 1.0, 1.0), DVec3::X);
-        assert_eq!(hue(1.0 / 3.0, 1.0, 1.0), DVec3::Y);
-        assert_eq!(hue(2.0 / 3.0, 1.0, 1.0), DVec3::Z);
     }
 }

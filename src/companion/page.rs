@@ -1,20 +1,21 @@
 //! The page around the chapters.
 
-pub mod back_matter;
-
+use super::back_matter;
 use super::chapter::Chapter;
-use super::faults::{Fault, Faults};
+use super::fault::Fault;
 use super::prose;
 use super::site::{Site, Uses};
 use crate::files::GENERATOR;
+use crate::gallery::Panel;
 use crate::stages::{BOOK_URL, Stage};
 use crate::web;
+use anyhow::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-const STYLE: &str = include_str!("../../../assets/companion/page.css");
-const SCRIPT: &str = include_str!("../../../assets/companion/page.js");
+const STYLE: &str = include_str!("../../assets/companion/page.css");
+const SCRIPT: &str = include_str!("../../assets/companion/page.js");
 /// Runs before anything is drawn, so that the page does not flash in the wrong colours.
-const THEME_SCRIPT: &str = include_str!("../../../assets/companion/theme.js");
+const THEME_SCRIPT: &str = include_str!("../../assets/companion/theme.js");
 
 const TITLE: &str = "Weekender, the companion";
 const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
@@ -31,30 +32,21 @@ pub struct Page {
 /// Renders everything.
 ///
 /// # Errors
-/// All faults of the texts, including those found before.
-pub fn render(site: &Site, mut faults: Vec<Fault>) -> Result<Page, Faults> {
+/// The first [`Fault`] of the texts, or if a stage has no data for a browser.
+pub fn render(site: &Site) -> Result<Page> {
     let mut uses = Uses::default();
     uses.anchors.extend(site.chapters.iter().map(|chapter| chapter.id.clone()));
-    let texts: Vec<Markup> =
-        site.chapters.iter().map(|chapter| prose::chapter(site, chapter, &mut uses, &mut faults)).collect();
     let chapters = html! {
-        @for (place, text) in texts.iter().enumerate() { (section(site, place, text, &mut faults)) }
+        @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
     };
-    let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses, &mut faults);
-    site.check(&uses, &mut faults);
+    let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses)?;
+    site.check(&uses)?;
     let mut stages: Vec<&Stage> =
-        uses.figures.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage).collect();
+        uses.figures.iter().flat_map(|figure| figure.panels).map(Panel::stage).collect();
     stages.push(cover_stage());
     stages.sort_by_key(|stage| stage.index());
     stages.dedup();
-    let live = web::live_data(stages.iter().copied()).unwrap_or_else(|error| {
-        faults.push(Fault::new("src/web", 0, error));
-        String::new()
-    });
-    if !faults.is_empty() {
-        faults.sort();
-        return Err(Faults(faults));
-    }
+    let live = web::live_data(stages.iter().copied())?;
     let page = document(site, &PreEscaped(chapters), &PreEscaped(live));
     Ok(Page { html: page.into_string(), stages })
 }
@@ -127,7 +119,7 @@ fn colophon() -> Markup {
 }
 
 fn navigation(site: &Site) -> Markup {
-    let last_of_book = site.chapters.iter().rposition(|chapter| chapter.book.is_some());
+    let last_of_book = site.chapters.iter().rposition(|chapter| chapter.facts.book.is_some());
     let (with_book, beyond) = site.chapters.split_at(last_of_book.map_or(0, |place| place + 1));
     html! {
         nav .contents id="contents" aria-label="Chapters" {
@@ -137,7 +129,15 @@ fn navigation(site: &Site) -> Markup {
                     a .home href="#top" { strong { "Weekender" } " the companion" }
                     @for (title, chapters) in [("With the book", with_book), ("Beyond the book", beyond)] {
                         p .part { (title) }
-                        ol { @for chapter in chapters { (entry(chapter)) } }
+                        ol {
+                            @for chapter in chapters {
+                                li {
+                                    a href={ "#" (chapter.id) } {
+                                        span .number { (chapter.number_prefix()) } (chapter.short())
+                                    }
+                                }
+                            }
+                        }
                     }
                     fieldset .theme hidden {
                         legend { "Colours" }
@@ -151,40 +151,22 @@ fn navigation(site: &Site) -> Markup {
     }
 }
 
-fn entry(chapter: &Chapter) -> Markup {
-    html! {
-        li {
-            a href={ "#" (chapter.id) } {
-                span .number { @if let Some(number) = chapter.shown_number() { (number) " " } } (chapter.short)
-            }
-        }
-    }
-}
-
-/// Number and short title.
-fn title_of(chapter: &Chapter) -> String {
-    let number = chapter.shown_number().map_or_else(String::new, |number| format!("{number} "));
-    number + &chapter.short
-}
-
-fn section(site: &Site, place: usize, text: &Markup, faults: &mut Vec<Fault>) -> Markup {
+fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> {
     let chapter = &site.chapters[place];
-    let Chapter { id, title, .. } = chapter;
-    let book = chapter.book.as_deref().and_then(|number| {
-        let found = site.book.url(number).zip(site.book.heading(number));
-        if found.is_none() {
-            faults.push(Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")));
-        }
-        found.map(|(url, heading)| (number, url, heading))
-    });
+    let (id, title) = (&chapter.id, &chapter.facts.title);
+    let text = prose::chapter(site, chapter, uses)?;
+    let book = match &chapter.facts.book {
+        Some(number) => Some((number, book_chapter(site, chapter, number)?)),
+        None => None,
+    };
     let before = place.checked_sub(1).and_then(|place| site.chapters.get(place));
     let after = site.chapters.get(place + 1);
-    html! {
+    Ok(html! {
         section .chapter aria-labelledby=(id) {
             header .head {
                 p .kicker {
                     @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
-                    @if let Some((number, url, heading)) = book {
+                    @if let Some((number, (url, heading))) = book {
                         @if chapter.shown_number().is_some() { " · " }
                         a .book href=(url) {
                             "The book, chapter " (number) @if heading != title { ": " (heading) }
@@ -199,15 +181,23 @@ fn section(site: &Site, place: usize, text: &Markup, faults: &mut Vec<Fault>) ->
             (text)
             nav .turn aria-label={ "Before and after " (title) } {
                 @if let Some(before) = before {
-                    a .before href={ "#" (before.id) } { span { "Previous" } (title_of(before)) }
+                    a .before href={ "#" (before.id) } { span { "Previous" } (before.number_prefix()) (before.short()) }
                 }
                 @if let Some(after) = after {
-                    a .after href={ "#" (after.id) } { span { "Next" } (title_of(after)) }
+                    a .after href={ "#" (after.id) } { span { "Next" } (after.number_prefix()) (after.short()) }
                 }
             }
         }
-    }
+    })
 }
 
-#[cfg(test)]
-mod tests;
+/// The web address and the heading of a chapter of the book, which must be the one that the chapter gives.
+fn book_chapter<'a>(site: &'a Site, chapter: &Chapter, number: &str) -> Result<(String, &'a str), Fault> {
+    let heading =
+        site.book.heading(number).filter(|found| Some(*found) == chapter.facts.book_title.as_deref());
+    site.book.url(number).zip(heading).ok_or_else(|| {
+        let title = chapter.facts.book_title.as_deref().unwrap_or_default();
+        let message = format!("the book has no chapter {number:?} with the book_title {title:?}");
+        Fault::new(&chapter.file, 1, message)
+    })
+}

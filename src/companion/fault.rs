@@ -1,0 +1,35 @@
+//! What is wrong with a text of the page, with file and line.
+
+use std::fmt;
+use thiserror::Error;
+
+/// A fault of a text.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub struct Fault {
+    /// Path in the checkout.
+    pub file: String,
+    /// Line, counted from 1; 0 if the fault is that of the whole file.
+    pub line: usize,
+    /// What is wrong, and what to do.
+    pub message: String,
+}
+
+impl Fault {
+    pub fn new(file: &str, line: usize, message: impl fmt::Display) -> Self {
+        Fault { file: file.to_owned(), line, message: message.to_string() }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.line {
+            0 => write!(f, "{}: {}", self.file, self.message),
+            line => write!(f, "{}:{line}: {}", self.file, self.message),
+        }
+    }
+}
+
+/// The line of a byte position, counted from 1.
+pub fn line_of(text: &str, position: usize) -> usize {
+    1 + text.bytes().take(position).filter(|byte| *byte == b'\n').count()
+}

@@ -1,0 +1,160 @@
+//! Made-up texts as HTML, and what is wrong with them.
+
+use super::back_matter::{self, GLOSSARY_MARK, REFERENCES_MARK};
+use super::chapter::Chapter;
+use super::fault::Fault;
+use super::library::{Entry, Library};
+use super::reference::{Area, Reference, Term};
+use super::site::{Site, Uses};
+use super::{page, prose};
+use crate::stages::Stage;
+
+/// The page's site with two terms, two references and two chapters without text: 06-normals and 01-languages.
+fn site() -> Site {
+    let mut site = Site::read(&Library::Embedded).unwrap();
+    site.chapters.retain(|chapter| ["normals", "languages"].contains(&chapter.id.as_str()));
+    site.chapters.iter_mut().for_each(|chapter| chapter.body.clear());
+    site.excerpts.clear();
+    let term = |key: &str, line, area| {
+        let value = Term { term: key.to_uppercase(), text: format!("A *{key}*."), area };
+        Entry { key: key.to_owned(), line, value }
+    };
+    site.terms = vec![term("lane", 1, Area::Parallelism), term("ray", 5, Area::Rendering)];
+    let reference = |key: &str, line, url: Option<&str>| {
+        let (title, authors) = (format!("On {key}"), format!("{key} and others"));
+        let value = Reference { title, authors, year: None, url: url.map(str::to_owned), note: None };
+        Entry { key: key.to_owned(), line, value }
+    };
+    site.references = vec![reference("first", 1, None), reference("second", 5, Some("https://second.org"))];
+    site
+}
+
+/// The HTML of a text of the chapter on normals.
+fn converted(site: &Site, text: &str, uses: &mut Uses) -> Result<String, Fault> {
+    let normals = site.chapters.iter().find(|chapter| chapter.id == "normals").unwrap();
+    let chapter = Chapter { body: text.to_owned(), lines_before: 4, ..normals.clone() };
+    prose::chapter(site, &chapter, uses).map(|html| html.into_string())
+}
+
+/// The HTML of a text of its own.
+fn alone(site: &Site, text: &str) -> String {
+    converted(site, text, &mut Uses::default()).unwrap()
+}
+
+#[test]
+fn links_lead_to_what_they_name() {
+    let site = site();
+    for (target, html) in [
+        ("#there", "<a href=\"#there\">x</a>"),
+        ("https://a.org/b", "<a href=\"https://a.org/b\">x</a>"),
+        (
+            "page:normals",
+            "<a href=\"#normals\" title=\"Chapter 6: Surface Normals and Multiple Objects\">x</a>",
+        ),
+        (
+            "page:normals#6.1",
+            "<a href=\"#normals-61-shading-with-surface-normals\" title=\"Section 6.1 Shading with Surface Normals\">x</a>",
+        ),
+        ("glossary:lane", "<a id=\"use-lane\" class=\"term\" href=\"#term-lane\">x</a>"),
+        ("source:src/lib.rs", "x <span class=\"cite\">[<code class=\"path\">src/lib.rs</code>]</span>"),
+    ] {
+        assert_eq!(alone(&site, &format!("[x]({target})")), format!("<p>{html}</p>\n"));
+    }
+    let [first, second] = [("first", 1), ("second", 2)]
+        .map(|(key, n)| format!("<a href=\"#ref-{key}\" title=\"{key} and others: On {key}\">{n}</a>"));
+    let both = format!("<p><span class=\"cite\">[{first}, {second}]</span></p>\n");
+    assert_eq!(alone(&site, "[@second; @first]"), both);
+}
+
+#[test]
+fn links_are_noted_with_their_lines_and_the_first_to_a_term_can_be_returned_to() {
+    let (site, mut uses) = (site(), Uses::default());
+    let text = "[a](#there)\n\n[b](page:languages#two) [c](glossary:ray)\n\n[d](glossary:ray)";
+    let html = converted(&site, text, &mut uses).unwrap();
+    let targets: Vec<_> = uses.targets.iter().map(|(anchor, _, line)| (anchor.as_str(), *line)).collect();
+    assert_eq!(targets, [("there", 5), ("languages-two", 7)]);
+    assert_eq!(uses.terms["ray"], "Normals");
+    assert_eq!(html.matches("id=\"use-ray\"").count(), 1, "{html}");
+    let fault = converted(&site, "a\n\n[e](page:nowhere)", &mut uses).unwrap_err();
+    assert_eq!(fault.to_string(), "docs/companion/06-normals.md:7: the page has no chapter \"nowhere\"");
+}
+
+#[test]
+fn headings_code_and_formulas_have_their_form() {
+    let site = site();
+    for (text, html) in [
+        (
+            "## A Title's `code`",
+            "<h3 id=\"normals-a-titles-code\">A Title’s <code>code</code><a class=\"anchor\"",
+        ),
+        ("#### Small", "<h5 id=\"normals-small\">Small<a"),
+        (
+            "## 6.1 Shading with Surface Normals",
+            "</span> Shading with Surface Normals <a class=\"book\" href=\"https://",
+        ),
+        ("```rust\nfn a() {}\n```", "<span class=\"hl-k\">fn</span>"),
+        ("```\nplain <b>\n```", "<code>plain &lt;b&gt;\n</code>"),
+        ("$$x$$", "<p class=\"wide\"><span class=\"formula\""),
+        ("So $$x$$", "<p>So <span class=\"formula\""),
+        ("$x$, y", "</math>,</span> y"),
+        ("$\\frac{1}{2}$", "<mfrac><mn>1</mn><mn>2</mn></mfrac>"),
+        ("| a |\n|---|\n| 1 |", "aria-label=\"Table\">\n<table>"),
+    ] {
+        let found = alone(&site, text);
+        assert!(found.contains(html), "{text}: {found}");
+    }
+    assert!(!alone(&site, "$x$-y").contains("class=\"nb\""));
+}
+
+#[test]
+fn directives_become_figures_excerpts_and_diagrams() {
+    let site = Site::read(&Library::Embedded).unwrap();
+    let pair = alone(&site, "{{pair dot dot-wgsl}}");
+    assert!(pair.starts_with("<div class=\"pair\"><figure class=\"code\">"), "{pair}");
+    assert!(
+        pair.contains("<code class=\"path\">shaders/lanes.wgsl</code> <span class=\"lines\">lines "),
+        "{pair}"
+    );
+    let figure = alone(&site, "{{ figure antialiasing }}");
+    assert!(
+        figure.contains("id=\"figure-antialiasing\"") && figure.contains("src=\"figures/aliased.png\""),
+        "{figure}"
+    );
+    let diagram = alone(&site, "{{diagram lanes}}");
+    assert!(diagram.contains("<div class=\"scroll\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
+}
+
+#[test]
+fn glossary_and_references_are_on_the_page_once() {
+    let (site, mut uses) = (site(), Uses::default());
+    uses.terms.insert("ray".to_owned(), "Normals".to_owned());
+    let mut fill = |marks: &[&str]| back_matter::fill(&marks.concat(), &site, &mut uses);
+    let html = fill(&[GLOSSARY_MARK, REFERENCES_MARK]).unwrap();
+    for part in [
+        "<dt id=\"term-ray\">RAY</dt><dd><span id=\"def-ray\">A <em>ray</em>.</span> <a class=\"back\" href=\"#use-ray\"",
+        "<li id=\"ref-second\">second and others. <cite><a href=\"https://second.org\">On second</a></cite>. </li>",
+    ] {
+        assert!(html.contains(part), "{part}: {html}");
+    }
+    for (marks, told) in
+        [(&[GLOSSARY_MARK; 2][..], "{{glossary}} must"), (&[GLOSSARY_MARK], "{{references}} must")]
+    {
+        assert!(fill(marks).unwrap_err().message.starts_with(told), "{marks:?}");
+    }
+}
+
+#[test]
+fn the_page_has_its_figures_and_the_cover_in_the_order_of_the_book() {
+    let mut site = site();
+    site.terms.clear();
+    let [languages, normals] = site.chapters.as_mut_slice() else { panic!("two chapters") };
+    languages.body = "{{figure red-sphere}}\n\n{{glossary}}\n\n{{references}}".to_owned();
+    normals.body = "{{figure sky}}\n\n[x](#normals)".to_owned();
+    let built = page::render(&site).unwrap();
+    let ids: Vec<&str> = built.stages.iter().map(|stage| stage.id).collect();
+    assert_eq!(ids, ["sky", "red-sphere", Stage::ALL[Stage::ALL.len() - 1].id]);
+
+    site.chapters[1].body = "[x](#gone)".to_owned();
+    let fault = page::render(&site).unwrap_err().to_string();
+    assert!(fault.ends_with("nothing on the page has the anchor #gone"), "{fault}");
+}
