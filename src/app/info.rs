@@ -9,7 +9,7 @@ use super::model::view::With;
 use super::tips::{self, Side};
 use super::widgets::{About, control};
 use crate::stages::Stage;
-use crate::stress::Case;
+use crate::measure::stress::Case;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.
@@ -203,7 +203,7 @@ mod tests {
     use crate::app::model::view::{Mode, ViewState};
     use crate::app::tests::{Case, Drawings, dressed, facts_of, leave};
     use crate::recipe::Recipe;
-    use crate::stress::shown_cases;
+    use crate::measure::stress::shown_cases;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;

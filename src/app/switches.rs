@@ -85,7 +85,7 @@ mod tests {
     use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::tests::{Case, Drawings, facts_of};
     use crate::film::Film;
-    use crate::stress::shown_cases;
+    use crate::measure::stress::shown_cases;
     use std::sync::Arc;
 
     #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 use weekender::film::{Checksum, FilmFile, checkpoint};
 use weekender::output::{Encoding, decode_description, decode_picture};
 use weekender::recipe::file;
-use weekender::report;
+use weekender::measure::report;
 use weekender::stages::Transfer;
 
 /// The result of parsing an input.

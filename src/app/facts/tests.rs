@@ -18,7 +18,7 @@ use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
 use crate::recipe::Recipe;
 use crate::scene::Camera;
 use crate::stages::{Rules, SurfaceRule};
-use crate::stress::shown_cases;
+use crate::measure::stress::shown_cases;
 
 /// A window with this view in which nothing has been traced yet.
 fn early(document: Document, view: ViewState) -> Facts {

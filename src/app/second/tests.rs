@@ -12,7 +12,7 @@ use crate::progressive::{Phase, Stop, View};
 use crate::render::RenderSettings;
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
-use crate::stress::shown_cases;
+use crate::measure::stress::shown_cases;
 use std::time::{Duration, Instant};
 
 #[test]

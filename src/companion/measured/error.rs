@@ -2,7 +2,7 @@
 
 use super::{Kept, origin, scrolling};
 use crate::chart::{self, UNTITLED_TOP};
-use crate::report::{self, CurveSummary};
+use crate::measure::report::{self, CurveSummary};
 use maud::{Markup, PreEscaped, html};
 
 /// The errors to which times are given.

@@ -1,7 +1,7 @@
 //! The table of speed, from the JSON of `weekender bench`.
 
 use super::{Kept, Spread, origin, scrolling, speed_cell};
-use crate::bench;
+use crate::measure;
 use maud::{Markup, html};
 use serde::Deserialize;
 
@@ -51,9 +51,9 @@ impl Figures {
         let remedy = "make the file with weekender bench --json FILE";
         let figures: Figures = serde_json::from_str(text).map_err(|error| format!("{error}; {remedy}"))?;
         match figures.schema {
-            bench::SCHEMA if figures.scenes.is_empty() => Err(format!("no scene was measured; {remedy}")),
-            bench::SCHEMA => Ok(figures),
-            other => Err(format!("has version {other}, but {} is needed; {remedy}", bench::SCHEMA)),
+            measure::SCHEMA if figures.scenes.is_empty() => Err(format!("no scene was measured; {remedy}")),
+            measure::SCHEMA => Ok(figures),
+            other => Err(format!("has version {other}, but {} is needed; {remedy}", measure::SCHEMA)),
         }
     }
 }
@@ -204,7 +204,7 @@ mod tests {
             ],
         });
         let machine = json!({"processor": "A CPU", "cores": 4});
-        let text = json!({"schema": bench::SCHEMA, "machine": machine, "scenes": [scene]}).to_string();
+        let text = json!({"schema": measure::SCHEMA, "machine": machine, "scenes": [scene]}).to_string();
         let (file, command) = ("speed.json".to_owned(), "weekender bench".to_owned());
         let (machine, date) = (Some("another machine".to_owned()), Some("1 May".to_owned()));
         let html = tables(&Kept { file, command, machine, date, text }).unwrap().into_string();

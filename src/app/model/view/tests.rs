@@ -4,7 +4,7 @@ use super::*;
 use crate::app::model::origin::Source;
 use crate::app::model::slots::Slot;
 use crate::film::Film;
-use crate::stress::shown_cases;
+use crate::measure::stress::shown_cases;
 
 fn by_the_book(mine: &Document) -> Other {
     Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked))
