@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
+use weekender::measure::{bench, report, stress};
 use weekender::{
-    batch, bench, check, companion, compare, diff, gallery, info, interrupt, journal, merge,
-    report, stress,
+    batch, check, companion, compare, diff, gallery, info, interrupt, journal, merge,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.

@@ -172,17 +172,6 @@ fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
 }
 
 #[test]
-fn one_lane_leaves_the_hierarchy_out_where_there_is_none() {
-    let directory = tempfile::tempdir().unwrap();
-    let scenes = ["--scene", "metals", "--scene", "book", "--isa", "portable", "--samples", "2"];
-    let report = features(directory.path(), &scenes);
-    let rows = report["features"][0]["rows"].as_array().unwrap();
-    let left_out = serde_json::json!(["lens", "extremes", "hierarchy", "stage rules"]);
-    assert_eq!([&rows[0]["left_out"], &rows[1]["left_out"]], [&left_out, &serde_json::json!([])]);
-    assert_eq!(rows[0]["samples_per_pixel"], 2);
-}
-
-#[test]
 fn all_stages_and_scenes_are_measured_unless_some_are_named() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--samples", "2"]);

@@ -3,17 +3,18 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a helper of a test may fail like the test")]
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
-use weekender::baseline::{Baseline, FLAGS, SOURCE};
 use weekender::compare::ROUNDING_BIAS;
 use weekender::film::Film;
+use weekender::measure::baseline::{Baseline, FLAGS, SOURCE};
+use weekender::output::{Encoding, read_picture};
 use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::Camera;
 use weekender::scene::builtin::metals;
-use weekender::stages::Rules;
+use weekender::stages::{Rules, Stage};
 use weekender::statistics::blocks::{BlockTest, Differences, Noise};
 
 const WIDTH: usize = 128;
@@ -43,20 +44,6 @@ fn job(scene: &str) -> RenderJob {
     recipe.settings.height = HEIGHT as u32;
     recipe.settings.sampler = SamplerKind::Independent;
     recipe.job().unwrap()
-}
-
-/// Means of a PFM, linear RGB, top row first.
-fn read_pfm(path: &Path) -> Vec<[f64; 3]> {
-    let bytes = std::fs::read(path).unwrap();
-    let scale = if cfg!(target_endian = "little") { "-1.0" } else { "1.0" };
-    let header = format!("PF\n{WIDTH} {HEIGHT}\n{scale}\n");
-    let values = bytes.strip_prefix(header.as_bytes()).unwrap();
-    assert_eq!(values.len(), 12 * WIDTH * HEIGHT);
-    let channel = |pixel: &[u8], c: usize| {
-        f64::from(f32::from_ne_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]))
-    };
-    let rows = values.chunks_exact(12 * WIDTH).rev();
-    rows.flat_map(|row| row.chunks_exact(12)).map(|pixel| [0, 1, 2].map(|c| channel(pixel, c))).collect()
 }
 
 /// Two means of each pixel, from equal numbers of independent samples. Their mean is the picture, and their
@@ -95,17 +82,15 @@ fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
 }
 
 fn check(name: &str, job: &RenderJob, samples: u64) {
-    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
-    let directory = tempfile::tempdir().unwrap();
-    let text = baseline.write_scene(job, "scene").unwrap();
-    let out = directory.path().join("picture.pfm");
-    let theirs: Halves = [1, 2].map(|seed| {
-        let run =
-            baseline.run(Some(&text), job.settings(), samples / 2, seed, Some(&out), &|| false).unwrap();
-        assert_eq!(run.paths, samples / 2 * (WIDTH * HEIGHT) as u64);
-        assert!(run.rays > run.paths);
-        assert!(run.seconds > 0.0 && run.processor_seconds > 0.0);
-        read_pfm(&out)
+    let mut baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
+    let go_on = AtomicBool::new(false);
+    let half = samples / 2;
+    let theirs: Halves = [0..half, half..samples].map(|range| {
+        let mut film = Film::new(WIDTH as u32, HEIGHT as u32, 1);
+        let stats = baseline.accumulate(job, range, &mut film, &go_on).unwrap();
+        assert_eq!(stats.paths, half * (WIDTH * HEIGHT) as u64);
+        assert!(stats.rays > stats.paths && !stats.trace.is_zero());
+        (0..WIDTH * HEIGHT).map(|pixel| film.mean(pixel)).collect()
     });
     let mut film = job.new_film();
     let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
@@ -141,29 +126,45 @@ fn fuzzy_metals_are_the_same_picture() {
     }
 }
 
-#[test]
-fn without_a_scene_file_it_renders_the_three_spheres() {
-    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
-    let job = job("three-spheres");
-    let directory = tempfile::tempdir().unwrap();
-    let paths = ["given.pfm", "built-in.pfm"].map(|name| directory.path().join(name));
-    let text = baseline.write_scene(&job, "scene").unwrap();
-    baseline.run(Some(text.as_path()), job.settings(), 2, 7, Some(&paths[0]), &|| false).unwrap();
-    baseline.run(None, job.settings(), 2, 7, Some(&paths[1]), &|| false).unwrap();
-    // The camera's up vector and the sky are written in full; its focus distance is the book's.
-    assert_eq!(read_pfm(&paths[0]), read_pfm(&paths[1]));
+/// What the program says to these arguments after the size, the samples, the depth and the seed.
+fn run(baseline: &Baseline, arguments: &[&Path]) -> Output {
+    let numbers = ["16", "9", "2", "50", "7"];
+    Command::new(baseline.program()).args(numbers).args(arguments).output().unwrap()
 }
 
 #[test]
-fn bad_arguments_are_refused() {
+fn without_a_scene_file_it_renders_the_three_spheres() {
+    let mut baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
+    let mut recipe = Recipe::find("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height, recipe.settings.max_depth) = (16, 9, 50);
+    recipe.settings.seed = 7;
+    let mut film = Film::new(16, 9, 1);
+    baseline.accumulate(&recipe.job().unwrap(), 0..2, &mut film, &AtomicBool::new(false)).unwrap();
     let directory = tempfile::tempdir().unwrap();
-    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
-    let job = job("three-spheres");
+    let out = directory.path().join("built-in.pfm");
+    assert!(run(&baseline, &[Path::new("--out"), &out]).status.success());
+    // The camera's up vector and the sky are written in full; its focus distance is the book's.
+    for (pixel, mean) in read_picture(&out, Encoding::Srgb).unwrap().pixels.into_iter().enumerate() {
+        let found = film.mean(pixel);
+        assert!((0..3).all(|channel| (found[channel] - mean[channel]).abs() < 1e-7), "{found:?} {mean:?}");
+    }
+}
+
+#[test]
+fn bad_scenes_and_unsupported_rules_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
     let broken = directory.path().join("broken.txt");
     for text in ["metal 0 0 0 1 1 1", "cube 1 2 3", "camera 1 2 x"] {
         std::fs::write(&broken, text).unwrap();
-        let refused =
-            baseline.run(Some(&broken), job.settings(), 1, 1, None, &|| false).unwrap_err().to_string();
-        assert!(refused.contains("rt_weekend: "), "{text}: {refused}");
+        let output = run(&baseline, &[Path::new("--scene"), &broken]);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && error.contains("rt_weekend: "), "{text}: {error}");
     }
+    let stage = Stage::find("shadow-acne").unwrap().recipe().job().unwrap();
+    let error = baseline.prepare(&stage, &AtomicBool::new(false)).unwrap_err().to_string();
+    assert!(error.contains("only the rules of the finished renderer"), "{error}");
+    let go_on = AtomicBool::new(true);
+    let cancelled = baseline.accumulate(&job("book"), 0..1 << 20, &mut Film::new(128, 72, 1), &go_on);
+    assert!(matches!(cancelled, Err(RenderError::Cancelled)), "{cancelled:?}");
 }

@@ -1,12 +1,10 @@
 //! `weekender report`: what it writes, how it continues after an interruption, and what it refuses.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
-use serde_json::json;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::report::CurveSummary;
 
 fn command(arguments: &[&str], directory: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -338,44 +336,6 @@ mod interrupted {
             }
         }
     }
-}
-
-/// The curve of pictures with these squared errors at 1, 2, 4 ... samples, of which each takes a second.
-fn curve(pictures: &[&[f64]]) -> CurveSummary {
-    let point = |(power, mse): (usize, &f64)| {
-        let samples = 1 << power;
-        json!({"samples": samples, "trace_seconds": samples, "wall_seconds": samples, "device_seconds": null,
-               "mse": mse, "rel_mse": 0.1, "flip": 0.1, "mse_estimate": null, "rejected": 0})
-    };
-    let run = |(seed, errors): (usize, &&[f64])| {
-        let points: Vec<_> = errors.iter().enumerate().map(point).collect();
-        json!({"scene": "s", "backend": "cpu", "sampler": "sobol", "seed": seed, "about": "", "prepare_seconds": 0,
-               "points": points})
-    };
-    let runs: Vec<_> = pictures.iter().enumerate().map(run).collect();
-    let settings = json!({"software": "", "size": [4, 4], "seeds": 4, "time_limit": 1, "max_samples": 64,
-                          "estimate_error": true, "reference_samples": 64, "reference": "cpu"});
-    let data = json!({"schema": 1, "settings": settings, "references": [], "runs": runs, "rounding": []});
-    let data = weekender::report::parse(data.to_string().as_bytes()).unwrap();
-    weekender::report::curves(&data, &[0.25]).remove(0)
-}
-
-#[test]
-fn a_curve_ends_where_most_of_its_pictures_end() {
-    let fall = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
-    let found = curve(&[&fall, &fall, &fall[..5], &fall[..3]]);
-    let samples: Vec<u64> = found.points.iter().map(|point| point.samples).collect();
-    assert_eq!(samples, [1, 2, 4, 8, 16], "half of the pictures are not most of them");
-    // The error is 0.25 at 16 samples, which take 16 s.
-    let crossing = found.times[0].unwrap();
-    assert!((crossing.time - 16.0).abs() < 1e-9 && !crossing.is_extrapolated, "{crossing:?}");
-}
-
-#[test]
-fn an_error_is_reached_when_it_is_not_exceeded_again() {
-    let found = curve(&[&[1.0, 0.04, 0.09, 0.01]]);
-    let crossing = found.times[0].unwrap();
-    assert!(4.0 < crossing.time && crossing.time < 8.0 && !crossing.is_extrapolated, "{crossing:?}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use super::model::view::With;
 use super::tips::{self, Side};
 use super::widgets::{About, control};
 use crate::stages::Stage;
-use crate::stress::Case;
+use crate::measure::stress::Case;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.

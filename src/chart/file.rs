@@ -3,9 +3,10 @@
 use super::style::{FAINT_INK, FONT, INK, Units, provide_font};
 use super::{Figure, Panel, bars, lines};
 use crate::files::{WriteError, replace_file};
+use image::{ImageFormat, RgbImage};
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use std::io;
+use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
 /// Pixels of a PNG per point.
@@ -90,39 +91,15 @@ pub(super) fn svg(figure: &Figure) -> Result<Vec<u8>, String> {
 
 fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     let [width, height] = figure.size.map(|points| points * PNG_SCALE);
-    let drawn = (width * SMOOTHING, height * SMOOTHING);
-    let mut large = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
-    let area = BitMapBackend::with_buffer(&mut large, drawn).into_drawing_area();
+    let mut large = RgbImage::new(width * SMOOTHING, height * SMOOTHING);
+    let dimensions = large.dimensions();
+    let area = BitMapBackend::with_buffer(&mut large, dimensions).into_drawing_area();
     draw(&area, figure, Units(f64::from(PNG_SCALE * SMOOTHING))).map_err(|error| error.to_string())?;
     drop(area);
-    let pixels = smaller(&large, width as usize, height as usize);
-    let mut bytes = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(::png::ColorType::Rgb);
-    let write = |encoder: ::png::Encoder<_>| {
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&pixels)?;
-        writer.finish()
-    };
-    write(encoder).map_err(|error| error.to_string())?;
-    Ok(bytes)
-}
-
-/// Averages square groups of pixels.
-fn smaller(large: &[u8], width: usize, height: usize) -> Vec<u8> {
-    let side = SMOOTHING as usize;
-    let mut pixels = Vec::with_capacity(3 * width * height);
-    for y in 0..height {
-        for x in 0..3 * width {
-            let (column, channel) = (x / 3, x % 3);
-            let square = (0..side * side).map(|i| {
-                let (row, column) = (y * side + i / side, column * side + i % side);
-                u32::from(large[3 * (row * width * side + column) + channel])
-            });
-            pixels.push((square.sum::<u32>() / (SMOOTHING * SMOOTHING)) as u8);
-        }
-    }
-    pixels
+    let mut bytes = Cursor::new(Vec::new());
+    let small = image::imageops::thumbnail(&large, width, height);
+    small.write_to(&mut bytes, ImageFormat::Png).map_err(|error| error.to_string())?;
+    Ok(bytes.into_inner())
 }
 
 fn draw<B: DrawingBackend>(
@@ -146,22 +123,4 @@ fn draw<B: DrawingBackend>(
         }
     }
     area.present()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_pixel_is_the_mean_of_a_square_of_four() {
-        // Squares of one colour: it tells the column, the row and the channel.
-        let colour = |x: usize, y: usize| [0, 1, 2].map(|channel| (10 * x + 100 * y + channel) as u8);
-        let picture = |width: usize, height: usize, side: usize| -> Vec<u8> {
-            let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x / side, y / side)));
-            pixels.flat_map(|(x, y)| colour(x, y)).collect()
-        };
-        assert_eq!(smaller(&picture(6, 4, 2), 3, 2), picture(3, 2, 1));
-        let square: Vec<u8> = [[0, 9, 255], [4, 9, 0], [8, 9, 255], [4, 9, 1]].concat();
-        assert_eq!(smaller(&square, 1, 1), [4, 9, 127]);
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::axis::Ruler;
 use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
-use super::{Corner, LineChart, Look, Series};
+use super::{LineChart, Look, Series};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -104,36 +104,12 @@ fn measured<'a, B: DrawingBackend + 'a>(
         let (length, radius) = (units.px(26.0), units.px(4.5));
         drawn.label(&series.name).legend(move |(x, y)| {
             let line = PathElement::new(vec![(x, y), (x + length, y)], style);
-            EmptyElement::at((0, 0)) + line + mark((x + length / 2, y), radius, index)
+            EmptyElement::at((0, 0)) + line + Circle::new((x + length / 2, y), radius, color(index).filled())
         });
     }
     let radius = units.px(4.5);
-    context
-        .draw_series(placed.iter().map(|point| EmptyElement::at(point.at) + mark((0, 0), radius, index)))?;
+    context.draw_series(placed.iter().map(|point| Circle::new(point.at, radius, color(index).filled())))?;
     Ok(())
-}
-
-/// A filled mark: circle, square, diamond or triangle in turn.
-fn mark(at: (i32, i32), radius: i32, index: usize) -> Polygon<(i32, i32)> {
-    let corners: &[(f64, f64)] = match index % 4 {
-        1 => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
-        2 => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
-        3 => &[(0.0, -1.25), (1.2, 0.85), (-1.2, 0.85)],
-        _ => &[],
-    };
-    let place = |(x, y): (f64, f64)| {
-        let along = |middle: i32, offset: f64| middle + (offset * f64::from(radius)).round() as i32;
-        (along(at.0, x), along(at.1, y))
-    };
-    const CIRCLE: usize = 24;
-    let points: Vec<(i32, i32)> = if corners.is_empty() {
-        (0..CIRCLE)
-            .map(|step| place((step as f64 / CIRCLE as f64 * std::f64::consts::TAU).sin_cos()))
-            .collect()
-    } else {
-        corners.iter().copied().map(place).collect()
-    };
-    Polygon::new(points, color(index).filled())
 }
 
 fn legend<'a, B: DrawingBackend + 'a>(
@@ -141,13 +117,7 @@ fn legend<'a, B: DrawingBackend + 'a>(
     chart: &LineChart,
     units: Units,
 ) -> Drawn<B> {
-    let position = match chart.legend {
-        None => return Ok(()),
-        Some(Corner::UpperLeft) => SeriesLabelPosition::UpperLeft,
-        Some(Corner::UpperRight) => SeriesLabelPosition::UpperRight,
-        Some(Corner::LowerLeft) => SeriesLabelPosition::LowerLeft,
-        Some(Corner::LowerRight) => SeriesLabelPosition::LowerRight,
-    };
+    let Some(position) = chart.legend.clone() else { return Ok(()) };
     context
         .configure_series_labels()
         .position(position)

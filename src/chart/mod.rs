@@ -14,6 +14,7 @@ mod style;
 pub use axis::{Axis, Scale};
 pub use file::{ChartError, ChartFormat, save};
 pub use page::{UNTITLED_TOP, page_svg};
+pub use plotters::chart::SeriesLabelPosition as Corner;
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,19 +53,6 @@ pub struct LineChart {
     pub series: Vec<Series>,
     /// Position of the legend; `None` for no legend.
     pub legend: Option<Corner>,
-}
-
-/// A corner of a chart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Corner {
-    /// Upper left.
-    UpperLeft,
-    /// Upper right.
-    UpperRight,
-    /// Lower left.
-    LowerLeft,
-    /// Lower right.
-    LowerRight,
 }
 
 /// Points drawn as one line.

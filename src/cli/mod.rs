@@ -35,7 +35,7 @@ pub use plan::{PartOptions, PlanFormat, PlanOptions, PlannedWork};
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::CHECKPOINT_INTERVAL;
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
-pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
+pub use report::{ReferenceChoice, ReportOptions};
 pub use sources::DEFAULT_SCENE;
 pub use stress::StressOptions;
 pub use values::JsonTarget;
@@ -137,7 +137,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     }
     match raw.command {
         Some(RawCommand::Bench(raw)) => {
-            bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
+            raw.check().map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
         }
         Some(RawCommand::Plan(raw)) => plan::plan(*raw, &program, typed)
             .map(|options| Request::Plan(Box::new(options)))
@@ -155,11 +155,11 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Compare(raw)) => {
             compare::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Report(raw)) => report::report(*raw, typed)
-            .map(|options| Request::Report(Box::new(options)))
-            .map_err(Failure::input),
+        Some(RawCommand::Report(raw)) => {
+            raw.check(typed).map(|options| Request::Report(Box::new(options))).map_err(Failure::input)
+        }
         Some(RawCommand::Stress(raw)) => {
-            stress::stress(*raw).map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
+            raw.check().map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
         }
         Some(RawCommand::Companion(raw)) => companion::companion(*raw)
             .map(|options| Request::Companion(Box::new(options)))

@@ -1,33 +1,25 @@
-//! The flags of `weekender stress` and their validation.
+//! The flags of `weekender stress`.
 
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_levels, parse_seconds, whole};
-use crate::backends::BackendError;
-use crate::render_cpu::{CpuError, Isa};
+use super::values::{JsonTarget, Levels, parse_levels};
+use crate::render_cpu::Isa;
 use clap::Args;
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::path::PathBuf;
 
+/// Options of `weekender stress`.
 #[derive(Debug, Args)]
-pub(super) struct RawStress {
+pub struct StressOptions {
     /// Run only cases whose id contains this, such as copies or moved/1e5
-    #[arg(long, value_name = "TEXT", help_heading = "Cases")]
-    pub filter: Option<String>,
-    /// Afterwards, try random scenes for this many seconds; failing ones are shrunk and saved as scene files
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Cases")]
-    pub search: Option<f64>,
-    /// Seed of the random scenes, 0 to 4294967295
-    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=u32::MAX, 7), default_value = "0",
-          allow_hyphen_values = true, requires = "search", help_heading = "Cases")]
-    pub seed: u32,
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true, help_heading = "Cases")]
+    pub filter: String,
 
     /// Instruction levels, separated by commas; auto: the best that fuses multiply and add and the best that does not,
     /// all: all that this processor has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
           help_heading = "Backends")]
-    pub isa: Levels,
+    isa: Levels,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the
     /// best one, if there is one]
     #[arg(long, value_name = "SUBSTRING", help_heading = "Backends")]
@@ -35,9 +27,8 @@ pub(super) struct RawStress {
 
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
-    pub json: Option<PathBuf>,
-    /// Write pictures, the table as Markdown and an HTML page to this directory; failing scenes of a search are saved
-    /// there, too [default for these: stress]
+    json: Option<PathBuf>,
+    /// Write pictures, the table as Markdown and an HTML page to this directory
     #[arg(long, value_name = "DIRECTORY", help_heading = "Files")]
     pub out: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
@@ -45,62 +36,38 @@ pub(super) struct RawStress {
     pub progress: ProgressChoice,
 }
 
-/// Options of `weekender stress`.
-#[derive(Clone, Debug)]
-pub struct StressOptions {
-    /// Text that the id of a case must contain.
-    pub filter: String,
-    /// Duration of the search among random scenes.
-    pub search: Option<Duration>,
-    /// Seed of the random scenes.
-    pub seed: u32,
-    /// Instruction levels of the CPU.
-    pub levels: Vec<Isa>,
-    /// The GPU that was named.
-    pub adapter: Option<String>,
-    /// Where the JSON is written.
-    pub json: Option<JsonTarget>,
-    /// Directory for pictures and tables.
-    pub out: Option<PathBuf>,
-    /// Whether progress is shown.
-    pub progress: ProgressChoice,
-}
-
-/// The name, if a picture of a case or a scene of the search may have it.
-fn own_name(name: &str) -> Option<String> {
+/// The name, if a picture of a case may have it.
+fn picture_name(name: &str) -> Option<String> {
     let folded = name.to_lowercase();
-    let is_picture = folded.ends_with("-ours.png") || folded.ends_with("-book.png");
-    let is_scene = folded.starts_with("found-") && folded.ends_with(".toml");
-    (is_picture || is_scene).then(|| name.to_owned())
+    (folded.ends_with("-ours.png") || folded.ends_with("-book.png")).then(|| name.to_owned())
 }
 
-/// Validates the flags of `weekender stress`.
-pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
-    let available = Isa::available();
-    let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
-    let levels = match raw.isa {
-        Levels::Auto => best(true).into_iter().chain(best(false)).collect(),
-        Levels::All => available.iter().rev().copied().collect(),
-        Levels::Named(levels) => levels,
-    };
-    if let Some(isa) = levels.iter().copied().find(|isa| !available.contains(isa)) {
-        return Err(BackendError::Cpu(CpuError::Isa { isa, available }).into());
+impl StressOptions {
+    /// Returns an error if the files conflict.
+    pub(super) fn check(self) -> Result<Self, CliError> {
+        self.levels()?;
+        let pages = self.out.iter().flat_map(|out| ["table.md", "index.html"].map(|name| out.join(name)));
+        let paths = pages.fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)));
+        let paths = paths.write_json(self.json().as_ref());
+        match &self.out {
+            Some(out) => paths.own("a file of --out,", out, picture_name).check(&[])?,
+            None => paths.check(&[])?,
+        }
+        Ok(self)
     }
-    let json = raw.json.map(JsonTarget::from);
-    let pages = raw.out.iter().flat_map(|out| ["table.md", "index.html"].map(|name| out.join(name)));
-    pages
-        .fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)))
-        .write_json(json.as_ref())
-        .own("a file of --out,", raw.out.as_deref().unwrap_or(Path::new("stress")), own_name)
-        .check(&[])?;
-    Ok(StressOptions {
-        filter: raw.filter.unwrap_or_default(),
-        search: raw.search.map(Duration::from_secs_f64),
-        seed: raw.seed,
-        levels,
-        adapter: raw.adapter,
-        json,
-        out: raw.out,
-        progress: raw.progress,
-    })
+
+    /// Instruction levels of the CPU.
+    ///
+    /// # Errors
+    /// If the processor lacks one.
+    pub fn levels(&self) -> Result<Vec<Isa>, CliError> {
+        self.isa.available(|available| {
+            let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
+            best(true).into_iter().chain(best(false)).collect()
+        })
+    }
+
+    pub fn json(&self) -> Option<JsonTarget> {
+        self.json.clone().map(JsonTarget::from)
+    }
 }

@@ -1,6 +1,6 @@
 //! The whole command line as clap parses it: rendering, or a subcommand.
 
-use super::bench::RawBench;
+use super::bench::BenchOptions;
 use super::check::RawCheck;
 use super::companion::RawCompanion;
 use super::compare::RawCompare;
@@ -9,8 +9,8 @@ use super::gallery::RawGallery;
 use super::merge::{RawInfo, RawMerge};
 use super::plan::{RawPart, RawPlan};
 use super::raw::RawRender;
-use super::report::RawReport;
-use super::stress::RawStress;
+use super::report::ReportOptions;
+use super::stress::StressOptions;
 use crate::failure::EXIT_CODES;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub(super) enum RawCommand {
     ///
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
     /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
-    Bench(Box<RawBench>),
+    Bench(Box<BenchOptions>),
     /// Divide the samples of a picture, or the frames of an animation, into parts that many machines render, and make the
     /// commands for them
     ///
@@ -72,13 +72,13 @@ pub(super) enum RawCommand {
     /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
     ///
     /// Continues an interrupted report that has the same settings.
-    Report(Box<RawReport>),
+    Report(Box<ReportOptions>),
     /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
     ///
     /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on: by a CPU level that
     /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
     /// are right, 1 if one is not and 2 if nothing could be run.
-    Stress(Box<RawStress>),
+    Stress(Box<StressOptions>),
     /// Write the companion: a web page that goes through the book in pictures, in code and live
     ///
     /// The page is index.html in the directory --out, with its figures beside it. It needs no server and no network.

@@ -1,11 +1,13 @@
 //! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
+use super::error::CliError;
 use crate::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
+use crate::backends::BackendError;
 use crate::film::ROUNDING_LIMIT;
 use crate::number::Number;
 use crate::output::FrameRate;
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
-use crate::render_cpu::Isa;
+use crate::render_cpu::{CpuError, Isa};
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use crate::scene::{DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, VFOV_LIMITS_DEGREES};
 use glam::DVec3;
@@ -72,6 +74,22 @@ pub(super) enum Levels {
     All,
     /// These, the least capable first.
     Named(Vec<Isa>),
+}
+
+impl Levels {
+    /// The levels that are meant; `auto` chooses among those of this processor, the most capable last.
+    pub fn available(&self, auto: impl FnOnce(&[Isa]) -> Vec<Isa>) -> Result<Vec<Isa>, CliError> {
+        let available = Isa::available();
+        let levels = match self {
+            Levels::Auto => auto(&available),
+            Levels::All => available.clone(),
+            Levels::Named(levels) => levels.clone(),
+        };
+        match levels.iter().copied().find(|isa| !available.contains(isa)) {
+            Some(isa) => Err(BackendError::Cpu(CpuError::Isa { isa, available }).into()),
+            None => Ok(levels),
+        }
+    }
 }
 
 pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {

@@ -2,10 +2,10 @@
 
 use super::fault::Fault;
 use super::library::{FOLDER, Library};
-use crate::bench;
+use crate::measure;
 use crate::chart::{self, UNTITLED_TOP};
 use crate::describe::counted;
-use crate::report::{self, CurveSummary};
+use crate::measure::report::{self, CurveSummary};
 use anyhow::{Context, Result, ensure};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
@@ -100,10 +100,10 @@ impl Measured {
 /// One table per scene, from the JSON of `weekender bench`.
 fn speed_tables(kept: &Kept) -> Result<Markup> {
     let json: Value = serde_json::from_str(&kept.text).unwrap_or_default();
-    let is_known = json["schema"] == bench::SCHEMA;
+    let is_known = json["schema"] == measure::SCHEMA;
     let scenes = json["scenes"].as_array().filter(|scenes| is_known && !scenes.is_empty());
     let scenes = scenes.with_context(|| {
-        let (version, needed) = (&json["schema"], bench::SCHEMA);
+        let (version, needed) = (&json["schema"], measure::SCHEMA);
         format!(
             "is no benchmark of version {needed}, but {version}; make it with weekender bench --json FILE"
         )
@@ -390,7 +390,7 @@ mod tests {
             let scene = json!({"scene": "book", "width": 200, "height": 113, "max_depth": 50, "spheres": 485, "rows": rows});
             json!({"schema": schema, "machine": {"processor": "A CPU", "cores": 4}, "scenes": [scene]})
         };
-        let html = speed_tables(&kept(&bench(bench::SCHEMA))).unwrap().into_string();
+        let html = speed_tables(&kept(&bench(measure::SCHEMA))).unwrap().into_string();
         assert_eq!(
             rows(&html),
             [

@@ -3,7 +3,7 @@
 use crate::common::{has_samples, open, send, until};
 use egui_kittest::kittest::Queryable;
 use weekender::app::Command;
-use weekender::stress::shown_cases;
+use weekender::measure::stress::shown_cases;
 
 fn make_small(harness: &mut egui_kittest::Harness<'_, weekender::app::Window>) {
     harness.state_mut().document_mut().give_size([30, 20]);

@@ -17,7 +17,7 @@ use super::model::sizing::Sizing;
 use super::model::viewpoint::Viewpoint;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
-use crate::stress::{Case, shown_cases};
+use crate::measure::stress::{Case, shown_cases};
 
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]

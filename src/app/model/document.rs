@@ -7,7 +7,7 @@ use crate::recipe::Recipe;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::{Rules, Shading, Stage};
-use crate::stress::Case;
+use crate::measure::stress::Case;
 use std::sync::Arc;
 
 /// What the names of files of changed scenes end in.

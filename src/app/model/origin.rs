@@ -6,7 +6,7 @@ use crate::files::Stamp;
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::stages::{Shading, Stage, SurfaceRule};
-use crate::stress::{Case, by_the_book};
+use crate::measure::stress::{Case, by_the_book};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -11,7 +11,7 @@ use crate::progressive::Stop;
 use crate::recipe::{Recipe, file};
 use crate::scene::Scene;
 use crate::stages::Stage;
-use crate::stress::shown_cases;
+use crate::measure::stress::shown_cases;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;

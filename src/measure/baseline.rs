@@ -1,0 +1,250 @@
+//! The control: a plain C89 program that renders the same picture. It is compiled on demand.
+
+use crate::film::{FIXED_POINT_SCALE, Film, PixelSum};
+use crate::output::{Encoding, read_picture};
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::scene::{Camera, Parameter, Scene};
+use anyhow::{Context, Result, anyhow, bail};
+use glam::DVec3;
+use std::fmt::{Display, Write as _};
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// The C source, `reference/rt_weekend.c`.
+pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
+
+/// Flags for the C compiler.
+pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
+
+/// How often the program checks whether the caller wants to stop.
+const POLL: Duration = Duration::from_millis(20);
+
+/// The compiled program. As a renderer it draws its own independent random numbers, and its films have one half.
+pub struct Baseline {
+    directory: TempDir,
+    compiler: String,
+    /// The job whose scene file is written.
+    job: Option<RenderJob>,
+}
+
+impl Baseline {
+    /// Compiles the program with the C compiler that the environment variable CC names, or with `cc`.
+    ///
+    /// # Errors
+    /// If there is no compiler, or it fails.
+    pub fn compile() -> Result<Self> {
+        let compiler = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
+        let compiler = compiler.unwrap_or_else(|| "cc".to_owned());
+        let directory = tempfile::Builder::new().prefix("weekender-baseline-").tempdir()?;
+        let baseline = Baseline { directory, compiler, job: None };
+        let source = baseline.file("rt_weekend.c");
+        fs::write(&source, SOURCE).context("cannot write the C program")?;
+        let mut words = baseline.compiler.split_whitespace();
+        let output = Command::new(words.next().unwrap_or("cc"))
+            .args(words)
+            .args(FLAGS)
+            .arg("-o")
+            .args([baseline.program(), source])
+            .arg("-lm")
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|reason| {
+                let compiler = &baseline.compiler;
+                anyhow!("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")
+            })?;
+        if !output.status.success() {
+            let message = String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
+            bail!("{} cannot compile the C program: {message}", baseline.compiler);
+        }
+        Ok(baseline)
+    }
+
+    /// The executable file.
+    pub fn program(&self) -> PathBuf {
+        self.file(&format!("rt_weekend{}", std::env::consts::EXE_SUFFIX))
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    /// Renders these samples of the prepared job to `picture.pfm`.
+    fn run(&self, job: &RenderJob, samples: &Range<u64>, cancel: &AtomicBool) -> Result<Stats, RenderError> {
+        let settings = job.settings();
+        // Each range of samples has random numbers of its own. The program takes seeds of 31 bits.
+        let seed = settings.seed.wrapping_add((samples.start as u32).wrapping_mul(0x9e37_79b9)) & 0x7fff_ffff;
+        let numbers = [settings.width, settings.height].map(u64::from).into_iter();
+        let numbers = numbers.chain([samples.end - samples.start, settings.max_depth.into(), seed.into()]);
+        let mut command = Command::new(self.program());
+        command.args(numbers.map(|number| number.to_string()));
+        command.arg("--scene").arg(self.file("scene.txt")).arg("--out").arg(self.file("picture.pfm"));
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(failed)?;
+        let (lines, received) = mpsc::channel();
+        let reader = child.stdout.take().map(|pipe| {
+            std::thread::spawn(move || {
+                for line in BufReader::new(pipe).lines().map_while(Result::ok) {
+                    // After a cancellation, nobody receives this.
+                    let _ = lines.send((Instant::now(), line));
+                }
+            })
+        });
+        let (mut begin, mut stats) = (None, None);
+        loop {
+            match received.recv_timeout(POLL) {
+                Ok((now, line)) if line == "tracing" => begin = Some(now),
+                Ok((now, line)) => stats = begin.and_then(|begin| figures(&line, now - begin)).or(stats),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if cancel.load(Ordering::Relaxed) {
+                // If it has just ended, there is nothing to kill.
+                let _ = child.kill();
+            }
+        }
+        if let Some(reader) = reader {
+            // The thread only reads; a panic in it does not affect the run.
+            let _ = reader.join();
+        }
+        let output = child.wait_with_output().map_err(failed)?;
+        match stats {
+            _ if cancel.load(Ordering::Relaxed) => Err(RenderError::Cancelled),
+            Some(stats) if output.status.success() => Ok(stats),
+            _ => Err(failed(format!("{}, {}", output.status, String::from_utf8_lossy(&output.stderr).trim()))),
+        }
+    }
+}
+
+impl Renderer for Baseline {
+    fn info(&self) -> BackendInfo {
+        BackendInfo { name: "C89", device: format!("{} -O2", self.compiler), lanes: 1, threads: 1 }
+    }
+
+    fn prepare(&mut self, job: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        if self.job.as_ref() == Some(job) {
+            return Ok(());
+        }
+        if !job.rules().are_finished() {
+            return Err(failed("it has only the rules of the finished renderer"));
+        }
+        fs::write(self.file("scene.txt"), scene_text(job.scene(), job.camera())).map_err(failed)?;
+        self.job = Some(job.clone());
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.prepare(job, cancel)?;
+        let stats = self.run(job, &range, cancel)?;
+        // The encoding applies only to integers, and a PFM has none.
+        let picture = read_picture(&self.file("picture.pfm"), Encoding::Srgb).map_err(failed)?;
+        let scale = (range.end - range.start) as f64 * FIXED_POINT_SCALE;
+        film.record(range, 0)?;
+        for (sum, mean) in film.halves_mut()[0].iter_mut().zip(picture.pixels) {
+            sum.add(PixelSum(mean.map(|x| (x * scale).round() as u64)));
+        }
+        Ok(stats)
+    }
+}
+
+fn failed(reason: impl Display) -> RenderError {
+    RenderError::Backend { backend: "the C program", reason: reason.to_string() }
+}
+
+/// Parses `trace_seconds S paths P rays R`, which arrived `wall` after tracing began.
+fn figures(line: &str, wall: Duration) -> Option<Stats> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let ["trace_seconds", _, "paths", paths, "rays", rays] = words[..] else { return None };
+    Some(Stats { paths: paths.parse().ok()?, rays: rays.parse().ok()?, trace: wall, ..Stats::default() })
+}
+
+/// A scene in the baseline's format.
+fn scene_text(scene: &Scene, camera: &Camera) -> String {
+    let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
+    // vup may be almost parallel to the view; this is the same direction, to all digits.
+    let up = camera.basis().v;
+    let mut text = format!(
+        "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",
+        three(camera.look_from),
+        three(camera.look_at),
+        three(up),
+        camera.vfov_degrees,
+        camera.defocus_angle_degrees,
+        camera.effective_focus_distance(),
+        three(scene.sky.bottom),
+        three(scene.sky.top)
+    );
+    for sphere in &scene.spheres {
+        let place = format!("{} {:?}", three(sphere.center), sphere.radius);
+        let material = scene.material_of(sphere);
+        let words = material.parameters().into_iter().map(|(_, parameter)| match parameter {
+            Parameter::Number(number) => format!(" {number:?}"),
+            Parameter::Colour(colour) => format!(" {}", three(colour)),
+        });
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{} {place}{}", material.kind(), words.collect::<String>());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, Sky};
+
+    #[test]
+    fn a_scene_file_has_the_lens_that_is_in_effect_and_every_number_in_its_place() {
+        let mut scene = Scene {
+            sky: Sky { bottom: DVec3::new(0.5, 0.25, 0.75), top: DVec3::new(1.0, 2.0, 3.0) },
+            ..Scene::default()
+        };
+        let albedo = DVec3::new(0.1, 0.2, 0.3);
+        let materials = [
+            Material::Dielectric { refraction_index: 1.5 },
+            Material::Metal { albedo, fuzz: 0.4 },
+            Material::Lambertian { albedo },
+        ];
+        for (material, radius) in materials.into_iter().zip([0.5, 2.5, 100.0]) {
+            let index = scene.add_material(material.kind(), material);
+            scene.add_sphere(DVec3::new(4.0, 5.0, 6.0), radius, index);
+        }
+        // It looks along x, so what is up is y however far up is inclined.
+        let camera = Camera {
+            look_from: DVec3::new(3.0, 7.0, 8.0),
+            look_at: DVec3::new(-1.0, 7.0, 8.0),
+            vup: DVec3::new(3.0, 2.0, 0.0),
+            vfov_degrees: 40.0,
+            defocus_angle_degrees: 2.0,
+            focus_distance: None,
+        };
+        let numbers = |line: &str| -> Vec<f64> {
+            line.split(' ').skip(1).map(|word| word.parse().unwrap_or(f64::NAN)).collect()
+        };
+        let expected = [
+            ("camera", &[3.0, 7.0, 8.0, -1.0, 7.0, 8.0, 0.0, 1.0, 0.0, 40.0, 2.0, 4.0][..]),
+            ("sky", &[0.5, 0.25, 0.75, 1.0, 2.0, 3.0]),
+            ("dielectric", &[4.0, 5.0, 6.0, 0.5, 1.5]),
+            ("metal", &[4.0, 5.0, 6.0, 2.5, 0.1, 0.2, 0.3, 0.4]),
+            ("lambertian", &[4.0, 5.0, 6.0, 100.0, 0.1, 0.2, 0.3]),
+        ];
+        let text = scene_text(&scene, &camera);
+        assert_eq!(text.lines().count(), expected.len(), "{text}");
+        for (line, (word, values)) in text.lines().zip(expected) {
+            assert_eq!((line.split(' ').next(), numbers(line).as_slice()), (Some(word), values), "{text}");
+        }
+        let nearer = scene_text(&scene, &Camera { focus_distance: Some(2.5), ..camera });
+        assert_eq!(nearer.lines().next().and_then(|line| line.split(' ').next_back()), Some("2.5"));
+    }
+}

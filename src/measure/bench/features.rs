@@ -1,0 +1,148 @@
+//! Measures what a kernel gains by leaving out what its picture does not need: each picture is rendered with its own
+//! kernel and with the general one in turn. Both films must be equal to the bit.
+
+use super::super::{Candidate, Stop};
+use super::figures::{DeviceFigures, GainRow, Run};
+use super::{Bench, counted};
+use crate::backends::BackendChoice;
+use crate::cli::BenchScene;
+use crate::render_cpu::{CpuOptions, Isa};
+use crate::render_gpu::GpuOptions;
+use anyhow::{Result, bail};
+
+/// Candidates with each picture's own kernel, and with the general one.
+type Pair = [Candidate; 2];
+
+impl Bench<'_> {
+    /// Measures every picture on every device. An interrupt keeps the rows so far.
+    ///
+    /// # Errors
+    /// If the films of a picture's own and of the general kernel differ.
+    pub(super) fn features(&mut self, scenes: &[BenchScene]) -> Result<()> {
+        let pairs = self.pairs();
+        self.expect_runs(pairs.len() * scenes.len() * (1 + self.options.runs()));
+        for mut pair in pairs {
+            let skipped = pair.iter_mut().find_map(|candidate| candidate.start().err());
+            let skipped = skipped.map(|error| error.to_string());
+            if let Some(info) = pair[0].info().filter(|info| info.name == "gpu") {
+                pair[0].name = info.device;
+            }
+            let mut device = DeviceFigures { device: pair[0].name.clone(), rows: Vec::new(), skipped };
+            for scene in scenes.iter().take_while(|_| device.skipped.is_none()) {
+                self.progress.at(&format!("{}: {}", scene.name, device.device), 0.0);
+                let row = self.gain(scene, &mut pair);
+                if !self.is_cancelled() || row.gain.is_some() {
+                    device.rows.push(row);
+                }
+                if self.is_cancelled() {
+                    break;
+                }
+            }
+            self.figures.features.push(device);
+            if self.is_cancelled() {
+                break;
+            }
+        }
+        check(&self.figures.features)
+    }
+
+    fn pairs(&self) -> Vec<Pair> {
+        let pair = |name: &str, choice: &dyn Fn(bool) -> BackendChoice| {
+            [false, true].map(|general| Candidate::backend(name, choice(general)))
+        };
+        let cpu = |isa: &Isa| {
+            let name = format!("{isa}, {}, 1 thread", counted(isa.native_lanes(), "lane"));
+            let options = CpuOptions { isa: Some(*isa), threads: Some(1), ..CpuOptions::default() };
+            pair(&name, &|general| BackendChoice::Cpu(CpuOptions { general, ..options }))
+        };
+        let mut pairs: Vec<Pair> = self.levels.iter().map(cpu).collect();
+        if let Some(BackendChoice::Gpu(options)) =
+            BackendChoice::gpu_if_present(self.options.adapter.as_deref())
+        {
+            pairs.push(pair("GPU", &|general| {
+                BackendChoice::Gpu(GpuOptions { specialise: !general, ..options.clone() })
+            }));
+        }
+        pairs
+    }
+
+    fn gain(&mut self, scene: &BenchScene, pair: &mut Pair) -> GainRow {
+        let settings = scene.job.settings();
+        let mut row = GainRow {
+            name: scene.name.clone(),
+            is_stage: scene.is_stage,
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name(),
+            ..GainRow::default()
+        };
+        if let Err(Stop::Failed(reason)) = self.pairs_of_runs(scene, pair, &mut row) {
+            row.skipped = Some(reason);
+        }
+        row.sum_up();
+        row
+    }
+
+    fn pairs_of_runs(
+        &mut self,
+        scene: &BenchScene,
+        [own, general]: &mut Pair,
+        row: &mut GainRow,
+    ) -> Result<(), Stop> {
+        let (job, cancel) = (&scene.job, self.cancel);
+        let contents = |candidate: &mut Candidate| -> Result<_, Stop> {
+            let renderer = candidate.start()?;
+            renderer.prepare(job, cancel)?;
+            Ok(renderer.kernel_contents())
+        };
+        let (kernel, never) = (contents(own)?, contents(general)?.left_out);
+        row.kernel = kernel.present;
+        row.left_out = kernel.left_out.into_iter().filter(|word| !never.contains(word)).collect();
+        row.samples_per_pixel = self.affordable_samples(own, job, scene.samples)?;
+        let samples = row.samples_per_pixel;
+        general.trace(job, samples, cancel)?;
+        self.progress.finished(1.0);
+        for turn in 0..self.options.runs() {
+            // Neither kernel always follows the other.
+            let early = (turn % 2 == 1).then(|| general.trace(job, samples, cancel)).transpose()?;
+            let of_own = own.trace(job, samples, cancel)?;
+            let of_general = early.map_or_else(|| general.trace(job, samples, cancel), Ok)?;
+            row.own_runs.push(Run::of(&of_own));
+            row.general_runs.push(Run::of(&of_general));
+            row.same_bits = Some(row.same_bits != Some(false) && of_own.film == of_general.film);
+            self.progress.finished(1.0);
+        }
+        Ok(())
+    }
+}
+
+fn check(devices: &[DeviceFigures]) -> Result<()> {
+    let rows = devices.iter().flat_map(|device| device.rows.iter().map(move |row| (device, row)));
+    let differing: Vec<String> = rows
+        .filter(|(_, row)| row.same_bits == Some(false))
+        .map(|(device, row)| format!("{} ({})", row.name, device.device))
+        .collect();
+    if differing.is_empty() {
+        return Ok(());
+    }
+    bail!(
+        "the scene's own kernel and the general one give different films of {}; please report this with the command",
+        differing.join(", ")
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn films_that_differ_are_an_error_that_names_them() {
+        let row = |name: &str, same_bits| GainRow { name: name.to_owned(), same_bits, ..GainRow::default() };
+        let rows = vec![row("a", Some(true)), row("b", None), row("c", Some(false))];
+        let mut devices = vec![DeviceFigures { device: "avx2".to_owned(), rows, skipped: None }];
+        assert!(check(&devices).unwrap_err().to_string().contains("films of c (avx2);"));
+        devices[0].rows.truncate(2);
+        assert!(check(&devices).is_ok());
+    }
+}

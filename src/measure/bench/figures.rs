@@ -1,0 +1,305 @@
+//! The measured figures, as the JSON has them.
+
+use super::super::{Candidate, Traced};
+use crate::render::RenderJob;
+use crate::statistics::median;
+use serde::Serialize;
+
+/// Everything that was measured.
+#[derive(Default, Serialize)]
+pub struct BenchFigures {
+    /// Scenes, each with a row per candidate.
+    pub scenes: Vec<SceneFigures>,
+    /// Fields of growing size.
+    pub scale: Vec<ScaleFigures>,
+    /// What leaving things out of kernels gains, by device.
+    pub features: Vec<DeviceFigures>,
+    /// Reasons to doubt the figures.
+    pub warnings: Vec<String>,
+    pub interrupted: bool,
+}
+
+#[derive(Serialize)]
+pub struct SceneFigures {
+    pub scene: String,
+    pub width: u32,
+    pub height: u32,
+    pub max_depth: u32,
+    /// The C program always uses independent numbers, as the book does.
+    pub sampler: &'static str,
+    pub spheres: usize,
+    /// The rows in the order of the table.
+    pub rows: Vec<Row>,
+}
+
+/// What kind of candidate a row is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    Baseline,
+    /// One ray at a time.
+    Scalar,
+    /// Packets on one thread.
+    Packets,
+    /// Several threads.
+    Threads,
+    Gpu,
+}
+
+/// A candidate and its runs.
+#[derive(Clone, Serialize)]
+pub struct Row {
+    pub name: String,
+    pub kind: Kind,
+    /// Number of paths that advance in step.
+    pub lanes: usize,
+    pub threads: usize,
+    /// Samples per pixel of each run.
+    pub samples_per_pixel: u64,
+    /// All runs except the warm-up.
+    pub runs: Vec<Run>,
+    pub paths_per_second: Option<Spread>,
+    pub rays_per_second: Option<Spread>,
+    /// Fraction of the lanes that traced a ray; `None` for the C program and a GPU.
+    pub lanes_in_use: Option<f64>,
+    /// Paths per second, relative to the C program in the same scene.
+    pub ratio_to_baseline: Option<f64>,
+    /// `1 / (MSE seconds)`; `None` if the error is unknown.
+    pub efficiency: Option<f64>,
+    /// Why it was not measured.
+    pub skipped: Option<String>,
+}
+
+/// A run. Its time does not include reading, preparing and writing.
+#[derive(Clone, Copy, Serialize)]
+pub struct Run {
+    /// Wall time of tracing.
+    pub seconds: f64,
+    /// Pixels times samples.
+    pub paths: u64,
+    pub rays: u64,
+    /// Lanes that traced a ray, summed over all intersection steps.
+    pub busy_lanes: u64,
+    /// Lanes available, summed over the same steps.
+    pub offered_lanes: u64,
+    /// RMSE that the film estimates.
+    pub rmse: Option<f64>,
+}
+
+/// A field of a certain size.
+#[derive(Serialize)]
+pub struct ScaleFigures {
+    pub spheres: u64,
+    /// Time to generate the scene.
+    pub generate_seconds: f64,
+    /// Time to build the prepared scene, hierarchy included.
+    pub build_seconds: f64,
+    pub hierarchy_seconds: f64,
+    /// Bytes per sphere in the scene.
+    pub scene_bytes_per_sphere: f64,
+    /// Bytes per sphere in the prepared scene, hierarchy included.
+    pub table_bytes_per_sphere: f64,
+    /// Peak memory of the process, from generating the scene to the last run.
+    pub peak_memory_bytes: Option<u64>,
+    pub samples_per_pixel: u64,
+    pub paths_per_second: Option<Spread>,
+    pub rays_per_second: Option<Spread>,
+}
+
+/// The gain of leaving things out of kernels, on one device.
+#[derive(Serialize)]
+pub struct DeviceFigures {
+    /// The device, with lanes and threads of a CPU.
+    pub device: String,
+    pub rows: Vec<GainRow>,
+    /// Why it was not measured.
+    pub skipped: Option<String>,
+}
+
+/// A stage or scene, rendered with its own kernel and with the general one in turn.
+#[derive(Default, Serialize)]
+pub struct GainRow {
+    /// Id of the stage or name of the scene.
+    pub name: String,
+    pub is_stage: bool,
+    pub width: u32,
+    pub height: u32,
+    pub max_depth: u32,
+    pub sampler: &'static str,
+    pub samples_per_pixel: u64,
+    /// What its own kernel has.
+    pub kernel: String,
+    /// What its own kernel leaves out, of what the general kernel has.
+    pub left_out: Vec<&'static str>,
+    pub own_runs: Vec<Run>,
+    pub general_runs: Vec<Run>,
+    pub own_paths_per_second: Option<Spread>,
+    pub general_paths_per_second: Option<Spread>,
+    /// Time of the general kernel relative to its own, over the pairs of runs.
+    pub gain: Option<Spread>,
+    /// Whether the films of both kernels are equal to the bit.
+    pub same_bits: Option<bool>,
+    /// Why it was not measured.
+    pub skipped: Option<String>,
+}
+
+/// The spread of the runs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    pub median: f64,
+    pub min: f64,
+    pub max: f64,
+}
+
+impl Spread {
+    /// `None` if there are no values.
+    pub fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
+        let min = values.clone().reduce(f64::min)?;
+        let max = values.clone().reduce(f64::max)?;
+        Some(Spread { median: median(values)?, min, max })
+    }
+
+    /// Of `count` per second.
+    fn of_speeds(runs: &[Run], count: fn(&Run) -> u64) -> Option<Self> {
+        Spread::of(runs.iter().map(|run| count(run) as f64 / run.seconds))
+    }
+
+    /// The range as a fraction of the median.
+    pub fn share(self) -> f64 {
+        (self.max - self.min) / self.median
+    }
+}
+
+impl Run {
+    pub fn of(Traced { film, stats, .. }: &Traced) -> Self {
+        Run {
+            // Speeds are divided by it.
+            seconds: stats.trace.as_secs_f64().max(1e-9),
+            paths: stats.paths,
+            rays: stats.rays,
+            busy_lanes: stats.busy_lanes,
+            offered_lanes: stats.offered_lanes,
+            rmse: film.error().map(|error| error.rmse),
+        }
+    }
+}
+
+impl Row {
+    pub fn new(kind: Kind, candidate: &mut Candidate) -> Self {
+        let skipped = candidate.start().err().map(|error| format!("{error:#}"));
+        let (lanes, threads) = candidate.info().map_or((0, 0), |info| (info.lanes, info.threads));
+        Row {
+            name: candidate.name.clone(),
+            kind,
+            lanes,
+            threads,
+            samples_per_pixel: 0,
+            runs: Vec::new(),
+            paths_per_second: None,
+            rays_per_second: None,
+            lanes_in_use: None,
+            ratio_to_baseline: None,
+            efficiency: None,
+            skipped,
+        }
+    }
+
+    /// Computes the row's figures from its runs.
+    pub fn sum_up(&mut self) {
+        self.paths_per_second = Spread::of_speeds(&self.runs, |run| run.paths);
+        self.rays_per_second = Spread::of_speeds(&self.runs, |run| run.rays);
+        let total = |count: fn(&Run) -> u64| self.runs.iter().map(count).sum::<u64>();
+        let offered = total(|run| run.offered_lanes);
+        let has_lanes = offered > 0 && self.kind != Kind::Gpu;
+        self.lanes_in_use = has_lanes.then(|| total(|run| run.busy_lanes) as f64 / offered as f64);
+        let error = |run: &Run| run.rmse.filter(|rmse| *rmse > 0.0);
+        self.efficiency =
+            median(self.runs.iter().filter_map(|run| Some(1.0 / (error(run)?.powi(2) * run.seconds))));
+    }
+}
+
+impl GainRow {
+    /// Computes the row's figures from its runs.
+    pub fn sum_up(&mut self) {
+        self.own_paths_per_second = Spread::of_speeds(&self.own_runs, |run| run.paths);
+        self.general_paths_per_second = Spread::of_speeds(&self.general_runs, |run| run.paths);
+        let pairs = self.own_runs.iter().zip(&self.general_runs);
+        self.gain = Spread::of(pairs.map(|(own, general)| general.seconds / own.seconds));
+    }
+}
+
+impl SceneFigures {
+    /// Compares the rows with the C program.
+    pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>) -> Self {
+        let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
+        let baseline = rows.iter().find(|row| row.kind == Kind::Baseline).and_then(speed);
+        for row in &mut rows {
+            row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
+        }
+        let settings = job.settings();
+        SceneFigures {
+            scene: scene.to_owned(),
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name(),
+            spheres: job.scene().spheres.len(),
+            rows,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::recipe::Recipe;
+
+    #[test]
+    fn a_spread_has_the_middle_and_both_ends() {
+        let of = |values: &[f64]| Spread::of(values.iter().copied());
+        assert_eq!(of(&[3.0, 1.0, 2.0]), Some(Spread { median: 2.0, min: 1.0, max: 3.0 }));
+        assert_eq!(of(&[4.0, 1.0, 2.0, 3.0]), Some(Spread { median: 2.5, min: 1.0, max: 4.0 }));
+        assert_eq!(of(&[]), None);
+    }
+
+    fn row(kind: Kind, runs: Vec<Run>) -> Row {
+        let choice = BackendChoice::Reference { threads: Some(1) };
+        let mut row = Row::new(kind, &mut Candidate::backend("reference", choice));
+        row.runs = runs;
+        row.sum_up();
+        row
+    }
+
+    #[test]
+    fn rows_are_compared_with_the_baseline_of_their_own_scene() {
+        let run =
+            |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
+        let job = Recipe::builtin("metals").unwrap().job().unwrap();
+        let ratios = |rows: Vec<Row>| -> Vec<Option<f64>> {
+            SceneFigures::new("metals", &job, rows).rows.iter().map(|row| row.ratio_to_baseline).collect()
+        };
+        let first = vec![
+            row(Kind::Packets, vec![run(80), run(60), run(90)]),
+            row(Kind::Baseline, vec![run(20), run(10), run(90)]),
+            row(Kind::Gpu, Vec::new()),
+        ];
+        assert_eq!(ratios(first), [Some(4.0), Some(1.0), None]);
+        let without = vec![row(Kind::Packets, vec![run(80)]), row(Kind::Baseline, Vec::new())];
+        assert_eq!(ratios(without), [None, None]);
+    }
+
+    #[test]
+    fn a_row_sums_up_its_runs() {
+        let run = Run { seconds: 2.0, paths: 8, rays: 20, busy_lanes: 3, offered_lanes: 4, rmse: Some(0.5) };
+        let runs = vec![run, Run { seconds: 1.0, ..run }, Run { seconds: 4.0, ..run }];
+        let packets = row(Kind::Packets, runs.clone());
+        assert_eq!(packets.paths_per_second, Some(Spread { median: 4.0, min: 2.0, max: 8.0 }));
+        assert_eq!(packets.rays_per_second, Some(Spread { median: 10.0, min: 5.0, max: 20.0 }));
+        assert_eq!((packets.efficiency, packets.lanes_in_use), (Some(2.0), Some(0.75)));
+        // A black film has no noise, which tells nothing about the efficiency.
+        assert_eq!(row(Kind::Packets, vec![Run { rmse: Some(0.0), ..run }]).efficiency, None);
+        // A GPU has threads instead of lanes.
+        assert_eq!(row(Kind::Gpu, runs).lanes_in_use, None);
+    }
+}

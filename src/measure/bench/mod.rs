@@ -1,0 +1,304 @@
+//! `weekender bench`: how fast this machine renders, compared with a plain C program.
+
+mod features;
+mod figures;
+mod plot;
+mod scale;
+mod text;
+
+use super::machine::Machine;
+use super::progress::Progress;
+use super::table::counted;
+use super::{Candidate, Source, Stop, write_json};
+use crate::backends::BackendChoice;
+use crate::chart;
+use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::failure::Failure;
+use crate::files::check_writable;
+use crate::interrupt::Interrupt;
+use crate::render::RenderJob;
+use crate::render_cpu::{CpuOptions, Isa};
+use crate::terminal;
+use figures::{BenchFigures, Kind, Row, Run, SceneFigures, Spread};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// At a higher system load, the figures are doubtful.
+const LOAD_LIMIT: f64 = 0.5;
+
+/// The figures are doubtful if the range of the runs exceeds this fraction of their median.
+const SPREAD_LIMIT: f64 = 0.1;
+
+/// How long a GPU is kept busy before each measured run.
+const WAKING: Duration = Duration::from_millis(300);
+
+/// Shortest warm-up run whose speed is meaningful, seconds.
+const WARM_UP_SECONDS: f64 = 0.2;
+
+/// Measures, prints tables and writes files.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
+pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
+    let scenes = options.scenes().map_err(Failure::input)?;
+    let levels = options.levels().map_err(Failure::input)?;
+    let json = options.json();
+    if let Some(JsonTarget::File(path)) = &json {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    if let Some(path) = &options.plot {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let machine = Machine::look();
+    let progress = Progress::new(options.progress, 1.0);
+    let figures = BenchFigures::default();
+    let mut bench = Bench { options, levels, cancel: interrupt.flag(), progress, figures };
+    let measured = match &options.scale {
+        _ if options.features => bench.features(&scenes),
+        Some(counts) => bench.fields(counts),
+        None => {
+            bench.scenes(&scenes);
+            Ok(())
+        }
+    };
+    bench.progress.clear();
+    let mut figures = bench.figures;
+    figures.interrupted = interrupt.is_set();
+    figures.warnings = warnings(&figures, machine.load_at_start);
+    let written = write(options, json.as_ref(), &machine, &figures);
+    measured.and(written).map_err(Failure::Run)?;
+    Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
+}
+
+fn write(
+    options: &BenchOptions,
+    json: Option<&JsonTarget>,
+    machine: &Machine,
+    figures: &BenchFigures,
+) -> anyhow::Result<()> {
+    // The files are written even if printing failed.
+    let printed = terminal::print_beside(json, &text::text(machine, figures));
+    if let Some(target) = json {
+        write_json(target, machine, figures)?;
+    }
+    if let Some(path) = &options.plot {
+        chart::save(path, &plot::figure(machine, figures))?;
+    }
+    printed
+}
+
+/// A measurement under way.
+struct Bench<'a> {
+    options: &'a BenchOptions,
+    /// At least one, the most capable last.
+    levels: Vec<Isa>,
+    cancel: &'a AtomicBool,
+    progress: Progress,
+    figures: BenchFigures,
+}
+
+impl Bench<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
+    fn best_level(&self) -> Isa {
+        self.levels.last().copied().unwrap_or(Isa::Portable)
+    }
+
+    fn expect_runs(&mut self, count: usize) {
+        self.progress = Progress::new(self.options.progress, count as f64);
+    }
+
+    fn scenes(&mut self, scenes: &[BenchScene]) {
+        let mut candidates = self.candidates();
+        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs()));
+        for BenchScene { name, job, samples, .. } in scenes {
+            let rows = self.rows(name, job, *samples, &mut candidates);
+            self.figures.scenes.push(SceneFigures::new(name, job, rows));
+            if self.is_cancelled() {
+                break;
+            }
+        }
+    }
+
+    /// All candidates, in the order of the table.
+    fn candidates(&self) -> Vec<(Kind, Candidate)> {
+        let mut c89 = Candidate::new("C89, 1 thread", Source::C89);
+        if let Ok(renderer) = c89.start() {
+            c89.name = format!("C89, {}, 1 thread", renderer.info().device);
+        }
+        let mut found = vec![(Kind::Baseline, c89)];
+        for isa in &self.levels {
+            for lanes in isa.lane_counts() {
+                let kind = if *lanes == 1 { Kind::Scalar } else { Kind::Packets };
+                found.push((kind, cpu(*isa, *lanes, 1)));
+            }
+        }
+        let (best, threads) = (self.best_level(), self.options.threads());
+        if threads > 1 {
+            found.push((Kind::Threads, cpu(best, 1, threads)));
+            if best.native_lanes() > 1 {
+                found.push((Kind::Threads, cpu(best, best.native_lanes(), threads)));
+            }
+        }
+        if let Some(choice) = BackendChoice::gpu_if_present(self.options.adapter.as_deref()) {
+            let mut gpu = Candidate::backend("GPU", choice);
+            if let Ok(renderer) = gpu.start() {
+                gpu.name = renderer.info().device;
+            }
+            found.push((Kind::Gpu, gpu));
+        }
+        found
+    }
+
+    /// Runs all candidates in turn, so that drift affects all of them alike.
+    fn rows(
+        &mut self,
+        scene: &str,
+        job: &RenderJob,
+        samples: u64,
+        candidates: &mut [(Kind, Candidate)],
+    ) -> Vec<Row> {
+        let mut rows: Vec<Row> =
+            candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
+        'turns: for turn in 0..=self.options.runs() {
+            for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
+                if row.skipped.is_none() {
+                    self.progress.at(&format!("{scene}: {}", row.name), 0.0);
+                    let outcome = match turn {
+                        0 => self.affordable_samples(candidate, job, samples).map(|n| row.samples_per_pixel = n),
+                        _ => self.run(candidate, job, row),
+                    };
+                    match outcome {
+                        Ok(()) => {}
+                        Err(Stop::Cancelled) => break 'turns,
+                        Err(Stop::Failed(reason)) => row.skipped = Some(reason),
+                    }
+                }
+                self.progress.finished(1.0);
+            }
+        }
+        rows.iter_mut().for_each(Row::sum_up);
+        rows
+    }
+
+    fn run(&self, candidate: &mut Candidate, job: &RenderJob, row: &mut Row) -> Result<(), Stop> {
+        // A GPU that waits for its turn lowers its clock, and takes a while to raise it.
+        let begin = Instant::now();
+        while row.kind == Kind::Gpu && begin.elapsed() < WAKING {
+            candidate.trace(job, row.samples_per_pixel, self.cancel)?;
+        }
+        row.runs.push(Run::of(&candidate.trace(job, row.samples_per_pixel, self.cancel)?));
+        Ok(())
+    }
+
+    /// Warms up with more and more samples. Returns how many a measured run takes: as many as the time limit allows, at
+    /// most `samples`.
+    fn affordable_samples(
+        &self,
+        candidate: &mut Candidate,
+        job: &RenderJob,
+        samples: u64,
+    ) -> Result<u64, Stop> {
+        let limit = self.options.run_limit_seconds();
+        let least = job.settings().half_count() as u64;
+        let mut tried = least.min(samples);
+        loop {
+            let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
+            if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
+                return Ok(affordable(samples, least, seconds / tried as f64, limit));
+            }
+            tried = (4 * tried).min(samples);
+        }
+    }
+}
+
+fn cpu(isa: Isa, lanes: usize, threads: usize) -> Candidate {
+    let options =
+        CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads), ..CpuOptions::default() };
+    let name = format!("{isa}, {}, {}", counted(lanes, "lane"), counted(threads, "thread"));
+    Candidate::backend(name, BackendChoice::Cpu(options))
+}
+
+/// How many samples a run may take within `limit_seconds`: at most `samples`, at least `least`.
+fn affordable(samples: u64, least: u64, seconds_per_sample: f64, limit_seconds: f64) -> u64 {
+    let mut chosen = samples;
+    while chosen > least && chosen as f64 * seconds_per_sample > limit_seconds {
+        // Both halves of the film get the same number.
+        chosen = (chosen / 2).next_multiple_of(least);
+    }
+    chosen
+}
+
+/// Reasons to doubt the figures.
+fn warnings(figures: &BenchFigures, load: Option<f64>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(load) = load.filter(|load| *load > LOAD_LIMIT) {
+        warnings.push(format!(
+            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
+        ));
+    }
+    let spreads = spreads(figures);
+    let wide = || spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
+    if let Some((name, share)) = wide().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        warnings.push(format!(
+            "in {} of {} rows, the runs differ by more than {:.0} % of their median; the largest difference is {:.0} % in {name}",
+            wide().count(),
+            spreads.len(),
+            100.0 * SPREAD_LIMIT,
+            100.0 * share
+        ));
+    }
+    warnings
+}
+
+/// The name of each measured row, and the range of its runs as a fraction of their median.
+fn spreads(figures: &BenchFigures) -> Vec<(String, f64)> {
+    let mut found: Vec<(String, Option<Spread>)> = Vec::new();
+    for scene in &figures.scenes {
+        let name = |row: &Row| format!("{}, {}", scene.scene, row.name);
+        found.extend(scene.rows.iter().map(|row| (name(row), row.paths_per_second)));
+    }
+    found.extend(figures.scale.iter().map(|row| (format!("field:{}", row.spheres), row.paths_per_second)));
+    for device in &figures.features {
+        let name = |scene: &str| format!("{scene}, {}", device.device);
+        found.extend(device.rows.iter().map(|row| (name(&row.name), row.gain)));
+    }
+    found.into_iter().filter_map(|(name, spread)| Some((name, spread?.share()))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use figures::{DeviceFigures, GainRow};
+
+    #[test]
+    fn a_run_takes_as_many_samples_as_its_time_allows() {
+        for (seconds_per_sample, expected) in [(0.0, 100), (0.01, 100), (0.011, 50), (0.04, 26), (9.0, 2)] {
+            assert_eq!(affordable(100, 2, seconds_per_sample, 1.04), expected, "{seconds_per_sample}");
+        }
+        assert_eq!(affordable(1, 2, 9.0, 1.0), 1);
+    }
+
+    #[test]
+    fn a_busy_machine_and_runs_that_differ_are_reasons_to_doubt() {
+        let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
+        let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
+        let rows = vec![
+            row("steady", spread(95.0, 105.0)),
+            row("first", spread(90.0, 110.0)),
+            row("second", spread(80.0, 105.0)),
+            row("skipped", None),
+        ];
+        let features = vec![DeviceFigures { device: "avx2".to_owned(), rows, skipped: None }];
+        let figures = BenchFigures { features, ..BenchFigures::default() };
+        let found = warnings(&figures, Some(LOAD_LIMIT));
+        assert_eq!(found.len(), 1);
+        assert!(found[0].contains("in 2 of 3 rows") && found[0].contains("25 % in second, avx2"), "{found:?}");
+        assert!(warnings(&figures, Some(0.75))[0].contains("load 0.75"));
+        assert_eq!(warnings(&BenchFigures::default(), None), [""; 0]);
+    }
+}

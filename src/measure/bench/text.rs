@@ -1,0 +1,159 @@
+//! The measurements as text of at most 100 columns.
+
+use super::super::machine::Machine;
+use super::super::table::{counted, or_dash, text_row};
+use super::figures::{BenchFigures, DeviceFigures, GainRow, Row, ScaleFigures, SceneFigures, Spread};
+
+/// Longest name of a row.
+const NAME_WIDTH: usize = 34;
+
+const SCENE_WIDTHS: [i32; 9] = [-33, 5, 8, 7, 7, 6, 7, 7, 9];
+const SCALE_WIDTHS: [i32; 9] = [9, 11, 9, 12, 7, 9, 5, 9, 9];
+const GAIN_WIDTHS: [i32; 8] = [-33, 10, 10, 10, 9, 7, 7, 7];
+
+/// All tables and warnings as text.
+pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
+    let mut parts = vec![machine.words() + "\n"];
+    parts.extend(figures.scenes.iter().map(scene));
+    if !figures.scale.is_empty() {
+        parts.push(scale(&figures.scale));
+    }
+    parts.extend(figures.features.iter().map(device));
+    if figures.interrupted {
+        parts.push("Interrupted: only the runs finished so far are shown.\n".to_owned());
+    }
+    if !figures.warnings.is_empty() {
+        parts.push(figures.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect());
+    }
+    parts.join("\n")
+}
+
+fn scene(scene: &SceneFigures) -> String {
+    let SceneFigures { scene: name, width, height, max_depth, sampler, spheres, rows } = scene;
+    let spheres = counted(*spheres, "sphere");
+    let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
+    let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
+    format!(
+        "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}",
+        text_row(&SCENE_WIDTHS, &heads),
+        rows.iter().map(scene_row).collect::<String>()
+    )
+}
+
+fn scene_row(row: &Row) -> String {
+    if let (Some(reason), true) = (&row.skipped, row.runs.is_empty()) {
+        return format!("{} skipped: {reason}\n", shortened(&row.name));
+    }
+    let cells = [
+        shortened(&row.name),
+        row.samples_per_pixel.to_string(),
+        millions(row.paths_per_second, |spread| spread.median),
+        millions(row.paths_per_second, |spread| spread.min),
+        millions(row.paths_per_second, |spread| spread.max),
+        or_dash(row.ratio_to_baseline, short),
+        millions(row.rays_per_second, |spread| spread.median),
+        or_dash(row.lanes_in_use, |share| format!("{:.1}", 100.0 * share)),
+        or_dash(row.efficiency, |efficiency| format!("{efficiency:.2e}")),
+    ];
+    text_row(&SCENE_WIDTHS, &cells)
+}
+
+fn scale(rows: &[ScaleFigures]) -> String {
+    let heads = [
+        "spheres", "generate s", "build s", "hierarchy s", "bytes", "peak MiB", "spp", "Mpaths/s", "Mrays/s",
+    ];
+    let row = |row: &ScaleFigures| {
+        let cells = [
+            row.spheres.to_string(),
+            format!("{:.3}", row.generate_seconds),
+            format!("{:.4}", row.build_seconds),
+            format!("{:.4}", row.hierarchy_seconds),
+            format!("{:.1}", row.table_bytes_per_sphere),
+            or_dash(row.peak_memory_bytes, |bytes| (bytes >> 20).to_string()),
+            row.samples_per_pixel.to_string(),
+            millions(row.paths_per_second, |spread| spread.median),
+            millions(row.rays_per_second, |spread| spread.median),
+        ];
+        text_row(&SCALE_WIDTHS, &cells)
+    };
+    format!(
+        "Fields of spheres; bytes per sphere in the prepared scene, hierarchy included\n{}{}",
+        text_row(&SCALE_WIDTHS, &heads),
+        rows.iter().map(row).collect::<String>()
+    )
+}
+
+fn device(device: &DeviceFigures) -> String {
+    let DeviceFigures { device: name, rows, skipped } = device;
+    if let Some(reason) = skipped {
+        return format!("{name} skipped: {reason}\n");
+    }
+    let pairs = counted(rows.iter().map(|row| row.own_runs.len()).max().unwrap_or(0), "pair");
+    let heads = ["", "size", "spp", "Mpaths/s", "general", "gain", "min", "max"];
+    format!(
+        "Each scene's own kernel and the general one, {name}; {pairs} of runs\n{}{}",
+        text_row(&GAIN_WIDTHS, &heads),
+        rows.iter().map(gain_row).collect::<String>()
+    )
+}
+
+fn gain_row(row: &GainRow) -> String {
+    if let (Some(reason), None) = (&row.skipped, row.gain) {
+        return format!("{} skipped: {reason}\n", row.name);
+    }
+    let gain = |part: fn(Spread) -> f64| or_dash(row.gain, |spread| format!("{:.2}", part(spread)));
+    let cells = [
+        shortened(&row.name),
+        format!("{}x{}", row.width, row.height),
+        row.samples_per_pixel.to_string(),
+        millions(row.own_paths_per_second, |spread| spread.median),
+        millions(row.general_paths_per_second, |spread| spread.median),
+        gain(|spread| spread.median),
+        gain(|spread| spread.min),
+        gain(|spread| spread.max),
+    ];
+    let left_out = if row.left_out.is_empty() { "nothing".to_owned() } else { row.left_out.join(", ") };
+    let differ = if row.same_bits == Some(false) { "    the films differ\n" } else { "" };
+    format!(
+        "{}    kernel: {}\n    left out: {left_out}\n{differ}",
+        text_row(&GAIN_WIDTHS, &cells),
+        row.kernel
+    )
+}
+
+fn millions(spread: Option<Spread>, part: fn(Spread) -> f64) -> String {
+    or_dash(spread, |spread| short(part(spread) / 1e6))
+}
+
+/// A number with at least three digits, in at most five characters below 100,000.
+fn short(number: f64) -> String {
+    let decimals = match number {
+        ..100.0 => 2,
+        ..1000.0 => 1,
+        _ => 0,
+    };
+    format!("{number:.decimals$}")
+}
+
+fn shortened(name: &str) -> String {
+    if name.chars().count() <= NAME_WIDTH {
+        return name.to_owned();
+    }
+    let kept: String = name.chars().take(NAME_WIDTH - 3).collect();
+    format!("{kept}...")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_names_fit_their_columns() {
+        assert_eq!(
+            [0.123, 9.999, 99.94, 123.45, 12345.6].map(short),
+            ["0.12", "10.00", "99.94", "123.5", "12346"]
+        );
+        assert_eq!(shortened("a"), "a");
+        assert_eq!(shortened(&"x".repeat(50)).len(), NAME_WIDTH);
+    }
+}

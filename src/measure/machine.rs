@@ -1,0 +1,76 @@
+//! The machine that is measured, and whether it was idle.
+
+use super::table::counted;
+use crate::render_cpu::Isa;
+use serde::Serialize;
+use std::fs;
+
+/// The machine and the program.
+#[derive(Clone, Debug, Serialize)]
+pub struct Machine {
+    pub version: &'static str,
+    pub processor: String,
+    /// Number of threads that the system can run at once.
+    pub cores: usize,
+    /// Instruction levels, the most capable last.
+    pub levels: Vec<&'static str>,
+    /// System load at the start, averaged over a minute; `None` if unknown.
+    pub load_at_start: Option<f64>,
+}
+
+impl Machine {
+    /// Describes this machine now.
+    pub fn look() -> Self {
+        Machine {
+            version: env!("CARGO_PKG_VERSION"),
+            processor: processor(&fs::read_to_string("/proc/cpuinfo").unwrap_or_default()),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            levels: Isa::available().into_iter().map(Isa::name).collect(),
+            load_at_start: fs::read_to_string("/proc/loadavg").ok().and_then(|averages| load(&averages)),
+        }
+    }
+
+    /// One line of text.
+    pub fn words(&self) -> String {
+        let level = self.levels.last().copied().unwrap_or("no level");
+        let load = self.load_at_start.map_or(String::new(), |load| format!(", load {load:.2} at the start"));
+        let threads = counted(self.cores, "thread");
+        format!("Weekender {}, {}, {threads}, {level}{load}", self.version, self.processor)
+    }
+}
+
+/// The processor in the text of `/proc/cpuinfo`.
+fn processor(info: &str) -> String {
+    let name = info.lines().find_map(|line| line.strip_prefix("model name")?.trim_start().strip_prefix(':'));
+    name.map_or_else(|| format!("unnamed {} processor", std::env::consts::ARCH), |name| name.trim().to_owned())
+}
+
+/// The load of the last minute in the text of `/proc/loadavg`.
+fn load(averages: &str) -> Option<f64> {
+    averages.split_whitespace().next()?.parse().ok()
+}
+
+/// Peak memory of this process since [`forget_peak_memory`], bytes; `None` if unknown.
+pub fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
+}
+
+/// Resets [`peak_memory`], if the system can; otherwise it counts from the start of the process.
+pub fn forget_peak_memory() {
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn processor_and_load_are_read_from_proc() {
+        let info = "processor\t: 0\nmodel\t\t: 85\nmodel name\t: Some CPU: 2.50GHz\nmodel name\t: Another\n";
+        assert_eq!(processor(info), "Some CPU: 2.50GHz");
+        assert_eq!(processor(""), format!("unnamed {} processor", std::env::consts::ARCH));
+        assert_eq!([load("0.52 0.58 0.59 1/389 1234\n"), load("")], [Some(0.52), None]);
+    }
+}

@@ -1,0 +1,36 @@
+//! Measurements: speed (`bench`), error against time (`report`) and extreme scenes (`stress`), with a plain C program
+//! as the control. All of them trace candidates, show one kind of progress, and write one kind of table and JSON.
+
+pub mod baseline;
+pub mod bench;
+mod candidate;
+mod machine;
+mod progress;
+pub mod report;
+pub mod stress;
+mod table;
+
+pub use candidate::{Candidate, Source, Stop, Traced};
+
+use crate::cli::JsonTarget;
+use crate::terminal;
+use anyhow::Result;
+use machine::Machine;
+use serde::Serialize;
+
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+pub const SCHEMA: u32 = 1;
+
+/// What every measurement's JSON begins with.
+#[derive(Serialize)]
+struct Envelope<'a, T> {
+    schema: u32,
+    version: &'static str,
+    machine: &'a Machine,
+    #[serde(flatten)]
+    figures: &'a T,
+}
+
+fn write_json(target: &JsonTarget, machine: &Machine, figures: &impl Serialize) -> Result<()> {
+    terminal::write_json(&Envelope { schema: SCHEMA, version: machine.version, machine, figures }, target)
+}

@@ -1,0 +1,169 @@
+//! The measurements of a report, as `report.json` holds them.
+
+use crate::measure::SCHEMA;
+use serde::{Deserialize, Serialize};
+
+/// Everything that was measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Data {
+    /// See [`SCHEMA`].
+    #[serde(skip_serializing)]
+    pub schema: u32,
+    /// Settings on which the figures depend; runs with different settings are not mixed.
+    pub settings: Settings,
+    /// One entry per scene that has runs.
+    pub references: Vec<ReferenceUsed>,
+    /// One entry per curve and seed.
+    pub runs: Vec<Run>,
+    /// One entry per scene and backend.
+    pub rounding: Vec<Rounding>,
+}
+
+impl Data {
+    pub fn new(settings: Settings) -> Self {
+        Data { schema: SCHEMA, settings, references: Vec::new(), runs: Vec::new(), rounding: Vec::new() }
+    }
+
+    /// Sets the references, and discards everything that was measured against another one: a scene with the same name
+    /// may have changed.
+    pub fn take_references(&mut self, mut references: Vec<ReferenceUsed>) {
+        self.references.retain(|old| !references.contains(old));
+        let is_replaced = |scene: &str, old: &[ReferenceUsed]| {
+            old.iter().any(|old| old.scene == scene) && references.iter().any(|new| new.scene == scene)
+        };
+        self.runs.retain(|run| !is_replaced(&run.curve.scene, &self.references));
+        self.rounding.retain(|row| !is_replaced(&row.scene, &self.references));
+        self.references.retain(|old| references.iter().all(|new| new.scene != old.scene));
+        references.append(&mut self.references);
+        self.references = references;
+    }
+}
+
+/// Settings that all runs have in common.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Program and version.
+    pub software: String,
+    /// Width and height of all pictures.
+    pub size: (u32, u32),
+    /// Number of pictures of each curve, which differ only in their noise.
+    pub seeds: u32,
+    /// Seconds of tracing for all seeds of a curve.
+    pub time_limit: f64,
+    /// Most samples per pixel.
+    pub max_samples: u64,
+    /// Whether samples are kept in two halves, which is needed to estimate the error.
+    pub estimate_error: bool,
+    /// Samples per pixel of the references that the report renders.
+    pub reference_samples: u64,
+    /// The backend that renders the references, or the file that is used.
+    pub reference: String,
+}
+
+/// The picture relative to which errors are measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ReferenceUsed {
+    pub scene: String,
+    /// The backend that rendered it.
+    pub about: String,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Its own mean squared error, as its halves estimate it; it is subtracted from the errors of pictures.
+    pub mse: f64,
+    /// Its own relative mean squared error.
+    pub rel_mse: f64,
+}
+
+/// Identifies a line of the plot.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Curve {
+    pub scene: String,
+    /// The backend, as `weekender report --backends` names it.
+    pub backend: String,
+    pub sampler: String,
+}
+
+/// A picture, measured while samples were added.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    #[serde(flatten)]
+    pub curve: Curve,
+    pub seed: u32,
+    /// Full name of the backend.
+    pub about: String,
+    /// Seconds of preparing the scene.
+    pub prepare_seconds: f64,
+    /// Measurements at powers of two of samples.
+    pub points: Vec<Measured>,
+}
+
+/// A picture at one number of samples.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Seconds of tracing.
+    pub trace_seconds: f64,
+    /// Seconds of tracing and adding to the film.
+    pub wall_seconds: f64,
+    /// Seconds that the device was busy, by its own clock; `None` if it has none.
+    pub device_seconds: Option<f64>,
+    /// Mean squared error over pixels and channels, linear radiance, minus the reference's own. It is negative if the
+    /// picture is better than the reference.
+    pub mse: f64,
+    /// Mean of the squared error divided by `reference^2 + 0.01`, minus the reference's own.
+    pub rel_mse: f64,
+    /// LDR-FLIP of the displayed picture.
+    pub flip: f64,
+    /// Mean squared error as the picture's halves estimate it.
+    pub mse_estimate: Option<f64>,
+    /// Number of rejected samples.
+    pub rejected: u64,
+}
+
+/// Difference between the same samples in `f64` and on a backend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rounding {
+    pub scene: String,
+    pub backend: String,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Mean difference from `f64`, linear radiance.
+    pub bias: f64,
+    /// Root mean square difference of pixels at this number of samples. Most of it comes from paths that rounding
+    /// sent another, equally likely way, and falls with more samples.
+    pub rms: f64,
+    /// Root mean square difference that would remain with infinitely many samples; `None` if it is too small to tell.
+    pub floor: Option<f64>,
+    /// Upper limit of the floor (two standard deviations).
+    pub floor_limit: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{curve, data};
+    use super::*;
+
+    #[test]
+    fn what_was_measured_against_another_reference_is_discarded() {
+        let run = |scene: &str| Run {
+            curve: Curve { scene: scene.to_owned(), ..curve("cpu", "sobol") },
+            seed: 0,
+            about: String::new(),
+            prepare_seconds: 0.0,
+            points: Vec::new(),
+        };
+        let reference = |scene: &str, samples| {
+            let (scene, about) = (scene.to_owned(), String::new());
+            ReferenceUsed { scene, about, samples, mse: 1e-6, rel_mse: 2e-6 }
+        };
+        let mut found = Data { runs: vec![run("a"), run("b"), run("c")], ..data() };
+        found.references = vec![reference("a", 512), reference("b", 512), reference("c", 512)];
+        let same = found.clone();
+        found.take_references(found.references.clone());
+        assert_eq!(found, same);
+        found.take_references(vec![reference("b", 1024), reference("a", 512)]);
+        assert_eq!(found.runs, [run("a"), run("c")]);
+        assert_eq!(found.references, [reference("b", 1024), reference("a", 512), reference("c", 512)]);
+    }
+}

@@ -1,0 +1,390 @@
+//! The reference pictures against which errors are measured, and the errors.
+
+use super::data::ReferenceUsed;
+use crate::film::{Description, Film, checkpoint, key};
+use crate::progressive::PassSizer;
+use crate::recipe::{Recipe, file};
+use crate::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
+use crate::saved;
+use crate::stages::Transfer;
+use crate::statistics::flip::Appearance;
+use anyhow::{Context, Result, anyhow, bail};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// Seed of the references. No picture of a report uses it, so none shares random numbers with its reference.
+const SEED: u32 = 0x5EED_0000;
+
+/// A seed to recommend for a reference film.
+const FREE_SEED: u32 = 900;
+
+/// Duration of a pass of a reference; progress is shown and Ctrl-C is noticed between passes.
+const PASS: Duration = Duration::from_millis(500);
+
+/// A picture relative to which errors are measured.
+pub struct ReferencePicture {
+    /// Its entry in the report.
+    pub used: ReferenceUsed,
+    means: Vec<[f64; 3]>,
+    appearance: Appearance,
+    transfer: Transfer,
+    width: u32,
+    height: u32,
+}
+
+/// The errors of a picture: see the fields of the same names of [`super::data::Measured`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    pub mse: f64,
+    pub rel_mse: f64,
+    pub flip: f64,
+}
+
+impl ReferencePicture {
+    /// Uses a film as the reference of the scene `scene`.
+    ///
+    /// # Errors
+    /// If the film has no estimate of its own error.
+    pub fn of_film(scene: &str, about: &str, film: &Film, transfer: Transfer) -> Result<Self> {
+        let Some(own) = film.error() else {
+            bail!(
+                "the error of the reference of {scene} is unknown, because {}; render it with --estimate-error on, and with \
+                 more samples if it is black",
+                film.why_no_error()
+            );
+        };
+        let means = film_means(film);
+        let (width, height) = (film.width(), film.height());
+        Ok(ReferencePicture {
+            appearance: appearance(&means, transfer, width, height),
+            means,
+            transfer,
+            width,
+            height,
+            used: ReferenceUsed {
+                scene: scene.to_owned(),
+                about: about.to_owned(),
+                samples: film.sample_count(),
+                mse: own.rmse.powi(2),
+                rel_mse: own.rel_mse,
+            },
+        })
+    }
+
+    /// The errors of a picture of the same size; the means are linear RGB, row by row from the top.
+    pub fn errors(&self, means: &[[f64; 3]]) -> Errors {
+        let (mut squares, mut relative) = (0.0, 0.0);
+        for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
+            let square = (x - expected).powi(2);
+            squares += square;
+            relative += square / (expected * expected + 1e-2);
+        }
+        let count = (3 * means.len()) as f64;
+        let shown = appearance(means, self.transfer, self.width, self.height);
+        Errors {
+            mse: squares / count - self.used.mse,
+            rel_mse: relative / count - self.used.rel_mse,
+            flip: self.appearance.difference(&shown),
+        }
+    }
+}
+
+/// The mean of each pixel of a film, linear RGB, row by row from the top.
+pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
+    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
+}
+
+/// The picture as a display shows it.
+fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -> Appearance {
+    let shown: Vec<[f64; 3]> = means
+        .iter()
+        .enumerate()
+        .map(|(pixel, linear)| {
+            let is_gamma = transfer.is_gamma(pixel / width as usize, height as usize);
+            linear.map(|x| if is_gamma { x.max(0.0).sqrt().min(1.0) } else { x.clamp(0.0, 1.0) })
+        })
+        .collect();
+    Appearance::of(width as usize, &shown)
+}
+
+/// The recipe of the reference for a scene.
+fn recipe_of(recipe: &Recipe) -> Recipe {
+    let settings =
+        RenderSettings { seed: SEED, sampler: SamplerKind::Sobol, estimate_error: true, ..recipe.settings };
+    Recipe { settings, ..recipe.clone() }
+}
+
+/// Reads an existing film as the reference of a scene, whose measured pictures have these samplers, each with the seeds
+/// from 0 up to `seeds`.
+///
+/// # Errors
+/// If it is the film of another picture, or has the random numbers of a measured one.
+pub fn read(path: &Path, recipe: &Recipe, samplers: &[SamplerKind], seeds: u32) -> Result<ReferencePicture> {
+    let (theirs, read) = saved::open_film(path)?;
+    let RenderSettings { seed, sampler, estimate_error, .. } = *theirs.settings();
+    let mine = recipe_of(recipe).job()?;
+    // Everything but the random numbers must be the same.
+    let settings = RenderSettings { seed, sampler, estimate_error, ..*mine.settings() };
+    if mine.seen_by(*mine.camera(), settings)? != theirs {
+        bail!(
+            "{} is not a picture of {} at {}x{}; name its scene and its --size or leave out --reference",
+            path.display(),
+            recipe.name,
+            settings.width,
+            settings.height
+        );
+    }
+    if seed < seeds && samplers.contains(&sampler) {
+        bail!(
+            "{} has seed {seed} and sampler {}, as has a picture to measure (seeds 0 to {}), so their errors would \
+             cancel; render the reference with --seed {}, or leave out --reference",
+            path.display(),
+            sampler.name(),
+            seeds - 1,
+            seeds.max(FREE_SEED)
+        );
+    }
+    let about = read.backend.as_deref().unwrap_or("unknown");
+    ReferencePicture::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
+}
+
+/// Renders the reference, or continues the part of it in `path`. `go_on` receives the fraction that is done; if it
+/// returns false, the result is `None` and the film is kept.
+///
+/// # Errors
+/// If the renderer fails, in which case the film is kept unless it is spoiled; if `path` is something that cannot be
+/// read as a film; or if the film cannot be written.
+pub fn make(
+    renderer: &mut dyn Renderer,
+    path: &Path,
+    recipe: &Recipe,
+    samples: u64,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<Option<ReferencePicture>> {
+    let recipe = recipe_of(recipe);
+    let job = recipe.job()?;
+    let info = renderer.info();
+    let about = format!("{} {}", info.name, info.device);
+    let mut film = kept(path, &job, &about)?.unwrap_or_else(|| job.new_film());
+    let mut sizer = PassSizer::new(job.settings().half_count());
+    let before = film.sample_count();
+    let mut outcome = Ok(());
+    while let Some(pass) = sizer.next(film.samples(), 0..samples, None) {
+        if !go_on(film.sample_count() as f64 / samples as f64) {
+            break;
+        }
+        let begin = Instant::now();
+        let count = pass.end - pass.start;
+        if let Err(error) = renderer.accumulate(&job, pass, &mut film, &AtomicBool::new(false)) {
+            outcome = Err(error);
+            break;
+        }
+        sizer.measured(count, begin.elapsed(), PASS);
+    }
+    let is_spoiled = matches!(outcome, Err(RenderError::FilmLost { .. } | RenderError::Cancelled));
+    if film.sample_count() > before && !is_spoiled {
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
+        description.set(key::SCENE, &recipe.name);
+        description.set(key::SAMPLES, film.sample_count());
+        description.set(key::BACKEND, &about);
+        checkpoint::save(path, &film, &description).context("cannot save the reference")?;
+    }
+    outcome?;
+    if film.sample_count() < samples {
+        return Ok(None);
+    }
+    ReferencePicture::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
+}
+
+/// The film in `path`, if there is one of this job and backend.
+///
+/// # Errors
+/// If something else is there that cannot be read as a film: it might be worth hours, so it is not replaced.
+fn kept(path: &Path, job: &RenderJob, about: &str) -> Result<Option<Film>> {
+    if path.symlink_metadata().is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
+        return Ok(None);
+    }
+    let (theirs, read) = saved::open_film(path)
+        .map_err(|error| anyhow!("{error}; the reference would be written there, so move that file away"))?;
+    let is_same = theirs == *job && read.backend.as_deref() == Some(about);
+    Ok(is_same.then_some(read.film))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{cpu, small};
+    use super::*;
+    use crate::backends::{self, BackendChoice};
+    use crate::film::fixed_point;
+    use crate::render::{BackendInfo, Stats};
+    use crate::stages::Diffuse;
+    use glam::DVec3;
+    use std::ops::Range;
+    use std::path::PathBuf;
+    use tempfile::TempDir;
+
+    fn place() -> (TempDir, PathBuf) {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("reference.exr");
+        (directory, path)
+    }
+
+    /// Renders a reference of the small picture.
+    fn made(path: &Path, choice: &BackendChoice, samples: u64) -> Result<ReferencePicture> {
+        let mut renderer = backends::create(choice).unwrap();
+        make(renderer.as_mut(), path, &small(), samples, |_| true).map(Option::unwrap)
+    }
+
+    #[test]
+    fn only_a_film_of_the_same_paths_is_a_reference() {
+        let (_directory, path) = place();
+        let recipe = small();
+        let made = made(&path, &cpu(None), 2).unwrap();
+        let read = |recipe: &Recipe| read(&path, recipe, &[SamplerKind::Sobol], 8);
+        assert_eq!(read(&recipe).unwrap().used, made.used);
+        assert_eq!((made.used.scene.as_str(), made.used.samples), ("metals", 2));
+        let changes: [fn(&mut Recipe); 6] = [
+            |recipe| recipe.camera.look_from += DVec3::new(0.25, 0.5, 1.0),
+            |recipe| recipe.scene = Recipe::find("three-spheres").unwrap().scene,
+            |recipe| recipe.settings.width += 1,
+            |recipe| recipe.settings.height += 1,
+            |recipe| recipe.settings.max_depth -= 1,
+            |recipe| recipe.rules.diffuse = Diffuse::Hemisphere,
+        ];
+        for (index, change) in changes.into_iter().enumerate() {
+            let mut other = recipe.clone();
+            change(&mut other);
+            let error = read(&other).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(error.contains("is not a picture of"), "{index}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_film_with_the_random_numbers_of_a_measured_picture_is_no_reference() {
+        use SamplerKind::{Independent, Sobol};
+        let (_directory, path) = place();
+        let recipe = small();
+        let refused = |seed, sampler, samplers: &[SamplerKind], seeds| {
+            let settings = RenderSettings { seed, sampler, estimate_error: true, ..recipe.settings };
+            let theirs = Recipe { settings, ..recipe.clone() };
+            let mut film = theirs.job().unwrap().new_film();
+            film.halves_mut()[0][0].add(fixed_point([0.5; 3]).unwrap());
+            film.record(0..2, 0).unwrap();
+            checkpoint::save(&path, &film, &Description::new(&file::to_picture_toml(&theirs))).unwrap();
+            read(&path, &recipe, samplers, seeds).err().map(|error| error.to_string())
+        };
+        assert_eq!(refused(8, Sobol, &[Sobol, Independent], 8), None);
+        assert_eq!(refused(0, Independent, &[Sobol], 8), None);
+        for (seed, sampler, seeds, remedy) in
+            [(0, Sobol, 1, "--seed 900"), (7, Independent, 8, "--seed 900"), (900, Sobol, 901, "--seed 901")]
+        {
+            let error = refused(seed, sampler, &[Sobol, Independent], seeds).unwrap();
+            assert!(error.contains(&format!("seed {seed} and sampler {}", sampler.name())), "{error}");
+            assert!(error.contains(remedy), "{error}");
+        }
+    }
+
+    /// Every error is that of the reference and of the picture together, as the two are independent.
+    #[test]
+    fn errors_are_means_without_the_error_of_the_reference() {
+        let mut film = Film::new(16, 9, 2);
+        for (half, radiance) in film.halves_mut().iter_mut().zip([0.25, 0.75]) {
+            half.iter_mut().for_each(|sum| sum.add(fixed_point([radiance; 3]).unwrap()));
+        }
+        film.record(0..2, 0).unwrap();
+        let reference = ReferencePicture::of_film("grey", "", &film, Transfer::Linear).unwrap();
+        // Its mean is 0.5, and its error a quarter of the squared difference of the halves.
+        let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
+        assert!(near(reference.used.mse, 0.0625) && near(reference.used.rel_mse, 0.0625 / 0.26));
+        let errors = reference.errors(&[[1.0; 3]; 16 * 9]);
+        assert!(near(errors.mse, 0.25 - 0.0625), "{errors:?}");
+        assert!(near(errors.rel_mse, (0.25 - 0.0625) / 0.26) && errors.flip > 0.0, "{errors:?}");
+        // A picture that is nearer than the reference can be has a negative error.
+        let errors = reference.errors(&film_means(&film));
+        assert!(near(errors.mse, -0.0625) && errors.flip == 0.0, "{errors:?}");
+    }
+
+    #[test]
+    fn what_is_shown_decides_how_different_pictures_look() {
+        let pixels = [[0.25; 3], [4.0; 3], [-1.0; 3], [0.25; 3]];
+        let equals = |transfer: Transfer, shown: [f64; 4]| {
+            let shown = shown.map(|x| [x; 3]);
+            appearance(&pixels, transfer, 2, 2).difference(&Appearance::of(2, &shown)) < 1e-9
+        };
+        assert!(equals(Transfer::Linear, [0.25, 1.0, 0.0, 0.25]));
+        assert!(equals(Transfer::Gamma2, [0.5, 1.0, 0.0, 0.5]));
+        assert!(equals(Transfer::LinearAboveGamma2, [0.25, 1.0, 0.0, 0.5]));
+        assert!(!equals(Transfer::Gamma2, [0.25, 1.0, 0.0, 0.5]));
+    }
+
+    #[test]
+    fn a_backend_that_fails_is_an_error_and_the_film_is_kept() {
+        let (_directory, path) = place();
+        made(&path, &cpu(None), 2).unwrap();
+        let error = made(&path, &cpu(Some(0)), 8).err().unwrap();
+        assert!(error.to_string().contains("panicked"), "{error}");
+        assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), 2);
+    }
+
+    /// A renderer of black pictures whose film is spoiled by the second pass.
+    struct Spoiling;
+
+    impl Renderer for Spoiling {
+        fn info(&self) -> BackendInfo {
+            BackendInfo { name: "spoiling", device: String::new(), lanes: 1, threads: 1 }
+        }
+
+        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            Ok(())
+        }
+
+        fn accumulate(
+            &mut self,
+            _: &RenderJob,
+            samples: Range<u64>,
+            film: &mut Film,
+            _: &AtomicBool,
+        ) -> Result<Stats, RenderError> {
+            if film.sample_count() > 0 {
+                return Err(RenderError::FilmLost { backend: "spoiling", reason: "a slip".to_owned() });
+            }
+            film.record(samples, 0)?;
+            Ok(Stats::default())
+        }
+    }
+
+    #[test]
+    fn a_film_that_was_spoiled_is_not_kept() {
+        let (_directory, path) = place();
+        let error = make(&mut Spoiling, &path, &small(), 64, |_| true).err().unwrap();
+        assert!(error.to_string().contains("spoiled the film"), "{error}");
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn what_is_no_film_is_not_replaced() {
+        let (_directory, path) = place();
+        std::fs::write(&path, "no film").unwrap();
+        let error = made(&path, &cpu(None), 4).err().unwrap().to_string();
+        assert!(error.contains("reference.exr") && error.contains("move that file away"), "{error}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"no film");
+    }
+
+    #[test]
+    fn a_film_of_the_same_backend_is_continued_and_any_other_is_replaced() {
+        let (_directory, path) = place();
+        let exact = BackendChoice::Reference { threads: Some(1) };
+        let job = recipe_of(&small()).job().unwrap();
+        for (choice, samples) in [(cpu(None), 2), (cpu(None), 6), (exact.clone(), 4), (exact, 8)] {
+            made(&path, &choice, samples).unwrap();
+            let mut film = job.new_film();
+            let mut renderer = backends::create(&choice).unwrap();
+            renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+            let kept = checkpoint::load(&path).unwrap();
+            assert!(kept.film == film, "{choice:?}, {samples}");
+            let text = |key| kept.description.get(key).unwrap_or_default();
+            assert_eq!((text(key::SCENE), text(key::SAMPLES)), ("metals", samples.to_string().as_str()));
+        }
+    }
+}

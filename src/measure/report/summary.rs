@@ -1,0 +1,342 @@
+//! What follows from the measurements: curves, comparisons of the samplers, and whether the error estimates are accurate.
+
+use super::data::{Curve, Data, Measured, Run};
+use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
+use crate::statistics::median;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// From this many samples on, slopes are fitted and estimates checked: smaller pictures finish before all threads are
+/// at work, and no stop condition uses their estimates.
+const FROM_SAMPLES: u64 = 16;
+
+/// An estimate counts as accurate if its ratio to the true error differs from 1 by at most this.
+pub const TOLERANCE: f64 = 0.05;
+
+/// Everything that a report shows. Its JSON leaves out what other programs derive themselves.
+#[derive(Serialize)]
+pub struct Findings<'a> {
+    #[serde(flatten)]
+    pub data: &'a Data,
+    #[serde(skip)]
+    pub curves: Vec<CurveSummary>,
+    /// Target errors.
+    #[serde(skip)]
+    pub targets: &'a [f64],
+    pub calibration: Vec<Calibration>,
+    pub sampler_ratios: Vec<SamplerRatio>,
+}
+
+impl<'a> Findings<'a> {
+    pub fn of(data: &'a Data, targets: &'a [f64]) -> Self {
+        let curves = curves(data, targets);
+        let (calibration, sampler_ratios) = (calibration(data), sampler_ratios(&curves));
+        Findings { data, curves, targets, calibration, sampler_ratios }
+    }
+}
+
+/// The pictures of a curve at one number of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Median seconds of tracing.
+    pub trace_seconds: f64,
+    /// Median seconds of tracing and adding to the film.
+    pub wall_seconds: f64,
+    /// Median seconds on the device's own clock; `None` if it has none.
+    pub device_seconds: Option<f64>,
+    /// Square root of the mean squared error over all pictures; 0 if they are better than the reference.
+    pub rmse: f64,
+    /// Smallest and largest RMSE of a single picture.
+    pub range: [f64; 2],
+    /// Mean relative squared error.
+    pub rel_mse: f64,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// Square root of the ratio of the mean estimated squared error to the true one; `None` if either is missing.
+    pub estimate_ratio: Option<f64>,
+}
+
+/// A curve of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveSummary {
+    pub curve: Curve,
+    /// Full name of the backend.
+    pub about: String,
+    /// Ordered by the number of samples.
+    pub points: Vec<CurvePoint>,
+    /// Exponent of the seconds in the RMSE, and its standard error.
+    pub slope: Option<[f64; 2]>,
+    /// `1 / (MSE seconds)` at the last point that has an error; NaN if there is none.
+    pub efficiency: f64,
+    /// Seconds until each target is reached.
+    pub times: Vec<Option<Crossing>>,
+}
+
+/// All curves that have runs, in the order of their first run, with the times until the errors in `targets` are reached.
+pub fn curves(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
+    let keys = distinct(data.runs.iter().map(|run| &run.curve)).into_iter();
+    keys.map(|curve| {
+        let runs: Vec<&Run> = data.runs.iter().filter(|run| run.curve == *curve).collect();
+        CurveSummary::of(curve, &runs, targets)
+    })
+    .collect()
+}
+
+/// Without repetitions, in the order of the first.
+pub fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
+    values.fold(Vec::new(), |mut found, value| {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+        found
+    })
+}
+
+impl CurveSummary {
+    fn of(curve: &Curve, runs: &[&Run], targets: &[f64]) -> Self {
+        let mut by_samples: BTreeMap<u64, Vec<&Measured>> = BTreeMap::new();
+        for point in runs.iter().flat_map(|run| &run.points) {
+            by_samples.entry(point.samples).or_default().push(point);
+        }
+        // If noise of the machine ended some runs early, the longer runs alone do not represent the curve.
+        by_samples.retain(|_, points| 2 * points.len() > runs.len());
+        let points: Vec<CurvePoint> =
+            by_samples.into_iter().map(|(samples, points)| curve_point(samples, &points)).collect();
+        // The error of a picture that is better than its reference is unknown.
+        let known = || points.iter().filter(|p| p.rmse > 0.0);
+        let errors: Vec<Point> = known().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
+        let first = known().position(|p| p.samples >= FROM_SAMPLES).unwrap_or(0);
+        CurveSummary {
+            curve: curve.clone(),
+            about: runs.first().map_or_else(String::new, |run| run.about.clone()),
+            slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
+            efficiency: known().next_back().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
+            times: targets.iter().map(|target| time_to(&errors, *target)).collect(),
+            points,
+        }
+    }
+
+    /// Number of samples at which its error would be `error`.
+    pub fn samples_to(&self, error: f64) -> Option<f64> {
+        let known = self.points.iter().filter(|p| p.rmse > 0.0);
+        let points: Vec<Point> = known.map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
+        time_to(&points, error).map(|crossing| crossing.time)
+    }
+}
+
+fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
+    let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / points.len() as f64;
+    let median_of = |of: fn(&Measured) -> f64| median(points.iter().map(|p| of(p))).unwrap_or(f64::NAN);
+    let mse = mean(|p| p.mse).max(0.0);
+    let device: Option<Vec<f64>> = points.iter().map(|p| p.device_seconds).collect();
+    let roots = || points.iter().map(|p| p.mse.max(0.0).sqrt());
+    let has_estimate = mse > 0.0 && points.iter().all(|p| p.mse_estimate.is_some());
+    CurvePoint {
+        samples,
+        trace_seconds: median_of(|p| p.trace_seconds),
+        wall_seconds: median_of(|p| p.wall_seconds),
+        device_seconds: device.and_then(median),
+        rmse: mse.sqrt(),
+        range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
+        rel_mse: mean(|p| p.rel_mse),
+        flip: mean(|p| p.flip),
+        estimate_ratio: has_estimate.then(|| (mean(|p| p.mse_estimate.unwrap_or(0.0)) / mse).sqrt()),
+    }
+}
+
+/// Compares the samplers on one backend.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SamplerRatio {
+    pub scene: String,
+    pub backend: String,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Squared error of independent samples relative to that of Sobol points.
+    pub at_equal_samples: f64,
+    /// The same at equal time: how many times as long independent samples take.
+    pub at_equal_time: f64,
+}
+
+/// Compares `sobol` with `independent` at every number of samples that both have.
+pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
+    let mut ratios = Vec::new();
+    for sobol in curves.iter().filter(|c| c.curve.sampler == "sobol") {
+        let other = Curve { sampler: "independent".to_owned(), ..sobol.curve.clone() };
+        let others = curves.iter().filter(|c| c.curve == other).flat_map(|c| &c.points);
+        for other in others {
+            let same = sobol.points.iter().find(|p| p.samples == other.samples && p.rmse > 0.0);
+            let Some(point) = same else { continue };
+            let at_equal_samples = (other.rmse / point.rmse).powi(2);
+            ratios.push(SamplerRatio {
+                scene: sobol.curve.scene.clone(),
+                backend: sobol.curve.backend.clone(),
+                samples: point.samples,
+                at_equal_samples,
+                at_equal_time: at_equal_samples * other.wall_seconds / point.wall_seconds,
+            });
+        }
+    }
+    ratios
+}
+
+/// Estimated and true errors of a curve's pictures at one number of samples.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Calibration {
+    #[serde(flatten)]
+    pub curve: Curve,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Number of pictures.
+    pub seeds: usize,
+    /// Square root of the mean estimated squared error.
+    pub predicted_rmse: f64,
+    /// Square root of the mean squared error.
+    pub actual_rmse: f64,
+    /// Predicted over actual RMSE.
+    pub ratio: f64,
+    /// Standard deviation of the ratio, by the jackknife; NaN if one picture outweighs all others.
+    pub deviation: f64,
+}
+
+impl Calibration {
+    /// Of pairs of an estimated and a true squared error.
+    fn of(curve: &Curve, samples: u64, pairs: &[[f64; 2]]) -> Option<Self> {
+        let count = pairs.len() as f64;
+        let [predicted, actual] = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>());
+        let left_out = || pairs.iter().map(|pair| ((predicted - pair[0]) / (actual - pair[1])).sqrt());
+        let mean = left_out().sum::<f64>() / count;
+        let squares: f64 = left_out().map(|ratio| (ratio - mean).powi(2)).sum();
+        let is_sound = pairs.len() > 1 && predicted > 0.0 && actual > 0.0;
+        is_sound.then(|| Calibration {
+            curve: curve.clone(),
+            samples,
+            seeds: pairs.len(),
+            predicted_rmse: (predicted / count).sqrt(),
+            actual_rmse: (actual / count).sqrt(),
+            ratio: (predicted / actual).sqrt(),
+            deviation: (squares * (count - 1.0) / count).sqrt(),
+        })
+    }
+}
+
+/// One entry for each curve with error estimates and each number of samples from [`FROM_SAMPLES`] on.
+pub fn calibration(data: &Data) -> Vec<Calibration> {
+    let mut pairs: BTreeMap<(&Curve, u64), Vec<[f64; 2]>> = BTreeMap::new();
+    for run in &data.runs {
+        for Measured { samples, mse, mse_estimate, .. } in &run.points {
+            if let (Some(estimate), FROM_SAMPLES..) = (mse_estimate, *samples) {
+                pairs.entry((&run.curve, *samples)).or_default().push([*estimate, *mse]);
+            }
+        }
+    }
+    pairs.iter().filter_map(|((curve, samples), pairs)| Calibration::of(curve, *samples, pairs)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{curve, data};
+    use super::*;
+
+    /// The runs of a curve whose squared error is `mse / samples`, at `seconds` per sample.
+    fn runs(backend: &str, sampler: &str, mse: f64, seconds: f64) -> Vec<Run> {
+        let point = |seed: u32, samples: u64| {
+            // Two seeds are better than the mean, and two are worse.
+            let mse = mse / samples as f64 * if seed < 2 { 0.5 } else { 1.5 };
+            let seconds = seconds * samples as f64;
+            Measured {
+                samples,
+                trace_seconds: seconds,
+                wall_seconds: seconds,
+                device_seconds: None,
+                mse,
+                rel_mse: 2.0 * mse,
+                flip: 0.1,
+                mse_estimate: (samples > 1).then_some(1.21 * mse),
+                rejected: 0,
+            }
+        };
+        let run = |seed| Run {
+            curve: curve(backend, sampler),
+            seed,
+            about: backend.to_owned(),
+            prepare_seconds: 0.0,
+            points: (0..9).map(|power| point(seed, 1 << power)).collect(),
+        };
+        (0..4).map(run).collect()
+    }
+
+    fn one(runs: Vec<Run>, targets: &[f64]) -> CurveSummary {
+        curves(&Data { runs, ..data() }, targets).remove(0)
+    }
+
+    #[test]
+    fn a_curve_has_its_slope_its_times_and_its_spread() {
+        let found = one(runs("cpu", "sobol", 0.04, 0.01), &[0.01, 0.001]);
+        let last = found.points.last().unwrap();
+        assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12, "{last:?}");
+        assert!(last.range[0] < last.rmse && last.rmse < last.range[1]);
+        assert!((last.estimate_ratio.unwrap() - 1.1).abs() < 1e-9);
+        assert_eq!(found.points[0].estimate_ratio, None);
+        assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9);
+        let [first, second] = [0, 1].map(|target| found.times[target].unwrap());
+        assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
+        assert!((second.time - 400.0).abs() < 1e-4 && second.is_extrapolated);
+        assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
+        assert!((found.samples_to(0.01).unwrap() - 400.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_picture_that_is_better_than_the_reference_has_no_error_to_go_by() {
+        let mut better = runs("cpu", "sobol", 0.04, 0.01);
+        better.iter_mut().for_each(|run| run.points[8].mse = -1e-6);
+        let found = one(better, &[0.01]);
+        let last = found.points.last().unwrap();
+        assert_eq!((last.rmse, last.estimate_ratio), (0.0, None));
+        assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9, "{:?}", found.slope);
+        assert!((found.times[0].unwrap().time - 4.0).abs() < 1e-6, "{:?}", found.times);
+    }
+
+    #[test]
+    fn a_curve_ends_where_most_of_its_pictures_end() {
+        let mut some = runs("cpu", "sobol", 1.0, 1.0);
+        some[0].points.truncate(5);
+        some[1].points.truncate(3);
+        let samples: Vec<u64> = one(some, &[]).points.iter().map(|point| point.samples).collect();
+        assert_eq!(samples, [1, 2, 4, 8, 16], "half of the pictures are not most of them");
+    }
+
+    #[test]
+    fn samplers_are_compared_on_the_same_backend() {
+        let all = [
+            runs("cpu", "independent", 0.16, 0.015),
+            runs("gpu", "sobol", 0.01, 0.01),
+            runs("cpu", "sobol", 0.04, 0.01),
+        ];
+        let found = sampler_ratios(&curves(&Data { runs: all.concat(), ..data() }, &[]));
+        assert_eq!(found.len(), 9);
+        for (power, ratio) in found.iter().enumerate() {
+            assert_eq!((ratio.backend.as_str(), ratio.samples), ("cpu", 1 << power));
+            assert!((ratio.at_equal_samples - 4.0).abs() < 1e-9, "{ratio:?}");
+            assert!((ratio.at_equal_time - 6.0).abs() < 1e-9, "{ratio:?}");
+        }
+    }
+
+    #[test]
+    fn estimates_are_checked_from_16_samples_on() {
+        let found = calibration(&Data { runs: runs("cpu", "sobol", 0.04, 0.01), ..data() });
+        assert_eq!(found.iter().map(|row| row.samples).collect::<Vec<_>>(), [16, 32, 64, 128, 256]);
+        for row in &found {
+            assert_eq!(row.seeds, 4);
+            assert!((row.ratio - 1.1).abs() < 1e-9 && row.deviation < 1e-9, "{row:?}");
+            assert!((row.actual_rmse - (0.04 / row.samples as f64).sqrt()).abs() < 1e-12, "{row:?}");
+        }
+        let key = curve("cpu", "sobol");
+        // Without one of two pairs, the ratios are 2 and 1/2: their deviation is 3/4.
+        let two = Calibration::of(&key, 16, &[[4.0, 1.0], [1.0, 4.0]]).unwrap();
+        assert!((two.ratio - 1.0).abs() < 1e-12 && (two.deviation - 0.75).abs() < 1e-12, "{two:?}");
+        assert_eq!(Calibration::of(&key, 16, &[[1.0, 1.0]]), None);
+        assert_eq!(Calibration::of(&key, 16, &[[1.0, -2.0], [1.0, 1.0]]), None);
+    }
+}

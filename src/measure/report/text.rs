@@ -1,0 +1,298 @@
+//! `report.md` and `report.csv`.
+
+use super::super::table::{markdown_table, or_dash};
+use super::data::{Data, Measured};
+use super::summary::{Calibration, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
+use crate::statistics::fit::Crossing;
+
+/// Backends that others are compared with, if they were measured.
+const BASES: [&str; 2] = ["c89", "scalar"];
+
+/// The report as Markdown. `command` is the command that made it.
+pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
+    let Findings { data, curves, targets, calibration: calibrations, sampler_ratios } = findings;
+    let settings = &data.settings;
+    let mut text = format!(
+        "# Error against time\n\nHow the error of a picture falls with time, as measured by\n\n    {command}\n\n\
+         with {}. Pictures per curve, with different random numbers: {}. Seconds of tracing for all of them: {}. \
+         Samples per pixel: at most {}.\n\n![Error against time](error-vs-time.png)\n\n{HOW_TO_READ}",
+        settings.software, settings.seeds, settings.time_limit, settings.max_samples
+    );
+    for scene in distinct(curves.iter().map(|curve| curve.curve.scene.as_str())) {
+        let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
+        text += &format!("\n## {scene}\n\n");
+        if let Some(reference) = data.references.iter().find(|r| r.scene == scene) {
+            text += &format!(
+                "The reference has {} samples per pixel by {}. Its own RMSE of {:.1e} has been subtracted.\n\n",
+                reference.samples,
+                reference.about,
+                reference.mse.sqrt()
+            );
+        }
+        text += &overview(&of_scene, targets);
+        of_scene.iter().for_each(|curve| text += &points(curve));
+    }
+    text + &samplers(sampler_ratios) + &calibration(calibrations) + &rounding(data, curves)
+}
+
+const HOW_TO_READ: &str = "\
+**How to read it.** *RMSE* is the root mean square difference from the reference over pixels and channels, in linear
+radiance, where white is 1. At .05 a picture is grainy, at .01 nearly clean, and at .001 no screen shows the difference.
+*relMSE* gives more weight to errors in dark areas. *FLIP*, from 0 to 1, is how different the displayed pictures look to
+someone who flips between them. The *slope* is the exponent of the seconds in the RMSE: -.5 means that halving the error
+takes four times as long. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice the efficiency gives the same
+picture in half the time. Times with ~ are extrapolated. *Trace* seconds are those of the tracer, *wall* seconds
+include adding to the film, and *device* seconds are measured by the GPU's clock. Seconds are medians over the pictures,
+errors are means. An RMSE of 0 means that the pictures are better than the reference.
+";
+
+/// One row per curve of a scene.
+fn overview(curves: &[&CurveSummary], targets: &[f64]) -> String {
+    let bases: Vec<&str> =
+        BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
+    let mut heads = ["backend", "sampler", "slope", "efficiency"].map(str::to_owned).to_vec();
+    heads.extend(targets.iter().map(|target| format!("to RMSE {target}")));
+    heads.extend(bases.iter().map(|base| format!("times {base}")));
+    let rows = curves.iter().map(|curve| {
+        let slope = or_dash(curve.slope, |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
+        let names = [&curve.curve.backend, &curve.curve.sampler].map(Clone::clone);
+        let mut row = [&names[..], &[slope, number(curve.efficiency)]].concat();
+        row.extend(curve.times.iter().map(|time| {
+            or_dash(*time, |c| format!("{}{} s", if c.is_extrapolated { "~" } else { "" }, number(c.time)))
+        }));
+        row.extend(bases.iter().map(|base| ratio(curve, curves, base)));
+        row
+    });
+    let mut text = markdown_table(&heads, 2, rows);
+    if let (false, [target, ..]) = (bases.is_empty(), targets) {
+        text += &format!(
+            "\n*times X*: how many times as long X takes to reach an RMSE of {target} with its best sampler.\n"
+        );
+    }
+    text
+}
+
+/// How many times as long `base` takes to reach the first target.
+fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
+    let first = |curve: &CurveSummary| curve.times.first().copied().flatten();
+    let of_base = curves.iter().filter(|c| c.curve.backend == base).filter_map(|c| first(c));
+    let best: Option<Crossing> = of_base.min_by(|a, b| a.time.total_cmp(&b.time));
+    or_dash(best.zip(first(curve)), |(base, mine)| {
+        let mark = if base.is_extrapolated || mine.is_extrapolated { "~" } else { "" };
+        format!("{mark}{:.2}", base.time / mine.time)
+    })
+}
+
+/// The points of a curve, with one row per number of samples.
+fn points(curve: &CurveSummary) -> String {
+    let heads = [
+        "samples", "trace s", "wall s", "device s", "RMSE", "min to max", "relMSE", "FLIP", "estimate / actual",
+    ];
+    let rows = curve.points.iter().map(|point| {
+        let [low, high] = point.range;
+        vec![
+            point.samples.to_string(),
+            format!("{:.4}", point.trace_seconds),
+            format!("{:.4}", point.wall_seconds),
+            or_dash(point.device_seconds, |seconds| format!("{seconds:.4}")),
+            format!("{:.2e}", point.rmse),
+            format!("{low:.2e} to {high:.2e}"),
+            format!("{:.2e}", point.rel_mse),
+            format!("{:.4}", point.flip),
+            or_dash(point.estimate_ratio, |ratio| format!("{ratio:.3}")),
+        ]
+    });
+    let CurveSummary { curve: key, about, .. } = curve;
+    let table = markdown_table(&heads, 0, rows);
+    format!("\n### {}: {}, {}\n\n{about}\n\n{table}", key.scene, key.backend, key.sampler)
+}
+
+fn samplers(ratios: &[SamplerRatio]) -> String {
+    if ratios.is_empty() {
+        return String::new();
+    }
+    let rows = ratios.iter().filter(|ratio| ratio.samples >= 4).map(|ratio| {
+        vec![
+            ratio.scene.clone(),
+            ratio.backend.clone(),
+            ratio.samples.to_string(),
+            format!("{:.2}", ratio.at_equal_samples),
+            format!("{:.2}", ratio.at_equal_time),
+        ]
+    });
+    let heads = ["scene", "backend", "samples", "at equal samples", "at equal time"];
+    format!(
+        "\n## Sobol points against independent samples\n\nThe squared error of independent samples relative to that of \
+         Sobol points, which are best at powers of two.\n\n{}",
+        markdown_table(&heads, 2, rows)
+    )
+}
+
+fn calibration(rows: &[Calibration]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let deviations = || rows.iter().map(|row| (row.ratio - 1.0).abs());
+    let heads = [
+        "scene", "backend", "sampler", "samples", "pictures", "predicted", "actual", "predicted / actual",
+    ];
+    let cells = rows.iter().map(|row| {
+        vec![
+            row.curve.scene.clone(),
+            row.curve.backend.clone(),
+            row.curve.sampler.clone(),
+            row.samples.to_string(),
+            row.seeds.to_string(),
+            number(row.predicted_rmse),
+            number(row.actual_rmse),
+            format!("{:.3} ± {:.3}", row.ratio, row.deviation),
+        ]
+    });
+    format!(
+        "\n## Is the error estimate accurate?\n\nThe RMSE that a picture's two halves predict without a reference, and the \
+         actual RMSE, over all pictures of a curve. {} of {} ratios are within 1 ± {TOLERANCE}; the largest deviation is \
+         {:.3}.\n\n{}",
+        deviations().filter(|deviation| *deviation <= TOLERANCE).count(),
+        rows.len(),
+        deviations().fold(0.0, f64::max),
+        markdown_table(&heads, 3, cells)
+    )
+}
+
+fn rounding(data: &Data, curves: &[CurveSummary]) -> String {
+    if data.rounding.is_empty() {
+        return String::new();
+    }
+    let rows = data.rounding.iter().map(|row| {
+        let best = curves
+            .iter()
+            .filter(|c| (&c.curve.scene, &c.curve.backend) == (&row.scene, &row.backend))
+            .filter_map(|c| c.samples_to(row.floor.unwrap_or(row.floor_limit)))
+            .reduce(f64::min);
+        let more = if row.floor.is_some() { "" } else { "> " };
+        vec![
+            row.scene.clone(),
+            row.backend.clone(),
+            row.samples.to_string(),
+            format!("{:+.1e}", row.bias),
+            format!("{:.1e}", row.rms),
+            row.floor.map_or(format!("< {:.1e}", row.floor_limit), |floor| format!("{floor:.1e}")),
+            or_dash(best, |samples| format!("~{more}{samples:.0e}")),
+        ]
+    });
+    let heads = [
+        "scene", "backend", "samples", "mean difference", "RMS difference", "floor", "samples until noise is as low",
+    ];
+    format!(
+        "\n## The effect of rounding\n\nThe same samples in double precision and on each backend. The *difference* is that of \
+         the pictures. Nearly all of it comes from paths that rounding sent another way. They are as good as the original \
+         paths, and like noise, this part falls with more samples. The *floor* is the part that never falls; \
+         more samples help until the noise is as low as the floor.\n\n{}",
+        markdown_table(&heads, 2, rows)
+    )
+}
+
+/// A number with three significant digits.
+fn number(x: f64) -> String {
+    match x.abs() {
+        size if !size.is_finite() => "-".to_owned(),
+        size if !(1e-3..1e5).contains(&size) => format!("{x:.2e}"),
+        size => format!("{x:.*}", (2 - size.log10().floor() as i32).max(0) as usize),
+    }
+}
+
+/// All measurements, one line for each picture and number of samples.
+pub fn csv(data: &Data) -> String {
+    let mut text = String::from(
+        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
+    );
+    for run in &data.runs {
+        // A scene's name may be any file name.
+        let scene = run.curve.scene.replace([',', '"', '\n'], "_");
+        for point in &run.points {
+            let Measured { samples, trace_seconds, wall_seconds, mse, rel_mse, flip, rejected, .. } = point;
+            let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+            let (device, estimate) = (optional(point.device_seconds), optional(point.mse_estimate));
+            text += &format!(
+                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{device},{mse},{rel_mse},{flip},{estimate},{rejected}\n",
+                run.curve.backend, run.curve.sampler, run.seed
+            );
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::data::Rounding;
+    use super::super::summary::CurvePoint;
+    use super::super::tests::{curve as key, data};
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let found = [1234.5, 12.34, 1.234, 0.1234, 0.001_234, 1.234e-5, 1.234e7].map(number);
+        assert_eq!(found, ["1234", "12.3", "1.23", "0.123", "0.00123", "1.23e-5", "1.23e7"]);
+    }
+
+    fn curve(backend: &str, sampler: &str, seconds: f64) -> CurveSummary {
+        let point = |samples, rmse| CurvePoint {
+            samples,
+            trace_seconds: 0.5,
+            wall_seconds: 0.75,
+            device_seconds: None,
+            rmse,
+            range: [0.01, 0.03],
+            rel_mse: 0.04,
+            flip: 0.125,
+            estimate_ratio: Some(1.5),
+        };
+        CurveSummary {
+            curve: key(backend, sampler),
+            about: "a machine".to_owned(),
+            points: vec![point(16, 0.02), point(64, 0.01)],
+            slope: Some([-0.5, 0.01]),
+            efficiency: 2.0,
+            times: vec![Some(Crossing { time: seconds, is_extrapolated: seconds > 30.0 })],
+        }
+    }
+
+    #[test]
+    fn backends_are_compared_with_the_best_sampler_of_the_baseline() {
+        let curves = [
+            curve("c89", "independent", 40.0),
+            curve("c89", "sobol", 20.0),
+            curve("cpu", "sobol", 5.0),
+            curve("cpu", "independent", 50.0),
+        ];
+        let text = overview(&curves.each_ref(), &[0.01]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "| backend | sampler | slope | efficiency | to RMSE 0.01 | times c89 |");
+        assert_eq!(
+            lines[2..6],
+            [
+                "| c89 | independent | -0.50 ± 0.01 | 2.00 | ~40.0 s | ~0.50 |",
+                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 20.0 s | 1.00 |",
+                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 5.00 s | 4.00 |",
+                "| cpu | independent | -0.50 ± 0.01 | 2.00 | ~50.0 s | ~0.40 |",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_floor_that_is_too_low_to_tell_has_a_limit() {
+        let row = |floor| Rounding {
+            scene: "s".to_owned(),
+            backend: "cpu".to_owned(),
+            samples: 64,
+            bias: -2e-6,
+            rms: 3e-5,
+            floor,
+            floor_limit: 5e-6,
+        };
+        let data = Data { rounding: vec![row(Some(4e-6)), row(None)], ..data() };
+        let text = rounding(&data, &[curve("cpu", "sobol", 1.0)]);
+        assert!(text.contains("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | 4.0e-6 | ~4e8 |\n"), "{text}");
+        assert!(text.ends_with("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | < 5.0e-6 | ~> 3e8 |\n"), "{text}");
+    }
+}

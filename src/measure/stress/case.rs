@@ -1,0 +1,280 @@
+//! A case of the suite: a scene, what is stiff about it, and the expected result.
+
+use crate::recipe::{Recipe, plain_name};
+use crate::scene::{Material, Scene};
+use glam::DVec3;
+use std::fmt;
+use std::sync::Arc;
+
+/// What the cases of a family have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Family {
+    /// First part of the ids of its cases.
+    pub id: &'static str,
+    /// What the family tests, as a heading.
+    pub title: &'static str,
+    /// What can be learnt from it, in a sentence or two.
+    pub lesson: &'static str,
+}
+
+/// The result that a case must have. Radiance is linear.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expected {
+    /// Every sample has this radiance, RGB: a closed form without noise.
+    Every([f64; 3]),
+    /// The mean over pixels and channels is known: a closed form with noise.
+    Mean(f64),
+    /// Sample by sample the same as another scene on the same backend.
+    Same(Box<Recipe>),
+    /// Sample by sample the same as the `f64` reference.
+    Reference,
+}
+
+impl fmt::Display for Expected {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Expected::Every([red, green, blue]) if red == green && green == blue => write!(f, "{red}"),
+            Expected::Every([red, green, blue]) => write!(f, "{red} {green} {blue}"),
+            Expected::Mean(value) => write!(f, "{value} (mean)"),
+            Expected::Same(other) => write!(f, "as {}", other.name),
+            Expected::Reference => f.write_str("as f64"),
+        }
+    }
+}
+
+/// How the window shows a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watch {
+    /// Its name in the menu.
+    pub title: &'static str,
+    /// What to look for, in a sentence or two.
+    pub look_for: &'static str,
+}
+
+/// Size of the picture of a case in the window, pixels.
+const SHOWN_SIZE: [u32; 2] = [600, 400];
+
+/// A scene with its expected result.
+#[derive(Clone)]
+pub struct Case {
+    /// The family's id and a name within the family: `copies/110`.
+    pub id: String,
+    pub family: &'static Family,
+    /// What is stiff about it, in a sentence.
+    pub stiff: String,
+    /// The picture, with its number of samples per pixel.
+    pub recipe: Recipe,
+    /// Typical length of what is near the eye, in scene units; the distant spheres are a thousand times as far away.
+    pub unit: f64,
+    pub expected: Expected,
+    /// The derivation of what is expected, in a sentence.
+    pub why: &'static str,
+    /// By how much the mean may differ apart from noise, linear radiance.
+    pub tolerance: f64,
+    /// A similar scene without the difficulty, to compare times with.
+    pub tame: Option<Recipe>,
+    /// How the window shows it; `None` if there is nothing to look at.
+    pub watch: Option<Watch>,
+    /// Whether `cargo test` runs it.
+    pub is_quick: bool,
+}
+
+impl fmt::Debug for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Case").field("id", &self.id).finish_non_exhaustive()
+    }
+}
+
+impl PartialEq for Case {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Case {}
+
+/// From this number of spheres on every backend builds a hierarchy anyway, so distant spheres would change nothing.
+const HIERARCHY_SPHERES: usize = 24;
+
+/// Whether the scene gets distant spheres, which switch the hierarchy on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    Plain,
+    WithFar,
+}
+
+impl Form {
+    /// Its name in the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Plain => "plain",
+            Form::WithFar => "+40",
+        }
+    }
+}
+
+impl Case {
+    /// A case that expects the result of `f64`; the builder methods below change that.
+    pub fn new(
+        family: &'static Family,
+        name: impl fmt::Display,
+        stiff: impl Into<String>,
+        recipe: Recipe,
+    ) -> Self {
+        let id = format!("{}/{name}", family.id);
+        Case {
+            recipe: Recipe { name: id.clone(), ..recipe },
+            id,
+            family,
+            stiff: stiff.into(),
+            unit: 1.0,
+            expected: Expected::Reference,
+            why: "f64 has digits to spare at these scales",
+            tolerance: 2e-6,
+            tame: None,
+            watch: None,
+            is_quick: false,
+        }
+    }
+
+    /// Sets the expected result.
+    #[must_use]
+    pub fn expect(self, expected: Expected, why: &'static str, tolerance: f64) -> Self {
+        Case { expected, why, tolerance, ..self }
+    }
+
+    /// Expects every sample to be grey with this radiance.
+    #[must_use]
+    pub fn every(self, value: f64, why: &'static str) -> Self {
+        self.expect(Expected::Every([value; 3]), why, 1e-6)
+    }
+
+    /// Compares its time with that of `tame`.
+    #[must_use]
+    pub fn beside(self, tame: Recipe) -> Self {
+        Case { tame: Some(tame), ..self }
+    }
+
+    /// Shows it in the window.
+    #[must_use]
+    pub fn watched(self, title: &'static str, look_for: &'static str) -> Self {
+        Case { watch: Some(Watch { title, look_for }), ..self }
+    }
+
+    /// Includes it in `cargo test`.
+    #[must_use]
+    pub fn quick(self) -> Self {
+        self.quick_if(true)
+    }
+
+    /// Includes it in `cargo test` on a condition.
+    #[must_use]
+    pub fn quick_if(self, is_quick: bool) -> Self {
+        Case { is_quick, ..self }
+    }
+
+    /// Sets the typical length of what is near the eye.
+    #[must_use]
+    pub fn of_unit(self, unit: f64) -> Self {
+        Case { unit, ..self }
+    }
+
+    /// The picture at the window's size, with a name that can be a file name.
+    pub fn shown(&self) -> Recipe {
+        let mut recipe = Recipe { name: plain_name(&self.id), samples_per_pixel: 256, ..self.recipe.clone() };
+        [recipe.settings.width, recipe.settings.height] = SHOWN_SIZE;
+        recipe
+    }
+
+    /// Its title in menus, or its id if it is not shown.
+    pub fn title(&self) -> &str {
+        self.watch.map_or(&self.id, |watch| watch.title)
+    }
+
+    /// The forms in which it is rendered.
+    pub fn forms(&self) -> &'static [Form] {
+        if self.recipe.scene.spheres.len() < HIERARCHY_SPHERES {
+            &[Form::Plain, Form::WithFar]
+        } else {
+            &[Form::Plain]
+        }
+    }
+
+    /// The picture in one of its forms.
+    pub fn recipe_in(&self, form: Form) -> Recipe {
+        match form {
+            Form::Plain => self.recipe.clone(),
+            Form::WithFar => with_far_spheres(&self.recipe, self.unit),
+        }
+    }
+}
+
+/// Number of distant spheres.
+const FAR_COUNT: usize = 40;
+
+/// Their distance from the eye, in units of the scene.
+const FAR_DISTANCE: f64 = 1000.0;
+
+/// Their radius, in units of the scene: together they cover a billionth of the sky.
+const FAR_RADIUS: f64 = 0.01;
+
+/// The scene with forty distant spheres, which switch the hierarchy on and are too small to be seen. They reflect all
+/// light, so a closed room stays dark and a white world white.
+pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
+    let mut scene = Scene::clone(&recipe.scene);
+    // No scene that is rendered here has a material of this name.
+    let material = scene.add_material("far".to_owned(), Material::Lambertian { albedo: DVec3::ONE });
+    for index in 0..FAR_COUNT {
+        // Evenly distributed directions, by the golden angle.
+        let height = 1.0 - (2 * index + 1) as f64 / FAR_COUNT as f64;
+        let turn = index as f64 * 2.399_963_229_728_653;
+        let across = (1.0 - height * height).sqrt();
+        let direction = DVec3::new(across * turn.cos(), height, across * turn.sin());
+        let center = recipe.camera.look_from + FAR_DISTANCE * unit * direction;
+        scene.add_sphere(center, FAR_RADIUS * unit, material);
+    }
+    Recipe { scene: Arc::new(scene), ..recipe.clone() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::families::build::one_ball;
+    use super::*;
+
+    const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
+
+    #[test]
+    fn what_the_window_shows_is_larger_and_has_the_name_of_a_file() {
+        let case = Case::new(&FAMILY, "one", "nothing", one_ball());
+        let shown = case.shown();
+        assert_eq!([shown.settings.width, shown.settings.height], [600, 400]);
+        assert_eq!((shown.samples_per_pixel, shown.name.as_str()), (256, "balls-one"));
+        assert_eq!(case.title(), "balls/one");
+        assert_eq!(case.watched("A ball", "It is round.").title(), "A ball");
+    }
+
+    #[test]
+    fn scenes_without_a_hierarchy_are_also_rendered_with_one() {
+        for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
+            let mut recipe = one_ball();
+            let scene = Arc::make_mut(&mut recipe.scene);
+            scene.spheres = vec![scene.spheres[0]; count];
+            let case = Case::new(&FAMILY, count, "copies", recipe);
+            assert_eq!(case.forms(), forms, "{count}");
+            assert_eq!(case.recipe_in(Form::Plain).scene.spheres.len(), count);
+        }
+    }
+
+    #[test]
+    fn far_spheres_surround_the_eye_and_cover_nothing() {
+        let recipe = Recipe::builtin("two-spheres").unwrap();
+        let with = with_far_spheres(&recipe, 2.0);
+        let added = &with.scene.spheres[recipe.scene.spheres.len()..];
+        assert_eq!(added.len(), FAR_COUNT);
+        let eye = recipe.camera.look_from;
+        let mean = added.iter().map(|s| s.center - eye).sum::<DVec3>() / FAR_COUNT as f64;
+        assert!(mean.length() < 0.05 * FAR_DISTANCE * 2.0, "{mean}");
+        let share: f64 = added.iter().map(|s| (s.radius / s.center.distance(eye)).powi(2) / 4.0).sum();
+        assert!(share < 2e-9, "{share}");
+    }
+}

@@ -1,0 +1,125 @@
+//! Closed rooms, which no light may leave or enter, and the eye on a surface or next to it.
+
+use super::build::{Ball, deep, eye, glass, matte, metal, moved, picture, sized};
+use crate::recipe::Recipe;
+use crate::scene::Material;
+use crate::measure::stress::case::{Case, Expected, Family};
+use glam::DVec3;
+
+/// The eye in a closed room.
+pub const CAVITIES: Family = Family {
+    id: "cavity",
+    title: "The eye in a closed ball",
+    lesson: "No light gets in, so a single leaking path shows as a bright speck. Where the ball touches the ground, \
+             the surfaces are closer to each other than rounding can tell.",
+};
+
+const WHY: &str = "the room is closed: no path leaves it";
+
+/// Alone, touching the ground, and cut by the ground; near the origin and far from it.
+pub fn cavities() -> Vec<Case> {
+    let materials = [
+        ("white", matte(1.0)),
+        ("matte", matte(0.5)),
+        ("metal", metal(0.9, 0.0)),
+        ("fuzzy", metal(0.9, 0.3)),
+    ];
+    let mut cases = Vec::new();
+    for (material_name, material) in materials {
+        let words = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
+        for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
+            let stiff = match place {
+                "alone" => format!("the eye in a closed {words} ball"),
+                "touching" => format!("the eye in a {words} ball that stands on the ground"),
+                _ => format!("the eye in a {words} ball that the ground cuts"),
+            };
+            let name = format!("{material_name}-{place}");
+            let case = Case::new(&CAVITIES, name, stiff, room(material, ground)).every(0.0, WHY);
+            cases.push(case.quick_if(place == "alone"));
+        }
+    }
+    let touching = room(matte(1.0), Some(-1001.0));
+    let stiff = "a white ball that touches the ground, up to 2,000 rays per path: each bounce is a chance to slip out";
+    let recipe = sized(deep(touching.clone(), 2000), [8, 8], 8);
+    cases.push(Case::new(&CAVITIES, "white-touching-deep", stiff, recipe).every(0.0, WHY));
+    let away = DVec3::new(800.0, 0.0, 600.0);
+    let recipe = moved(&touching, 1.0, away);
+    let stiff = "a white ball that touches the ground, 1,000 units from the origin";
+    let case = Case::new(&CAVITIES, "white-touching-at-1000", stiff, recipe).every(0.0, WHY);
+    cases.push(case.watched(
+        "A closed room, a thousand units from the origin",
+        "Nothing: the room is closed and black. With the book's arithmetic in f32, some paths slip through the wall, \
+         each of them a bright speck.",
+    ));
+    let recipe = sized(deep(moved(&touching, 1.0, away), 2000), [8, 8], 8);
+    let stiff = "the same, up to 2,000 rays per path";
+    cases.push(Case::new(&CAVITIES, "white-touching-at-1000-deep", stiff, recipe).every(0.0, WHY));
+    let recipe = moved(&room(matte(1.0), None), 1.0, away);
+    let stiff = "a white ball alone, 1,000 units from the origin";
+    cases.push(Case::new(&CAVITIES, "white-at-1000", stiff, recipe).every(0.0, WHY));
+    for factor in [1e-6, 1e-3, 1e6] {
+        let recipe = moved(&touching, factor, DVec3::ZERO);
+        let stiff = format!("a white ball of radius {factor:e} that touches the ground");
+        let case = Case::new(&CAVITIES, format!("white-touching-of-{factor:e}"), stiff, recipe);
+        cases.push(case.of_unit(factor).every(0.0, WHY));
+    }
+    cases
+}
+
+/// A ball of radius 1 at the origin with the eye in it, and a ground of radius 1000 centred at this height.
+fn room(material: Material, ground: Option<f64>) -> Recipe {
+    let ground = ground.map(|y| (DVec3::new(0.0, y, 0.0), 1000.0, matte(1.0)));
+    let balls: Vec<Ball> = [(DVec3::ZERO, 1.0, material)].into_iter().chain(ground).collect();
+    picture(balls, eye(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.3, -1.0, -0.2), 90.0))
+}
+
+/// The eye near surfaces.
+pub const EYE: Family = Family {
+    id: "eye",
+    title: "The eye on a surface",
+    lesson: "Only the camera's rays start where no ray has arrived. Exactly on a surface, they must \
+             leave it like any other rays.",
+};
+
+/// The eye at several heights above several surfaces, looking away and down.
+pub fn eye_near_a_surface() -> Vec<Case> {
+    let mut cases = Vec::new();
+    let heights = [("0", 0.0), ("1e-12", 1e-12), ("1e-9", 1e-9), ("1e-6", 1e-6), ("1e-3", 1e-3)];
+    let ball = DVec3::new(0.2, -0.3, 0.1);
+    // Its length is exactly 1 in f64.
+    let tilted = DVec3::new(0.48, 0.6, 0.64);
+    let surfaces: [(&str, &str, DVec3, f64, DVec3, Material); 4] = [
+        ("ball", "a matte ball", ball, 1.0, tilted, matte(0.5)),
+        ("ground", "the ground", DVec3::new(0.0, -1000.0, 0.0), 1000.0, DVec3::Y, matte(0.5)),
+        ("glass", "a glass ball", ball, 1.0, tilted, glass(1.5)),
+        ("metal", "a metal ball", ball, 1.0, tilted, metal(0.5, 0.0)),
+    ];
+    for (surface, words, center, radius, up, material) in surfaces {
+        for (name, height) in heights {
+            let look_from = center + (radius + height) * up;
+            let away = picture([(center, radius, material)], eye(look_from, look_from + up, 90.0));
+            let place = if height == 0.0 { "on".to_owned() } else { format!("{height:e} above") };
+            let stiff = format!("the eye {place} {words}, looking away from it");
+            let why = "nothing but a sky of 1 is in view";
+            let case = Case::new(&EYE, format!("{surface}-{name}-away"), stiff, away).every(1.0, why);
+            cases.push(case.quick_if(surface == "ball"));
+            if height > 0.0 && surface != "glass" {
+                let down = picture([(center, radius, material)], eye(look_from, center, 90.0));
+                let stiff = format!("the eye {place} {words}, looking at it");
+                let why = "a convex surface that reflects half the light fills the view, and each path bounces once";
+                cases.push(Case::new(&EYE, format!("{surface}-{name}-down"), stiff, down).every(0.5, why));
+            }
+        }
+    }
+    let glass_down = |height: f64| {
+        let look_from = ball + (1.0 + height) * tilted;
+        picture([(ball, 1.0, glass(1.5))], eye(look_from, ball, 90.0))
+    };
+    for (name, height) in [("1e-9", 1e-9), ("1e-3", 1e-3)] {
+        let stiff = format!("the eye {height:e} above a glass ball, looking into it");
+        let why = "glass absorbs nothing: a sky of 1 is seen through it or reflected in it";
+        let case = Case::new(&EYE, format!("glass-{name}-down"), stiff, glass_down(height));
+        cases.push(case.expect(Expected::Mean(1.0), why, 1e-6));
+    }
+    cases
+}

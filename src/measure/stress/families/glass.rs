@@ -1,0 +1,118 @@
+//! Indices near 1 and far from it, trapped light, and the longest paths.
+
+use super::build::{counted, deep, eye, glass, matte, metal, of_scene, picture, scene, sized, tame};
+use crate::recipe::Recipe;
+use crate::scene::Sky;
+use crate::measure::stress::case::{Case, Expected, Family};
+use glam::DVec3;
+
+/// Refraction indices.
+pub const INDICES: Family = Family {
+    id: "index",
+    title: "Refraction indices from 1.000001 to a million",
+    lesson: "Near 1, the bend is a difference of almost equal angles. At 1e4, light leaves through a cone of a hundredth \
+             of a degree, whose sine cannot be computed from 1 - cos^2.",
+};
+
+/// Total internal reflection.
+pub const TRAPPED: Family = Family {
+    id: "trapped",
+    title: "Light that runs along the wall of a glass ball",
+    lesson: "In a ball, the angle of incidence never changes. Rounding must not let it drift across the critical \
+             angle, even in ten thousand reflections.",
+};
+
+/// Maximum depths and sample counts.
+pub const DEPTHS: Family = Family {
+    id: "depth",
+    title: "Long paths and many samples",
+    lesson: "What is right for one bounce must be right ten thousand times in a row, and a kernel that \
+             a driver cuts short must be noticed.",
+};
+
+fn rays(depth: u32) -> String {
+    counted(depth as usize, "ray")
+}
+
+/// Glass of many indices, from outside and inside.
+pub fn indices() -> Vec<Case> {
+    let ball = |index: f64, look_from: DVec3| -> Recipe {
+        let balls = [(DVec3::ZERO, 1.0, glass(index)), (DVec3::new(0.0, -101.0, 0.0), 100.0, matte(0.5))];
+        of_scene(scene(balls, Sky::default()), eye(look_from, DVec3::ZERO, 40.0))
+    };
+    let outside = DVec3::new(0.0, 0.3, 3.0);
+    let mut cases: Vec<Case> = [1.0 + 1e-6, 1.0 + 1e-3, 2.4, 10.0, 100.0, 1e4, 1e6, 1e-4]
+        .into_iter()
+        .map(|index| {
+            let name = if index == 1.0 + 1e-6 { "1+1e-6".to_owned() } else { format!("{index}") };
+            let stiff = format!("glass of index {index}, seen from outside");
+            Case::new(&INDICES, name, stiff, ball(index, outside)).quick_if(index == 2.4)
+        })
+        .collect();
+    for (name, index) in [("1.5", 1.5), ("100", 100.0), ("1e4", 1e4)] {
+        let stiff = format!("the eye inside glass of index {name}");
+        // Near the centre, so that some rays fall within the cone through which light leaves.
+        let recipe = ball(index, DVec3::new(0.0, 0.3 / index, 0.1 / index));
+        cases.push(Case::new(&INDICES, format!("within-{name}"), stiff, recipe));
+    }
+    cases
+}
+
+/// The eye in a glass ball, so far from the centre that much of the light that it sees is trapped.
+pub fn trapped() -> Vec<Case> {
+    let within = |look_at: DVec3, vfov: f64| {
+        picture([(DVec3::ZERO, 1.0, glass(1.5))], eye(DVec3::new(0.9, 0.0, 0.0), look_at, vfov))
+    };
+    let mut cases = Vec::new();
+    for (depth, size, samples) in [(1000, [12, 8], 16), (10_000, [8, 6], 4)] {
+        let along = sized(deep(within(DVec3::new(0.9, 0.0, -1.0), 50.0), depth), size, samples);
+        let stiff = format!("the eye in glass, looking along its wall, up to {} per path", rays(depth));
+        let why = "at .9 of the radius and at most 40 degrees off the tangent, the sine of the angle of incidence is above \
+                   .68; the critical sine is 1/1.5, so nothing gets out";
+        cases.push(Case::new(&TRAPPED, format!("along-{depth}"), stiff, along).every(0.0, why));
+        let across = sized(deep(within(DVec3::new(0.4, 0.0, -1.0), 80.0), depth), size, samples);
+        let stiff = format!("the same with the critical angle in view, up to {} per path", rays(depth));
+        let why = "in f64, the angle drifts by 1e-13 in ten thousand reflections";
+        let case = Case::new(&TRAPPED, format!("critical-{depth}"), stiff, across);
+        cases.push(case.expect(Expected::Reference, why, 2e-6));
+    }
+    cases
+}
+
+/// Several maximum depths, and many samples.
+pub fn depths() -> Vec<Case> {
+    let mirrors = |gap: f64| {
+        let balls = [
+            (DVec3::new(-1.0 - gap, 0.0, 0.0), 1.0, metal(1.0, 0.0)),
+            (DVec3::new(1.0 + gap, 0.0, 0.0), 1.0, metal(1.0, 0.0)),
+            (DVec3::new(0.0, 1.7, 0.0), 1.0, metal(1.0, 0.0)),
+        ];
+        deep(picture(balls, eye(DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.0, 0.5, 0.0), 40.0)), 10_000)
+    };
+    let why = "the mirrors reflect all light, and every path finds its way out to a sky of 1";
+    let mut cases: Vec<Case> = [("mirrors", 0.05), ("mirrors-1e-6-apart", 1e-6), ("mirrors-touching", 0.0)]
+        .into_iter()
+        .map(|(name, gap)| {
+            let apart = if gap == 0.0 { "that touch".to_owned() } else { format!("{gap:e} apart") };
+            let stiff = format!("three mirrors {apart}: each reflection multiplies errors");
+            Case::new(&DEPTHS, name, stiff, mirrors(gap)).expect(Expected::Mean(1.0), why, 2e-6)
+        })
+        .collect();
+    let well = |depth: u32| {
+        // A white ball, open at the top: its lid is a little too small.
+        let balls = [(DVec3::ZERO, 1.0, matte(0.9)), (DVec3::new(0.0, -101.0, 0.0), 100.0, matte(0.5))];
+        deep(picture(balls, eye(DVec3::new(0.0, 0.2, 2.0), DVec3::new(0.0, -1.0, 0.0), 30.0)), depth)
+    };
+    for depth in [1, 2, 10_000] {
+        let stiff = format!("a ball that touches the ground, up to {} per path", rays(depth));
+        cases.push(Case::new(&DEPTHS, depth, stiff, well(depth)).quick_if(depth == 2));
+    }
+    let many = sized(tame(), [4, 4], 65_536);
+    let stiff = "65,536 samples of 16 pixels: more loop iterations than some drivers allow per invocation";
+    cases.push(Case::new(&DEPTHS, "many-samples", stiff, many));
+    let room = picture([(DVec3::ZERO, 1.0, matte(1.0))], eye(DVec3::new(0.1, 0.2, 0.3), DVec3::X, 90.0));
+    let stiff = "a closed white room, up to 10,000 rays per path";
+    let case = Case::new(&DEPTHS, "closed-10000", stiff, sized(deep(room, 10_000), [4, 4], 16));
+    cases.push(case.every(0.0, "the room is closed: no path leaves it"));
+    cases
+}

@@ -1,0 +1,330 @@
+//! Measures films and judges what was measured by what was expected.
+
+use crate::film::{Film, PixelSum};
+use serde::Serialize;
+
+/// Standard errors by which noise may move a mean; one mean in sixteen thousand moves further.
+const DEVIATIONS: f64 = 4.0;
+
+/// Pictures of the same samples differ by less than this fraction of their noise. Pictures of unrelated samples differ
+/// by 1.4 times their noise.
+const PAIRED_SHARE: f64 = 0.5;
+
+/// Difference of the pixels that rounding may cause where there is no noise.
+const PAIRED_FLOOR: f64 = 1e-4;
+
+/// A picture is slow if it takes this many times as long as the tame twin and [`SLOW_SECONDS`] longer.
+const SLOW_RATIO: f64 = 8.0;
+
+/// Extra seconds from which a slow picture matters.
+const SLOW_SECONDS: f64 = 1.0;
+
+/// The difference of two films of the same samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Paired {
+    /// Mean difference over pixels and channels, linear radiance.
+    pub bias: f64,
+    /// Its standard error, from the spread over the pixels.
+    pub bias_deviation: f64,
+    /// Root mean square of the pixels' differences, linear radiance.
+    pub rms: f64,
+}
+
+impl Paired {
+    /// `film` minus `exact`, pixel by pixel. Both must have the same size.
+    pub fn of(film: &Film, exact: &Film) -> Self {
+        let count = pixel_count(film);
+        let (mut sum, mut sum_of_squares, mut squares) = (0.0, 0.0, 0.0);
+        for pixel in 0..count {
+            let (a, b) = (film.mean(pixel), exact.mean(pixel));
+            let difference = [0, 1, 2].map(|channel| a[channel] - b[channel]);
+            let mean = grey(difference);
+            sum += mean;
+            sum_of_squares += mean * mean;
+            squares += grey(difference.map(|x| x * x));
+        }
+        let count = count as f64;
+        let bias = sum / count;
+        let variance = (sum_of_squares / count - bias * bias).max(0.0);
+        Paired {
+            bias,
+            // A single pixel has no spread: its difference is used instead.
+            bias_deviation: if count > 1.0 { (variance / (count - 1.0)).sqrt() } else { bias.abs() },
+            rms: (squares / count).sqrt(),
+        }
+    }
+}
+
+/// The mean of a film and its noise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Level {
+    /// Mean over pixels, linear RGB.
+    pub mean: [f64; 3],
+    /// Standard error of the mean over pixels and channels, from the film's halves; 0 if it has only one.
+    pub deviation: f64,
+    /// Root mean square of the pixels' noise, from the film's halves; 0 if it has only one.
+    pub noise: f64,
+}
+
+impl Level {
+    /// Measures a film.
+    pub fn of(film: &Film) -> Self {
+        let count = pixel_count(film);
+        let mut sum = [0.0; 3];
+        let (mut variance_of_sum, mut squares) = (0.0, 0.0);
+        for pixel in 0..count {
+            let mean = film.mean(pixel);
+            (0..3).for_each(|channel| sum[channel] += mean[channel]);
+            let half_difference = half_difference(film, pixel);
+            variance_of_sum += grey(half_difference).powi(2);
+            squares += grey(half_difference.map(|x| x * x));
+        }
+        let count = count as f64;
+        Level {
+            mean: sum.map(|x| x / count),
+            deviation: variance_of_sum.sqrt() / count,
+            noise: (squares / count).sqrt(),
+        }
+    }
+
+    /// The mean over pixels and channels.
+    pub fn grey(&self) -> f64 {
+        grey(self.mean)
+    }
+}
+
+fn grey(channels: [f64; 3]) -> f64 {
+    channels.iter().sum::<f64>() / 3.0
+}
+
+/// Half the difference of the two halves' means; its square estimates the variance of the pixel.
+fn half_difference(film: &Film, pixel: usize) -> [f64; 3] {
+    let [a, b] = film.halves() else { return [0.0; 3] };
+    let mean = |half: usize, sums: &[PixelSum]| {
+        sums[pixel].radiance().map(|sum| sum / film.half_sample_count(half).max(1) as f64)
+    };
+    let (a, b) = (mean(0, a), mean(1, b));
+    [0, 1, 2].map(|channel| 0.5 * (a[channel] - b[channel]))
+}
+
+fn pixel_count(film: &Film) -> usize {
+    film.width() as usize * film.height() as usize
+}
+
+/// The verdict on a case on one backend.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "verdict", content = "reason", rename_all = "lowercase")]
+pub enum Verdict {
+    Right,
+    /// Not as expected, but the backend warned about it and said what to do.
+    Warned(String),
+    Wrong(String),
+    /// As expected, but far slower than the tame twin.
+    Slow(String),
+    /// There is no picture: it was refused, the tracer failed, or it took too long.
+    None(String),
+}
+
+impl Verdict {
+    /// Its name in the table.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Verdict::Right => "right",
+            Verdict::Warned(_) => "warned",
+            Verdict::Wrong(_) => "WRONG",
+            Verdict::Slow(_) => "SLOW",
+            Verdict::None(_) => "NONE",
+        }
+    }
+
+    /// What is wrong; empty for [`Verdict::Right`].
+    pub fn reason(&self) -> &str {
+        match self {
+            Verdict::Right => "",
+            Verdict::Warned(reason)
+            | Verdict::Wrong(reason)
+            | Verdict::Slow(reason)
+            | Verdict::None(reason) => reason,
+        }
+    }
+
+    /// Whether the result is as expected or the backend warned about it.
+    pub fn is_right(&self) -> bool {
+        matches!(self, Verdict::Right | Verdict::Warned(_))
+    }
+
+    /// Turns a wrong result into a warned one if the backend gave a warning.
+    #[must_use]
+    pub fn given(self, warnings: &[String]) -> Self {
+        match (self, warnings) {
+            (Verdict::Wrong(reason), [first, ..]) => {
+                Verdict::Warned(format!("{reason}; the backend warned: {first}"))
+            }
+            (verdict, _) => verdict,
+        }
+    }
+}
+
+/// What a picture is compared with.
+#[derive(Clone, Copy, Debug)]
+pub enum Against {
+    /// The radiance of every sample, linear RGB.
+    Every([f64; 3]),
+    /// The mean over pixels and channels, linear radiance.
+    Mean(f64),
+    /// A picture of the same samples; the value is the difference from it.
+    Picture(Paired),
+}
+
+/// Distance of the mean from the expected one, linear radiance; if each channel is known, that of the worst channel.
+pub fn offset(level: &Level, against: Against) -> f64 {
+    match against {
+        Against::Every(value) => {
+            let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
+            let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
+            farther(farther(red, green), blue)
+        }
+        Against::Mean(value) => level.grey() - value,
+        Against::Picture(paired) => paired.bias,
+    }
+}
+
+/// Judges a picture by its radiance.
+pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> Verdict {
+    let off = offset(level, against);
+    let deviation = match against {
+        Against::Every(_) => 0.0,
+        Against::Mean(_) => level.deviation,
+        Against::Picture(paired) => paired.bias_deviation,
+    };
+    let allowed = tolerance + DEVIATIONS * deviation;
+    let allowed_rms = (PAIRED_SHARE * level.noise).max(PAIRED_FLOOR);
+    match against {
+        _ if rejected > 0 => {
+            Verdict::Wrong(format!("rejected samples (NaN, infinite or negative): {rejected}"))
+        }
+        _ if off.is_nan() || off.abs() > allowed => {
+            Verdict::Wrong(format!("off by {off:+.1e}; at most {allowed:.1e} is allowed"))
+        }
+        Against::Picture(Paired { rms, .. }) if rms > allowed_rms => {
+            Verdict::Wrong(format!("pixels are off by {rms:.1e} RMS; at most {allowed_rms:.1e} is allowed"))
+        }
+        _ => Verdict::Right,
+    }
+}
+
+/// Judges the time of a picture if its radiance is right.
+pub fn judge_time(verdict: Verdict, seconds: f64, tame: Option<f64>) -> Verdict {
+    match (verdict, tame) {
+        (Verdict::Right, Some(tame)) if seconds > SLOW_RATIO * tame && seconds > tame + SLOW_SECONDS => {
+            Verdict::Slow(format!("{seconds:.1} s; the tame twin takes {tame:.2} s"))
+        }
+        (verdict, _) => verdict,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::fixed_point;
+
+    /// A film in a row, of these samples; each half has the sums of its pixels in units of a sixteenth.
+    fn row(samples: u64, halves: [&[[f64; 3]]; 2]) -> Film {
+        let mut film = Film::new(halves[0].len() as u32, 1, 2);
+        for (half, sums) in halves.into_iter().enumerate() {
+            for (pixel, sum) in sums.iter().enumerate() {
+                film.halves_mut()[half][pixel] = fixed_point(sum.map(|x| x / 16.0)).unwrap();
+            }
+        }
+        film.record(0..samples, 0).unwrap();
+        film
+    }
+
+    #[test]
+    fn a_level_is_worked_out_by_hand() {
+        // Two samples in the first half and one in the second.
+        let film = row(3, [&[[4.0, 8.0, 12.0], [2.0; 3]], &[[5.0, 1.0, 3.0], [4.0; 3]]]);
+        let level = Level::of(&film);
+        let close = |x: f64, y: f64| (x - y).abs() < 1e-6;
+        let mean = [15.0, 15.0, 21.0].map(|sum| sum / (3.0 * 2.0 * 16.0));
+        assert!((0..3).all(|channel| close(level.mean[channel], mean[channel])), "{level:?}");
+        assert!(close(level.grey(), 51.0 / 288.0), "{level:?}");
+        // Half the differences of the means are -1.5, 1.5 and 1.5 in the first pixel and -1.5 in the second.
+        assert!(close(level.noise, 1.5 / 16.0), "{level:?}");
+        let deviation = (0.5_f64.powi(2) + 1.5_f64.powi(2)).sqrt() / (2.0 * 16.0);
+        assert!(close(level.deviation, deviation), "{level:?}");
+        let mut one_half = Film::new(1, 1, 1);
+        one_half.record(0..1, 0).unwrap();
+        assert_eq!(Level::of(&one_half), Level::default());
+    }
+
+    #[test]
+    fn a_pair_is_worked_out_by_hand() {
+        let exact = row(2, [&[[1.0; 3]; 4], &[[1.0; 3]; 4]]);
+        let pixels = [[2.0; 3], [3.0; 3], [4.0; 3], [7.0; 3]];
+        let film = row(2, [&pixels, &pixels]);
+        let close = |x: f64, y: f64| (x - y / 16.0).abs() < 1e-6;
+        // The differences of the pixels are 1, 2, 3 and 6 sixteenths.
+        let pair = Paired::of(&film, &exact);
+        assert!(close(pair.bias, 3.0) && close(pair.bias_deviation, (3.5_f64 / 3.0).sqrt()), "{pair:?}");
+        assert!(close(pair.rms, 12.5_f64.sqrt()), "{pair:?}");
+        let [one, other] = [[[1.0, 2.0, 6.0]], [[1.0; 3]]].map(|pixel| row(2, [&pixel, &pixel]));
+        let pair = Paired::of(&other, &one);
+        assert!(close(pair.bias, -2.0) && close(pair.bias_deviation, 2.0), "{pair:?}");
+        assert!(close(pair.rms, (26.0_f64 / 3.0).sqrt()), "{pair:?}");
+    }
+
+    #[test]
+    fn the_channel_that_is_farthest_off_counts() {
+        let every = Against::Every([0.5, 0.25, 0.75]);
+        for (mean, off) in [
+            ([0.75, 0.5, 0.625], 0.25),
+            ([0.375, -0.25, 0.875], -0.5),
+            ([-0.5, 0.25, 0.75], -1.0),
+            ([0.5, 0.25, 0.75], 0.0),
+        ] {
+            assert_eq!(offset(&Level { mean, ..Level::default() }, every), off, "{mean:?}");
+        }
+        for mean in [[f64::NAN, 0.25, 0.75], [0.5, 0.25, f64::NAN]] {
+            let level = Level { mean, ..Level::default() };
+            assert!(offset(&level, every).is_nan() && !judge(&level, every, 1.0, 0).is_right());
+        }
+    }
+
+    /// A little within each limit and a little beyond it.
+    #[test]
+    fn limits_lie_where_they_should() {
+        let level = |deviation, noise| Level { mean: [1.0; 3], deviation, noise };
+        let (quiet, noisy) = (level(0.0, 0.0), level(1e-3, 0.1));
+        let picture =
+            |bias_deviation, bias, rms| Against::Picture(Paired { bias, bias_deviation, rms });
+        for (level, within, beyond) in [
+            (quiet, Against::Every([1.0 - 0.99e-6; 3]), Against::Every([1.0 - 1.01e-6; 3])),
+            (noisy, Against::Mean(1.0039), Against::Mean(1.0041)),
+            (noisy, Against::Mean(0.9961), Against::Mean(0.9959)),
+            (noisy, picture(1e-4, 3.9e-4, 0.0), picture(1e-4, 4.1e-4, 0.0)),
+            (noisy, picture(0.0, 0.0, 0.049), picture(0.0, 0.0, 0.051)),
+            (quiet, picture(0.0, 0.0, 0.99e-4), picture(0.0, 0.0, 1.01e-4)),
+        ] {
+            assert!(judge(&level, within, 1e-6, 0).is_right(), "{within:?}");
+            assert!(!judge(&level, beyond, 1e-6, 0).is_right(), "{beyond:?}");
+            assert!(!judge(&level, within, 1e-6, 1).is_right(), "rejected");
+        }
+        for (seconds, tame, is_right) in
+            [(7.9, 1.0, true), (8.1, 1.0, false), (1.09, 0.1, true), (1.11, 0.1, false)]
+        {
+            let verdict = judge_time(Verdict::Right, seconds, Some(tame));
+            assert_eq!(verdict.is_right(), is_right, "{seconds} {tame}");
+        }
+    }
+
+    #[test]
+    fn a_warning_excuses_a_wrong_picture_but_no_missing_one() {
+        let warnings = ["too thin".to_owned()];
+        let warned = Verdict::Wrong("off".into()).given(&warnings);
+        assert_eq!((warned.name(), warned.reason()), ("warned", "off; the backend warned: too thin"));
+        assert!(warned.is_right() && !Verdict::Wrong("off".into()).given(&[]).is_right());
+        assert!(!Verdict::None("gone".into()).given(&warnings).is_right());
+        assert_eq!(Verdict::Right.given(&warnings), Verdict::Right);
+    }
+}

@@ -1,0 +1,137 @@
+//! `weekender stress`: renders stiff and extreme scenes on every backend and checks the results.
+//!
+//! Each case states its expected result and derives it in a sentence: a closed form (a white world is 1, a closed room
+//! 0, a convex ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64`
+//! reference where `f64` has digits to spare. The window shows the cases that are worth looking at.
+
+mod case;
+pub mod families;
+mod judge;
+mod pages;
+mod report;
+mod suite;
+
+pub use case::{Case, Expected, Family, Form, Watch, with_far_spheres};
+pub use families::{cases, shown_cases};
+pub use judge::{Level, Paired, Verdict};
+pub use report::{BookMeasured, CaseReport, Measured, StressReport};
+pub use suite::{Suite, by_the_book, trace};
+
+use super::machine::Machine;
+use super::progress::Progress;
+use super::{Candidate, write_json};
+use crate::backends::BackendChoice;
+use crate::cli::{JsonTarget, StressOptions};
+use crate::failure::Failure;
+use crate::files::{check_page, check_writable};
+use crate::interrupt::Interrupt;
+use crate::render_cpu::{CpuOptions, Isa};
+use crate::terminal;
+use anyhow::{Context, Result, anyhow};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Runs the suite, prints the table and writes the files.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was run; [`Failure::Run`] otherwise.
+pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
+    if let Some(JsonTarget::File(path)) = &options.json() {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    if let Some(directory) = &options.out {
+        make(directory).map_err(Failure::Input)?;
+        check_page(&directory.join("index.html")).map_err(Failure::input)?;
+    }
+    let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
+    if chosen.is_empty() {
+        let ids: Vec<&str> = families::families().map(|family| family.id).collect();
+        let error =
+            anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
+        return Err(Failure::Input(error));
+    }
+    let levels = options.levels().map_err(Failure::input)?;
+    let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let painter = Candidate::backend("pictures", cpu(levels[0]));
+    let report = suite(options, &chosen, tracers, painter, interrupt.flag()).map_err(Failure::Run)?;
+    Ok(match (interrupt.is_set(), report.is_right()) {
+        (true, _) => interrupt.exit_code(),
+        (false, true) => ExitCode::SUCCESS,
+        (false, false) => ExitCode::FAILURE,
+    })
+}
+
+fn make(directory: &Path) -> Result<()> {
+    std::fs::create_dir_all(directory).with_context(|| {
+        format!("cannot create the directory {}; choose another with --out", directory.display())
+    })
+}
+
+fn cpu(isa: Isa) -> BackendChoice {
+    BackendChoice::Cpu(CpuOptions { isa: Some(isa), ..CpuOptions::default() })
+}
+
+/// The CPU levels, a GPU if there is one, and the `f64` reference.
+fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
+    let mut tracers: Vec<Candidate> =
+        levels.iter().map(|isa| Candidate::backend(isa.name(), cpu(*isa))).collect();
+    if let Some(gpu) = BackendChoice::gpu_if_present(adapter) {
+        tracers.push(Candidate::backend(adapter.unwrap_or("gpu"), gpu));
+    }
+    tracers.push(Candidate::backend("f64", BackendChoice::Reference { threads: None }));
+    // A backend that is not available is reported before anything runs.
+    for tracer in &mut tracers {
+        tracer.start()?;
+    }
+    Ok(tracers)
+}
+
+fn suite(
+    options: &StressOptions,
+    chosen: &[&Case],
+    tracers: Vec<Candidate>,
+    mut painter: Candidate,
+    interrupt: &AtomicBool,
+) -> Result<StressReport> {
+    let (begin, machine) = (Instant::now(), Machine::look());
+    let mut progress = Progress::new(options.progress, chosen.len() as f64);
+    let mut suite = Suite::new(tracers);
+    let mut report = StressReport {
+        backends: suite.names(),
+        seconds: 0.0,
+        chosen: chosen.len(),
+        interrupted: false,
+        cases: Vec::new(),
+    };
+    let json = options.json();
+    // If the table cannot be printed, the pictures and figures are still written.
+    let mut printed = terminal::print_beside(json.as_ref(), &report::head());
+    for case in chosen {
+        progress.at(&case.id, 0.0);
+        let found = suite.run(case, interrupt);
+        if interrupt.load(Ordering::Relaxed) {
+            report.interrupted = true;
+            break;
+        }
+        let row = || terminal::print_beside(json.as_ref(), &found.text());
+        printed = printed.and(progress.above(row));
+        progress.finished(1.0);
+        report.cases.push(found);
+        if let Some(directory) = &options.out {
+            pages::write_pictures(directory, case, &mut painter, interrupt)?;
+        }
+    }
+    progress.clear();
+    report.seconds = begin.elapsed().as_secs_f64();
+    printed = printed.and(terminal::print_beside(json.as_ref(), &report.summary()));
+    if let Some(directory) = &options.out {
+        pages::write_pages(directory, &report)?;
+    }
+    if let Some(target) = &json {
+        write_json(target, &machine, &report)?;
+    }
+    printed.map(|()| report)
+}

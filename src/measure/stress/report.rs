@@ -1,0 +1,283 @@
+//! The results of a run, as the JSON has them, and as a table.
+
+use super::super::table::{counted, markdown_row, markdown_table, or_dash, text_row};
+use super::families::families;
+use super::judge::{Paired, Verdict};
+use serde::Serialize;
+
+#[derive(Serialize)]
+pub struct StressReport {
+    /// Names of the backends that were tested.
+    pub backends: Vec<String>,
+    /// Wall time of the run.
+    pub seconds: f64,
+    /// Number of cases that were to be run.
+    #[serde(skip)]
+    pub chosen: usize,
+    pub interrupted: bool,
+    /// The cases, in the table's order.
+    pub cases: Vec<CaseReport>,
+}
+
+/// The results of a case. Radiance is linear.
+#[derive(Debug, Serialize)]
+pub struct CaseReport {
+    pub id: String,
+    /// The family's title.
+    pub family: &'static str,
+    /// What is stiff about it.
+    pub stiff: String,
+    /// The expected result, as in the table.
+    pub expected: String,
+    /// Its derivation.
+    pub why: &'static str,
+    /// By how much the mean may differ.
+    pub tolerance: f64,
+    /// Number of spheres in the scene.
+    pub spheres: usize,
+    /// One entry per backend and form.
+    pub measured: Vec<Measured>,
+    /// The results of the book's own arithmetic.
+    pub book: Vec<BookMeasured>,
+}
+
+/// The result of a case on one backend, in one form.
+#[derive(Debug, Serialize)]
+pub struct Measured {
+    pub backend: String,
+    /// "plain", or "+40" with 40 distant spheres, which switch the hierarchy on.
+    pub form: &'static str,
+    /// Mean over pixels and channels; `None` if there is no picture.
+    pub mean: Option<f64>,
+    /// Distance of the mean from the expected one.
+    pub offset: Option<f64>,
+    /// Standard error of the mean.
+    pub deviation: Option<f64>,
+    /// Difference from `f64` in the same form; `None` for `f64` itself.
+    pub rounding: Option<Paired>,
+    /// Time to prepare and trace.
+    pub seconds: Option<f64>,
+    /// The same for the tame twin.
+    pub tame_seconds: Option<f64>,
+    #[serde(flatten)]
+    pub verdict: Verdict,
+}
+
+/// The result of the book's arithmetic on a case.
+#[derive(Debug, Serialize)]
+pub struct BookMeasured {
+    /// "f32" or "f64".
+    pub precision: &'static str,
+    /// Mean over pixels and channels; `None` if there is no picture.
+    pub mean: Option<f64>,
+    /// Distance of the mean from the expected one.
+    pub offset: Option<f64>,
+    /// The verdict that a backend would get for it.
+    #[serde(flatten)]
+    pub verdict: Verdict,
+}
+
+/// Column widths of the terminal's table.
+const WIDTHS: [i32; 8] = [-30, -12, -12, -9, -18, -7, -7, -18];
+
+/// The header of the terminal's table.
+pub fn head() -> String {
+    let heads =
+        ["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book's f32, f64"];
+    text_row(&WIDTHS, &heads)
+}
+
+impl CaseReport {
+    /// Whether the result is right on every backend.
+    pub fn is_right(&self) -> bool {
+        self.measured.iter().all(|measured| measured.verdict.is_right())
+    }
+
+    /// The measurement that is farthest off, among those with a picture.
+    fn worst(&self) -> Option<&Measured> {
+        let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
+        self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
+    }
+
+    /// The rounding with the largest bias.
+    fn rounding(&self) -> Option<Paired> {
+        let all = self.measured.iter().filter_map(|measured| measured.rounding);
+        all.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
+    }
+
+    /// The largest ratio of the time to that of the tame twin.
+    fn time_ratio(&self) -> Option<f64> {
+        let ratios = self.measured.iter().filter_map(|m| Some(m.seconds? / m.tame_seconds?.max(1e-6)));
+        ratios.max_by(f64::total_cmp)
+    }
+
+    /// The measurements that are not as expected.
+    pub fn complaints(&self) -> impl Iterator<Item = &Measured> {
+        self.measured.iter().filter(|measured| measured.verdict != Verdict::Right)
+    }
+
+    /// One line, followed by a line for each backend that is not right.
+    pub fn text(&self) -> String {
+        let worst = self.worst();
+        let complaint = self.complaints().find(|m| !m.verdict.is_right()).or(self.complaints().next());
+        let verdict = complaint.map_or("right", |measured| measured.verdict.name());
+        let [expected, off, rounding, time, book] = self.cells();
+        let mean = or_dash(worst.and_then(|worst| worst.mean), |mean| format!("{mean:.6}"));
+        let cells = [self.id.clone(), expected, mean, off, rounding, time, verdict.to_owned(), book];
+        let mut text = text_row(&WIDTHS, &cells);
+        for Measured { backend, form, verdict, .. } in self.complaints() {
+            text += &format!("    {backend}, {form}: {}\n", verdict.reason());
+        }
+        text
+    }
+
+    /// Expected, off by, rounding, time, and the book's arithmetic.
+    fn cells(&self) -> [String; 5] {
+        let rounding = |paired: Paired| {
+            let rms = if paired.rms == 0.0 { "0".to_owned() } else { format!("{:.0e}", paired.rms) };
+            format!("{} ({rms})", brief(paired.bias))
+        };
+        let book: Vec<String> = self.book.iter().map(|book| or_dash(book.offset, brief)).collect();
+        [
+            self.expected.clone(),
+            or_dash(self.worst().and_then(|worst| worst.offset), brief),
+            or_dash(self.rounding(), rounding),
+            or_dash(self.time_ratio(), |ratio| format!("{ratio:.1}x")),
+            book.join(", "),
+        ]
+    }
+
+    fn markdown(&self) -> String {
+        let wrong = self.complaints().map(|m| {
+            format!("{} {}: **{}**", m.backend, m.form, m.verdict.name().to_lowercase())
+        });
+        let wrong: Vec<String> = wrong.collect();
+        let verdict = if wrong.is_empty() { "right".to_owned() } else { wrong.join(", ") };
+        let [expected, off, rounding, time, book] = self.cells();
+        let id = format!("`{}`", self.id);
+        markdown_row(&[id, self.stiff.clone(), expected, off, rounding, time, verdict, book])
+    }
+}
+
+/// A small number with its sign; zero as a plain 0.
+fn brief(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:+.1e}") }
+}
+
+impl StressReport {
+    /// Whether every case is right on every backend.
+    pub fn is_right(&self) -> bool {
+        self.cases.iter().all(CaseReport::is_right)
+    }
+
+    /// One line that sums up the run.
+    pub fn summary(&self) -> String {
+        let count = self.cases.len();
+        let right = self.cases.iter().filter(|case| case.is_right()).count();
+        let by_the_book = |precision: &str| {
+            let is_right = |case: &&CaseReport| {
+                case.book.iter().all(|book| book.precision != precision || book.verdict.is_right())
+            };
+            self.cases.iter().filter(is_right).count()
+        };
+        let so_far =
+            if self.interrupted { format!(" run so far, of {},", self.chosen) } else { String::new() };
+        let mut text = format!(
+            "\n{right} of {}{so_far} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
+            counted(count, "case"),
+            self.backends.join(", "),
+            self.seconds,
+            by_the_book("f32"),
+            by_the_book("f64"),
+        );
+        if self.interrupted {
+            let missing = self.chosen.saturating_sub(count);
+            text += &format!("interrupted: {} not run\n", counted(missing, "case"));
+        }
+        text
+    }
+
+    /// The table as Markdown, one section per family.
+    pub fn markdown(&self) -> String {
+        let heads = [
+            "case",
+            "what is stiff about it",
+            "expected",
+            "off by",
+            "rounding (RMS)",
+            "time",
+            "verdict",
+            "book's f32, f64",
+        ];
+        let sections = families().filter_map(|family| {
+            let rows: String =
+                self.cases.iter().filter(|case| case.family == family.title).map(CaseReport::markdown).collect();
+            let head = markdown_table(&heads, heads.len(), [] as [Vec<&str>; 0]);
+            (!rows.is_empty()).then(|| format!("\n### {}\n\n{}\n\n{head}{rows}", family.title, family.lesson))
+        });
+        sections.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured(offset: Option<f64>, seconds: f64, tame_seconds: Option<f64>) -> Measured {
+        Measured {
+            backend: "cpu".to_owned(),
+            form: "plain",
+            mean: None,
+            offset,
+            deviation: None,
+            rounding: offset.map(|bias| Paired { bias, ..Paired::default() }),
+            seconds: Some(seconds),
+            tame_seconds,
+            verdict: Verdict::Right,
+        }
+    }
+
+    fn case(measured: Vec<Measured>) -> CaseReport {
+        CaseReport {
+            id: "a".to_owned(),
+            family: families().next().unwrap().title,
+            stiff: String::new(),
+            expected: "1".to_owned(),
+            why: "",
+            tolerance: 0.0,
+            spheres: 1,
+            measured,
+            book: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_row_has_the_worst_of_its_backends() {
+        let offsets = [(Some(0.1), 3.0, Some(2.0)), (Some(-0.5), 8.0, Some(2.0)), (None, 9.0, None)];
+        let mut found = case(offsets.map(|(offset, seconds, tame)| measured(offset, seconds, tame)).into());
+        assert_eq!(found.cells(), ["1", "-5.0e-1", "-5.0e-1 (0)", "4.0x", ""]);
+        assert_eq!(case(Vec::new()).cells(), ["1", "-", "-", "-", ""]);
+        found.measured[0].verdict = Verdict::Warned("thin".to_owned());
+        found.measured[1].verdict = Verdict::Wrong("off".to_owned());
+        let text = found.text();
+        assert!(text.contains(" WRONG\n    cpu, plain: thin\n    cpu, plain: off\n"), "{text}");
+        let report = |cases| StressReport {
+            backends: vec!["cpu".to_owned()],
+            seconds: 1.0,
+            chosen: 2,
+            interrupted: true,
+            cases,
+        };
+        let markdown = report(vec![found]).markdown();
+        assert!(markdown.contains("| cpu plain: **warned**, cpu plain: **wrong** |"), "{markdown}");
+        assert!(report(Vec::new()).summary().contains("interrupted: 2 cases not run"));
+    }
+
+    #[test]
+    fn a_run_is_right_if_every_case_is_right_on_every_backend() {
+        let right = || case(vec![measured(Some(0.0), 1.0, None)]);
+        let mut wrong = right();
+        wrong.measured[0].verdict = Verdict::Wrong("off".to_owned());
+        assert!(right().is_right() && !wrong.is_right());
+    }
+}

@@ -1,0 +1,421 @@
+//! Runs cases on the backends and judges the results.
+
+use super::super::{Candidate, Stop, Traced};
+use super::case::{Case, Expected, Form};
+use super::judge::{Against, Level, Paired, Verdict, judge, judge_time, offset};
+use super::report::{BookMeasured, CaseReport, Measured};
+use crate::film::Film;
+use crate::recipe::Recipe;
+use crate::stages::{Rules, SurfaceRule};
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// Time limit for one picture.
+const TIME_LIMIT: Duration = Duration::from_secs(20);
+
+/// How often the time limit and the user's interrupt are checked.
+const GLANCE: Duration = Duration::from_millis(50);
+
+/// How often a case and its tame twin are timed; the fastest of each counts.
+const TURNS: usize = 5;
+
+/// Time limit for these repetitions, seconds.
+const TURNS_TIME: f64 = 0.6;
+
+/// The recipe with the book's own arithmetic.
+pub fn by_the_book(recipe: &Recipe) -> Recipe {
+    Recipe { rules: Rules { surface: SurfaceRule::Book, ..recipe.rules }, ..recipe.clone() }
+}
+
+/// Traces all samples of a picture.
+///
+/// # Errors
+/// A sentence that says why there is no picture: it was refused, failed, panicked or took too long.
+pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
+    let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
+    within_time(interrupt, |cancel| tracer.trace(&job, recipe.samples_per_pixel, cancel)).map_err(|stop| {
+        match stop {
+            Stop::Failed(reason) => reason,
+            Stop::Cancelled if interrupt.load(Ordering::Relaxed) => "interrupted".to_owned(),
+            Stop::Cancelled => format!("took more than {} s", TIME_LIMIT.as_secs()),
+        }
+    })
+}
+
+/// Runs `work` with a flag that is set when the time limit has passed or the user interrupts.
+fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
+    let cancel = AtomicBool::new(false);
+    let begin = Instant::now();
+    std::thread::scope(|scope| {
+        let (done, is_done) = channel::<()>();
+        let cancel = &cancel;
+        scope.spawn(move || {
+            while is_done.recv_timeout(GLANCE) == Err(RecvTimeoutError::Timeout) {
+                if interrupt.load(Ordering::Relaxed) || begin.elapsed() > TIME_LIMIT {
+                    cancel.store(true, Ordering::Relaxed);
+                }
+            }
+        });
+        // Dropped when the work ends, even by a panic.
+        let _done = done;
+        work(cancel)
+    })
+}
+
+/// The backends under test, which are compared with the last of them, the `f64` reference.
+pub struct Suite {
+    tracers: Vec<Candidate>,
+    /// Films of scenes that several cases share, by tracer and name.
+    shared: HashMap<(usize, String), Result<Film, String>>,
+}
+
+impl Suite {
+    /// The last tracer is the reference. The first one also renders the book's arithmetic in `f32`.
+    pub fn new(tracers: Vec<Candidate>) -> Self {
+        Suite { tracers, shared: HashMap::new() }
+    }
+
+    /// Names of the backends under test, the reference last.
+    pub fn names(&self) -> Vec<String> {
+        self.tracers.iter().map(|tracer| tracer.name.clone()).collect()
+    }
+
+    fn reference(&self) -> usize {
+        self.tracers.len() - 1
+    }
+
+    /// Runs a case in all its forms on all backends, and with the book's arithmetic.
+    pub fn run(&mut self, case: &Case, interrupt: &AtomicBool) -> CaseReport {
+        let mut run = CaseRun {
+            suite: self,
+            case,
+            interrupt,
+            oracle: Err("the f64 reference has no picture".to_owned()),
+        };
+        let measured = case.forms().iter().flat_map(|form| run.form(*form)).collect();
+        let book = run.book();
+        CaseReport {
+            id: case.id.clone(),
+            family: case.family.title,
+            stiff: case.stiff.clone(),
+            expected: case.expected.to_string(),
+            why: case.why,
+            tolerance: case.tolerance,
+            spheres: case.recipe.scene.spheres.len(),
+            book,
+            measured,
+        }
+    }
+}
+
+/// A case under way.
+struct CaseRun<'a> {
+    suite: &'a mut Suite,
+    case: &'a Case,
+    interrupt: &'a AtomicBool,
+    /// The reference's picture of the plain form.
+    oracle: Result<Film, String>,
+}
+
+impl CaseRun<'_> {
+    fn trace(&mut self, tracer: usize, recipe: &Recipe) -> Result<Traced, String> {
+        trace(&mut self.suite.tracers[tracer], recipe, self.interrupt)
+    }
+
+    /// Measures the case in one form on all backends.
+    fn form(&mut self, form: Form) -> Vec<Measured> {
+        let (recipe, reference) = (self.case.recipe_in(form), self.suite.reference());
+        let exact = self.trace(reference, &recipe);
+        if let (Form::Plain, Ok(exact)) = (form, &exact) {
+            self.oracle = Ok(exact.film.clone());
+        }
+        let mut measured = Vec::new();
+        for tracer in 0..reference {
+            let traced = self.trace(tracer, &recipe);
+            let rounding = traced.as_ref().ok().zip(exact.as_ref().ok());
+            let rounding = rounding.map(|(traced, exact)| Paired::of(&traced.film, &exact.film));
+            measured.push(Measured { rounding, ..self.measure(tracer, form, traced) });
+        }
+        measured.push(self.measure(reference, form, exact));
+        measured
+    }
+
+    fn measure(&mut self, tracer: usize, form: Form, traced: Result<Traced, String>) -> Measured {
+        let mut measured = Measured {
+            backend: self.suite.tracers[tracer].name.clone(),
+            form: form.name(),
+            mean: None,
+            offset: None,
+            deviation: None,
+            rounding: None,
+            seconds: None,
+            tame_seconds: None,
+            verdict: Verdict::Right,
+        };
+        let traced = match traced {
+            Ok(traced) => traced,
+            Err(reason) => return Measured { verdict: Verdict::None(reason), ..measured },
+        };
+        let level = Level::of(&traced.film);
+        let mut seconds = traced.seconds;
+        if let (Some(tame), Form::Plain) = (&self.case.tame, form) {
+            (seconds, measured.tame_seconds) = self.times(tracer, tame, seconds);
+        }
+        let (off, verdict) = self.judge(tracer, &level, &traced.film);
+        let verdict = judge_time(verdict, seconds, measured.tame_seconds).given(&traced.warnings);
+        Measured {
+            mean: Some(level.grey()),
+            deviation: Some(level.deviation),
+            seconds: Some(seconds),
+            offset: off,
+            verdict,
+            ..measured
+        }
+    }
+
+    /// Shortest times of the picture and its tame twin, taken in turns: other load on the machine can only add time.
+    fn times(&mut self, tracer: usize, tame: &Recipe, first: f64) -> (f64, Option<f64>) {
+        let case = self.case;
+        // The first picture may have had to wait for a kernel.
+        let (mut least, mut least_tame, mut spent) = (first, None::<f64>, 0.0);
+        for _ in 0..TURNS {
+            let Ok(of_tame) = self.trace(tracer, tame) else { break };
+            least_tame = Some(least_tame.map_or(of_tame.seconds, |least| least.min(of_tame.seconds)));
+            let Ok(again) = self.trace(tracer, &case.recipe) else { break };
+            least = least.min(again.seconds);
+            spent += of_tame.seconds + again.seconds;
+            if spent > TURNS_TIME {
+                break;
+            }
+        }
+        (least, least_tame)
+    }
+
+    /// How far a film of `tracer` is off, and the verdict.
+    fn judge(&mut self, tracer: usize, level: &Level, film: &Film) -> (Option<f64>, Verdict) {
+        let against = match &self.case.expected {
+            Expected::Every(value) => Ok(Against::Every(*value)),
+            Expected::Mean(value) => Ok(Against::Mean(*value)),
+            Expected::Same(other) => {
+                self.shared(tracer, other).map(|other| Against::Picture(Paired::of(film, &other)))
+            }
+            Expected::Reference => match &self.oracle {
+                Ok(oracle) => Ok(Against::Picture(Paired::of(film, oracle))),
+                Err(reason) => Err(reason.clone()),
+            },
+        };
+        match against {
+            Ok(against) => {
+                let verdict = judge(level, against, self.case.tolerance, film.rejected());
+                (Some(offset(level, against)), verdict)
+            }
+            Err(reason) => (None, Verdict::None(reason)),
+        }
+    }
+
+    /// The picture of a scene that several cases share, rendered once.
+    fn shared(&mut self, tracer: usize, recipe: &Recipe) -> Result<Film, String> {
+        let key = (tracer, recipe.name.clone());
+        if let Some(film) = self.suite.shared.get(&key) {
+            return film.clone();
+        }
+        let film = self.trace(tracer, recipe).map(|traced| traced.film);
+        self.suite.shared.insert(key, film.clone());
+        film
+    }
+
+    /// The book's own arithmetic, in `f32` on the first backend and in `f64`. It is compared with our own picture of
+    /// another scene, which is right, not with the book's.
+    fn book(&mut self) -> Vec<BookMeasured> {
+        let (recipe, reference) = (by_the_book(&self.case.recipe), self.suite.reference());
+        let mut measured = Vec::new();
+        let first = (reference > 0).then_some(("f32", 0));
+        for (precision, tracer) in first.into_iter().chain([("f64", reference)]) {
+            let (mean, (offset, verdict)) = match self.trace(tracer, &recipe) {
+                Ok(Traced { film, .. }) => {
+                    let level = Level::of(&film);
+                    (Some(level.grey()), self.judge(reference, &level, &film))
+                }
+                Err(reason) => (None, (None, Verdict::None(reason))),
+            };
+            measured.push(BookMeasured { precision, mean, offset, verdict });
+        }
+        measured
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::families::build::{one_ball, sized, tame};
+    use super::super::families::{cases, families};
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::film::fixed_point;
+    use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use crate::render_cpu::{CpuOptions, Isa};
+    use std::ops::Range;
+
+    fn real() -> Suite {
+        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
+        Suite::new(vec![
+            Candidate::backend("cpu", BackendChoice::Cpu(options)),
+            Candidate::backend("f64", BackendChoice::Reference { threads: Some(1) }),
+        ])
+    }
+
+    fn find(id: &str) -> &'static Case {
+        cases().iter().find(|case| case.id == id).unwrap()
+    }
+
+    #[test]
+    fn a_case_is_measured_on_every_backend_in_every_form() {
+        let (mut suite, go_on) = (real(), AtomicBool::new(false));
+        let report = suite.run(find("shells/1"), &go_on);
+        let who: Vec<_> = report.measured.iter().map(|m| (m.backend.as_str(), m.form)).collect();
+        assert_eq!(who, [("cpu", "plain"), ("f64", "plain"), ("cpu", "+40"), ("f64", "+40")]);
+        assert!(report.is_right(), "{report:#?}");
+        assert_eq!(report.measured[0].mean, Some(0.5));
+        assert!(report.measured[0].rounding.is_some() && report.measured[1].rounding.is_none());
+        assert_eq!(report.book.iter().map(|book| book.precision).collect::<Vec<_>>(), ["f32", "f64"]);
+        let wrong = Case { expected: Expected::Mean(0.6), ..find("shells/1").clone() };
+        let report = suite.run(&wrong, &go_on);
+        assert!(report.measured.iter().all(|measured| !measured.verdict.is_right()), "{report:#?}");
+    }
+
+    #[test]
+    fn a_twin_is_timed_for_the_plain_form_and_a_shared_scene_is_rendered_once() {
+        let (mut suite, go_on) = (real(), AtomicBool::new(false));
+        let small = sized(tame(), [12, 8], 4);
+        let case = Case::new(families().next().unwrap(), "tame", "nothing", small.clone());
+        let case = case.expect(Expected::Same(Box::new(small)), "it is", 2e-6);
+        let report = suite.run(&case.beside(sized(one_ball(), [4, 4], 1)), &go_on);
+        assert_eq!((report.is_right(), report.measured[0].offset), (true, Some(0.0)), "{report:#?}");
+        let timed: Vec<bool> = report.measured.iter().map(|m| m.tame_seconds.is_some()).collect();
+        assert_eq!(timed, [true, true, false, false]);
+        assert_eq!(suite.shared.len(), 2);
+    }
+
+    #[test]
+    fn a_backend_that_does_not_start_or_refuses_has_no_picture_and_is_not_right() {
+        let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
+        let go_on = AtomicBool::new(false);
+        let mut suite = real();
+        suite.tracers[0] = Candidate::backend("cpu", BackendChoice::Cpu(no_kernel));
+        let report = suite.run(find("shells/1"), &go_on);
+        let [cpu, reference, ..] = report.measured.as_slice() else { panic!("{report:#?}") };
+        assert!(cpu.verdict.reason().contains("has no 3 lanes") && cpu.mean.is_none(), "{cpu:?}");
+        assert!(reference.verdict.is_right() && !report.is_right(), "{report:#?}");
+        let mut refused = one_ball();
+        refused.camera.look_at = refused.camera.look_from;
+        let reason = trace(&mut real().tracers[0], &refused, &go_on).err().unwrap();
+        assert!(reason.starts_with("refused: look_from and look_at are both"), "{reason}");
+    }
+
+    /// Fills pictures with the radiance that a job has, and warns of scenes with many spheres.
+    struct Painter(fn(&RenderJob) -> f64, Vec<String>);
+
+    impl Renderer for Painter {
+        fn info(&self) -> BackendInfo {
+            BackendInfo { name: "painter", device: String::new(), lanes: 1, threads: 1 }
+        }
+
+        fn take_messages(&mut self) -> Vec<String> {
+            std::mem::take(&mut self.1)
+        }
+
+        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            Ok(())
+        }
+
+        fn accumulate(
+            &mut self,
+            job: &RenderJob,
+            samples: Range<u64>,
+            film: &mut Film,
+            _: &AtomicBool,
+        ) -> Result<Stats, RenderError> {
+            let radiance = (self.0)(job);
+            film.record(samples, 0)?;
+            for half in 0..2 {
+                let sum = film.half_sample_count(half) as f64 * radiance;
+                film.halves_mut()[half].fill(fixed_point([sum; 3]).unwrap());
+            }
+            self.1.extend(is_far(job).then(|| "too far".to_owned()));
+            Ok(Stats::default())
+        }
+    }
+
+    fn is_far(job: &RenderJob) -> bool {
+        job.scene().spheres.len() > 40
+    }
+
+    fn painter(name: &str, radiance: fn(&RenderJob) -> f64) -> Candidate {
+        Candidate::of_renderer(name, Box::new(Painter(radiance, Vec::new())))
+    }
+
+    /// Form, mean, offset and verdict of each measurement of a small picture.
+    fn figures(tracers: Vec<Candidate>, expected: Expected) -> Vec<(&'static str, f64, f64, &'static str)> {
+        let case = Case::new(families().next().unwrap(), "made-up", "nothing", sized(one_ball(), [4, 3], 4));
+        let mut suite = Suite::new(tracers);
+        let report = suite.run(&case.expect(expected, "it is", 1e-6), &AtomicBool::new(false));
+        let rounded = |x: Option<f64>| (1000.0 * x.unwrap_or(f64::NAN)).round() / 1000.0;
+        let book = report.book.iter().map(|m| ("book", rounded(m.mean), rounded(m.offset), m.verdict.name()));
+        let own = report.measured.iter();
+        own.map(|m| (m.form, rounded(m.mean), rounded(m.offset), m.verdict.name())).chain(book).collect()
+    }
+
+    #[test]
+    fn each_backend_is_compared_with_its_own_picture_and_the_books_with_ours() {
+        let cpu = painter("cpu", |job| if job.rules().surface == SurfaceRule::Book { 0.875 } else { 0.75 });
+        let exact = painter("f64", |job| if job.rules().surface == SurfaceRule::Book { 0.625 } else { 0.5 });
+        assert_eq!(
+            figures(vec![cpu, exact], Expected::Same(Box::new(sized(tame(), [4, 3], 4)))),
+            [
+                ("plain", 0.75, 0.0, "right"),
+                ("plain", 0.5, 0.0, "right"),
+                ("+40", 0.75, 0.0, "right"),
+                ("+40", 0.5, 0.0, "right"),
+                ("book", 0.875, 0.375, "WRONG"),
+                ("book", 0.625, 0.125, "WRONG"),
+            ]
+        );
+    }
+
+    #[test]
+    fn every_form_is_compared_with_the_plain_picture_of_the_reference_and_warnings_excuse() {
+        let cpu = painter("cpu", |_| 0.25);
+        let exact = painter("f64", |job| if is_far(job) { 0.25 } else { 0.5 });
+        assert_eq!(
+            figures(vec![cpu, exact], Expected::Reference),
+            [
+                ("plain", 0.25, -0.25, "WRONG"),
+                ("plain", 0.5, 0.0, "right"),
+                ("+40", 0.25, -0.25, "warned"),
+                ("+40", 0.25, -0.25, "warned"),
+                ("book", 0.25, -0.25, "WRONG"),
+                ("book", 0.5, 0.0, "right"),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_renderer_that_panics_is_replaced_and_cancelling_is_noticed() {
+        let go_on = AtomicBool::new(false);
+        let small = sized(one_ball(), [2, 2], 4);
+        let mut broken = painter("cpu", |_| panic!("on purpose"));
+        assert_eq!(trace(&mut broken, &small, &go_on).err().as_deref(), Some("the tracer panicked"));
+        // The reference takes its place.
+        let traced = trace(&mut broken, &small, &go_on).unwrap();
+        assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (4, [0.5; 3]));
+        let was_set = within_time(&AtomicBool::new(true), |cancel| {
+            let begin = Instant::now();
+            while !cancel.load(Ordering::Relaxed) && begin.elapsed() < Duration::from_secs(10) {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            cancel.load(Ordering::Relaxed)
+        });
+        assert!(was_set);
+    }
+}
