@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
+use weekender::pictures::{check, compare, diff};
 use weekender::{
-    batch, bench, check, companion, compare, diff, environment, gallery, info, interrupt, journal, merge,
-    report, stress,
+    batch, bench, companion, environment, gallery, info, interrupt, journal, merge, report, stress,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.
