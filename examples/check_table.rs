@@ -8,7 +8,7 @@ mod book;
 
 use book::Book;
 use std::time::Instant;
-use weekender::check::{Mine, judge};
+use weekender::pictures::check::{Mine, judge};
 use weekender::stages::Stage;
 
 /// Mistakes, each with a stage in which it shows.
@@ -119,8 +119,8 @@ fn found(
     let begin = Instant::now();
     let finding = judge(&mine, Some(Stage::find(stage)?))?;
     let seconds = begin.elapsed().as_secs_f64();
-    let found = match finding.mistake.as_ref().and_then(|found| found.hypothesis.mistake) {
-        Some(mistake) => mistake.about().id,
+    let found = match finding.named() {
+        Some(mistake) => mistake.id,
         None if finding.is_right() => "right",
         None => "unknown",
     };

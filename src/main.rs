@@ -7,8 +7,9 @@ use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
 use weekender::measure::{bench, report, stress};
+use weekender::pictures::{check, compare, diff};
 use weekender::{
-    batch, check, companion, compare, diff, gallery, info, interrupt, journal, merge,
+    batch, companion, gallery, info, interrupt, journal, merge,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.

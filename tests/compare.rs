@@ -5,9 +5,6 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::compare::{PairedSamples, PairedSums, Side};
-use weekender::film::{Film, PixelSum, fixed_point};
-use weekender::sampling::pcg4d;
 
 fn weekender(arguments: &[&str], directory: &Path) -> (i32, String, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -236,110 +233,6 @@ fn the_worst_block_is_named_by_its_column_and_row() {
         [&serde_json::json!([40, 48]), &serde_json::json!([8, 16])],
         "{found}"
     );
-}
-
-#[test]
-fn the_first_pixel_that_is_no_number_is_named_by_its_column_and_row() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    for (name, value) in [("a.pfm", 0.5), ("b.pfm", f32::NAN)] {
-        // A PFM begins with the lowest row: row 5 of the file is row 10 of 16 from above.
-        let pixels = (0..64 * 16).flat_map(|i| [if i == 5 * 64 + 30 { value } else { 0.5 }; 3]);
-        let header = b"PF\n64 16\n-1\n".iter().copied();
-        fs::write(at.join(name), header.chain(pixels.flat_map(f32::to_le_bytes)).collect::<Vec<u8>>())
-            .unwrap();
-    }
-    let (code, text, _) = compare(&["a.pfm", "b.pfm"], at);
-    assert!(
-        code == 1 && text.contains("3 channels of 1 pixels") && text.contains("the first at 30,10:"),
-        "{text}"
-    );
-}
-
-#[test]
-fn pictures_that_should_differ_are_said_to() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let size = ["--size", "32x18", "--samples", "4"];
-    let others = [
-        ("vfov.exr", ["--vfov", "40"]),
-        ("rules.exr", ["--stage", "shadow-acne"]),
-        ("scene.exr", ["--scene", "metals"]),
-    ];
-    render(at, "a.exr", &size);
-    for (name, flags) in others {
-        render(at, name, &[&size[..], &flags].concat());
-        let (_, text, _) = compare(&["a.exr", name], at);
-        assert!(text.contains("these should be different pictures"), "{name}: {text}");
-    }
-    render(at, "seed.exr", &[&size[..], &["--seed", "9"]].concat());
-    let (_, text, _) = compare(&["a.exr", "seed.exr"], at);
-    assert!(!text.contains("should be different") && text.contains("sobol, seed 9"), "{text}");
-}
-
-/// Uniform noise of `samples` samples per pixel around `middle`.
-fn noisy_side(samples: u64, seed: u32, middle: f64) -> Side {
-    let mut film = Film::new(48, 32, 2);
-    for sample in 0..samples {
-        for pixel in 0..48 * 32 {
-            let draw = f64::from(pcg4d([pixel, sample as u32, seed, 1])[0]) / f64::from(u32::MAX);
-            let sum = fixed_point([middle + 0.2 * (draw - 0.5); 3]).unwrap();
-            film.halves_mut()[(sample % 2) as usize][pixel as usize].add(sum);
-        }
-    }
-    film.record(0..samples, 0).unwrap();
-    Side::of_film(String::new(), String::new(), film)
-}
-
-#[test]
-fn samples_of_other_paths_do_not_count_as_rounding() {
-    // Of four pixels, the samples of one took another path; the others are brighter by 2^-16.
-    let film = |brighter: [u64; 4]| {
-        let mut film = Film::new(4, 1, 1);
-        film.record(0..1, 0).unwrap();
-        for (sum, by) in film.halves_mut()[0].iter_mut().zip(brighter) {
-            *sum = PixelSum([(1 << 23) + by; 3]);
-        }
-        film
-    };
-    let mut sums = PairedSums::default();
-    sums.add(&film([0; 4]), &film([256, 256, 1 << 22, 256]));
-    let found = sums.finish();
-    assert_eq!((found.count, found.parted), (4, 1));
-    let by = 1.0 / 65_536.0;
-    assert!((found.rms / by - 1.0).abs() < 1e-12 && (found.bias / by - 1.0).abs() < 1e-12, "{found:?}");
-}
-
-#[test]
-fn samples_that_differ_by_more_than_rounding_are_a_reason() {
-    let (a, b) = (noisy_side(16, 1, 0.5), noisy_side(16, 1, 0.5));
-    let reasons = |rms: f64, parted: u64| {
-        let paired = PairedSamples { count: 10_000, parted, rms, bias: 0.0 };
-        weekender::compare::compare(&a, &b, Some(paired)).reasons
-    };
-    assert!(reasons(1e-5, 5).is_empty());
-    for (found, word) in [(reasons(1e-4, 5), "on the same path"), (reasons(1e-5, 20), "a different path")] {
-        assert!(found.len() == 1 && found[0].contains(word), "{found:?}");
-    }
-}
-
-#[test]
-fn a_comparison_is_the_same_from_both_sides() {
-    let sides = [noisy_side(64, 1, 0.5), noisy_side(4, 2, 0.51)];
-    let there = weekender::compare::compare(&sides[0], &sides[1], None);
-    let back = weekender::compare::compare(&sides[1], &sides[0], None);
-    // The second is brighter by 0.01.
-    assert!((there.bias - 0.01).abs() < 2e-3, "{}", there.bias);
-    let figures = |found: &weekender::compare::Comparison, sign: f64| {
-        let deviation = found.bias_deviation.unwrap();
-        [sign * found.bias, deviation, found.rms, found.noise.unwrap(), found.test.largest]
-    };
-    for (a, b) in figures(&there, 1.0).into_iter().zip(figures(&back, -1.0)) {
-        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
-    }
-    // Noise of 0.2 times the uniform deviation over the root of the samples of each.
-    let expected = 0.2 / 12.0_f64.sqrt() * (1.0 / 64.0 + 1.0 / 4.0_f64).sqrt();
-    assert!((there.noise.unwrap() / expected - 1.0).abs() < 0.05, "{:?} {expected}", there.noise);
 }
 
 #[test]

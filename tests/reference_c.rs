@@ -5,10 +5,10 @@
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
-use weekender::compare::ROUNDING_BIAS;
 use weekender::film::Film;
 use weekender::measure::baseline::{Baseline, FLAGS, SOURCE};
 use weekender::output::{Encoding, read_picture};
+use weekender::pictures::compare::ROUNDING_BIAS;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};

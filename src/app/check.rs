@@ -2,7 +2,7 @@
 
 use super::answers::Answers;
 use super::texture::Texture;
-use crate::check::{Mine, judge, pictures, text};
+use crate::pictures::check::{Mine, judge, pictures, text};
 use crate::stages::Stage;
 use eframe::egui::{self, Align2, RichText, TextureOptions, vec2};
 use std::path::{Path, PathBuf};

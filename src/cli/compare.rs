@@ -10,6 +10,7 @@ use crate::output::Encoding;
 use crate::recipe::Recipe;
 use crate::render::SAMPLE_LIMIT;
 use crate::stages::Transfer;
+use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -29,7 +30,7 @@ pub(super) struct RawCompare {
     pub samples: Option<u64>,
     /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
     #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
-    pub encoding: RawEncoding,
+    pub encoding: Encoding,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
     pub adapter: Option<String>,
@@ -37,57 +38,48 @@ pub(super) struct RawCompare {
     #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
     pub heat_map: Option<PathBuf>,
     /// Write the figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
-    pub json: Option<PathBuf>,
+    #[arg(long, value_name = "FILE|-", value_parser = PathBufValueParser::new().map(JsonTarget::from),
+          help_heading = "Comparison")]
+    pub json: Option<JsonTarget>,
 
     #[command(flatten)]
     pub picture: RawPicture,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum RawEncoding {
-    Gamma2,
-    Linear,
-    Srgb,
-}
+impl ValueEnum for Encoding {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Encoding::Book(Transfer::Gamma2), Encoding::Book(Transfer::Linear), Encoding::Srgb]
+    }
 
-impl From<RawEncoding> for Encoding {
-    fn from(raw: RawEncoding) -> Self {
-        match raw {
-            RawEncoding::Gamma2 => Encoding::Book(Transfer::Gamma2),
-            RawEncoding::Linear => Encoding::Book(Transfer::Linear),
-            RawEncoding::Srgb => Encoding::Srgb,
-        }
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Encoding::Book(Transfer::Linear) => "linear",
+            Encoding::Book(_) => "gamma2",
+            Encoding::Srgb => "srgb",
+        }))
     }
 }
 
 /// Options of `weekender compare`.
 #[derive(Clone, Debug)]
 pub struct CompareOptions {
-    /// The pictures.
     pub sides: [CompareSide; 2],
     /// What backends render: as the flags say, otherwise as the file on the other side says, at that file's size.
     pub recipe: Recipe,
-    /// Samples per pixel to render, if given.
     pub samples: Option<u64>,
-    /// Meaning of integer values, if the file does not tell.
     pub encoding: Encoding,
-    /// Where the map of differences is written.
     pub heat_map: Option<PathBuf>,
-    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
 }
 
 /// A picture to compare.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CompareSide {
-    /// An existing file.
     File(PathBuf),
     /// A backend that renders it.
     Backend {
         /// One of [`BackendChoice::NAMES`].
         name: String,
-        /// The backend.
         choice: BackendChoice,
     },
 }
@@ -118,7 +110,6 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
     }
     let sides = [side(raw.first), side(raw.second)];
-    let json = raw.json.map(JsonTarget::from);
     let read = |paths: Paths, side: &CompareSide| match side {
         CompareSide::File(path) => paths.read("a picture of the comparison", Some(path)),
         CompareSide::Backend { .. } => paths,
@@ -128,7 +119,7 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         .fold(Paths::default(), read)
         .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
         .write("--heat-map", raw.heat_map.as_deref())
-        .write_json(json.as_ref())
+        .write_json(raw.json.as_ref())
         .check(&[])?;
     // Pictures of other programs do not say what they show.
     let told = sides.iter().find_map(|side| match side {
@@ -147,8 +138,8 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         sides,
         recipe,
         samples: raw.samples,
-        encoding: raw.encoding.into(),
+        encoding: raw.encoding,
         heat_map: raw.heat_map,
-        json,
+        json: raw.json,
     })
 }

@@ -7,11 +7,12 @@ use super::sources::{self, ChosenRecipe};
 use super::values::{
     JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance, whole,
 };
+use crate::backends::BackendChoice;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 use clap::Args;
-use std::path::PathBuf;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 #[derive(Debug, Args)]
 pub(super) struct RawDiff {
@@ -46,8 +47,9 @@ pub(super) struct RawDiff {
           help_heading = "Comparison")]
     pub isa: Level,
     /// Write both paths and the verdict as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
-    pub json: Option<PathBuf>,
+    #[arg(long, value_name = "FILE|-", value_parser = PathBufValueParser::new().map(JsonTarget::from),
+          help_heading = "Comparison")]
+    pub json: Option<JsonTarget>,
 
     #[command(flatten)]
     pub picture: RawPicture,
@@ -60,44 +62,26 @@ pub(super) struct RawDiff {
 /// Options of `weekender diff`.
 #[derive(Clone, Debug)]
 pub struct DiffOptions {
-    /// Name of the scene.
     pub scene: String,
     /// The job; for a search, it is small unless a size is given.
     pub job: RenderJob,
-    /// The path.
     pub path: PathChoice,
-    /// The backends.
-    pub sides: [SideChoice; 2],
+    pub sides: [BackendChoice; 2],
     /// Largest relative difference that does not count.
     pub tolerance: f64,
-    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
-}
-
-/// A backend that traces the path.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SideChoice {
-    /// `f32` on the CPU.
-    Cpu(CpuOptions),
-    /// `f64` on the CPU.
-    Reference,
-    /// A compute shader.
-    Gpu(GpuOptions),
 }
 
 /// How the path is chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathChoice {
-    /// The path is given.
     Given {
         /// Column and row, inside the picture.
         pixel: [u32; 2],
-        /// Index of the sample.
         sample: u64,
     },
     /// The path that differs most among samples `0 .. samples` of all pixels.
     Find {
-        /// Number of samples per pixel.
         samples: u64,
     },
 }
@@ -123,10 +107,9 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
             });
         }
     }
-    let json = raw.json.map(JsonTarget::from);
     Paths::default()
         .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
-        .write_json(json.as_ref())
+        .write_json(raw.json.as_ref())
         .check(&[])?;
     let ChosenRecipe { mut recipe, stage } = sources::find(&raw.picture, None)?;
     raw::change(&mut recipe, &raw.picture, raw.estimate_error);
@@ -144,13 +127,12 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
             PathChoice::Given { pixel: [x, y], sample: raw.sample }
         }
     };
+    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
     let sides = raw.sides.map(|side| match side {
-        RawSide::Cpu => SideChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() }),
-        RawSide::Portable => {
-            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() })
-        }
-        RawSide::Reference => SideChoice::Reference,
-        RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
+        RawSide::Cpu => cpu(raw.isa.0),
+        RawSide::Portable => cpu(Some(Isa::Portable)),
+        RawSide::Reference => BackendChoice::Reference { threads: None },
+        RawSide::Gpu => BackendChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
     });
     let job = recipe.job()?;
     job.check_memory(2)?;
@@ -160,6 +142,6 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         path,
         sides,
         tolerance: raw.tolerance,
-        json,
+        json: raw.json,
     })
 }

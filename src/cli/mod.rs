@@ -26,7 +26,7 @@ pub use bench::{BenchOptions, BenchScene};
 pub use check::CheckOptions;
 pub use companion::CompanionOptions;
 pub use compare::{CompareOptions, CompareSide};
-pub use diff::{DiffOptions, PathChoice, SideChoice};
+pub use diff::{DiffOptions, PathChoice};
 pub use error::CliError;
 pub use frames::FramesOptions;
 pub use gallery::GalleryOptions;
@@ -167,8 +167,8 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Gallery(raw)) => {
             gallery::gallery(*raw).map(|options| Request::Gallery(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Check(raw)) => {
-            check::check(*raw).map(|options| Request::Check(Box::new(options))).map_err(Failure::input)
+        Some(RawCommand::Check(options)) => {
+            options.checked().map(|options| Request::Check(Box::new(options))).map_err(Failure::input)
         }
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render, typed).map_err(Failure::input),

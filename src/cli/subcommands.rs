@@ -1,7 +1,7 @@
 //! The whole command line as clap parses it: rendering, or a subcommand.
 
 use super::bench::BenchOptions;
-use super::check::RawCheck;
+use super::check::CheckOptions;
 use super::companion::RawCompanion;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
@@ -92,5 +92,5 @@ pub(super) enum RawCommand {
     ///
     /// Finds the stage of the book that the picture shows, and the likeliest mistake with what to change. The exit code
     /// is 0 if the picture is right, 1 if there is a mistake and 2 if it could not be checked.
-    Check(Box<RawCheck>),
+    Check(Box<CheckOptions>),
 }

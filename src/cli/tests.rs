@@ -155,12 +155,12 @@ fn a_path_is_compared_by_the_sides_and_at_the_place_that_are_named() {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),
     };
-    let cpu = |isa| SideChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
+    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
     let portable = || cpu(Some(Isa::Portable));
     for (flags, sides) in [
-        ("--pixel 0,0", [cpu(None), SideChoice::Gpu(GpuOptions::default())]),
-        ("--pixel 0,0 --sides gpu,portable --adapter some", [SideChoice::Gpu(some_gpu()), portable()]),
-        ("--pixel 0,0 --sides reference,cpu --isa portable", [SideChoice::Reference, portable()]),
+        ("--pixel 0,0", [cpu(None), BackendChoice::Gpu(GpuOptions::default())]),
+        ("--pixel 0,0 --sides gpu,portable --adapter some", [BackendChoice::Gpu(some_gpu()), portable()]),
+        ("--pixel 0,0 --sides reference,cpu --isa portable", [BackendChoice::Reference { threads: None }, portable()]),
     ] {
         assert_eq!(compared(flags).sides, sides, "{flags}");
     }

@@ -3,8 +3,9 @@
 use crate::common::*;
 use glam::DVec3;
 use std::sync::OnceLock;
-use weekender::compare::{Side, compare};
 use weekender::film::Film;
+use weekender::pictures::Picture;
+use weekender::pictures::compare::compare;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::scene::Camera;
@@ -106,7 +107,7 @@ fn case_29_estimated_error() {
 fn case_30_samplers_agree() {
     let mut renderer = widest();
     let mut of = |sampler, seed| render(&mut renderer, &three(160, 96, sampler, seed), 0..256);
-    let side = |film| Side::of_film(String::new(), String::new(), film);
+    let side = |film| Picture::of_film(String::new(), String::new(), film);
     let (sobol, independent) = (side(of(SamplerKind::Sobol, 5)), side(of(SamplerKind::Independent, 5)));
     let found = compare(&sobol, &independent, None);
     println!(

@@ -5,8 +5,9 @@ use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
-use weekender::compare::{Side, compare_sides, told};
 use weekender::film::to_byte;
+use weekender::pictures::Picture;
+use weekender::pictures::compare::{compare_sides, text};
 use weekender::heat::HeatScale;
 use weekender::output::{Encoding, OutputFormat};
 use weekender::progressive::{Phase, luminance};
@@ -209,8 +210,8 @@ fn the_verdict_is_that_of_compare() {
         save(&mut harness, Command::Save(OutputFormat::Exr), &second);
         let (headline, text) = verdict(&mut harness);
         assert_eq!(headline, expected, "{text}");
-        let sides = [&first, &second].map(|path| Side::read(path, Encoding::Srgb).unwrap());
-        let by_compare = told(&sides, &compare_sides(&sides, None).unwrap());
+        let sides = [&first, &second].map(|path| Picture::read(path, Encoding::Srgb).unwrap());
+        let by_compare = text(&sides, &compare_sides(&sides, None).unwrap());
         let after_names = |text: &str| text.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(after_names(&text), after_names(&by_compare));
     }

@@ -4,8 +4,8 @@ use crate::app::answers::Answers;
 use crate::app::kept::Subject;
 use crate::app::model::kept::Kept;
 use crate::app::theme;
-use crate::compare::{Side, compare_sides, told};
 use crate::film::Film;
+use crate::pictures::{self, compare};
 use crate::recipe::Recipe;
 use eframe::egui::{self, Align2, RichText, Sense, TextStyle, vec2};
 use std::sync::Arc;
@@ -165,17 +165,17 @@ fn text(ui: &mut egui::Ui, text: &str) {
 
 fn found(pictures: [Picture; 2]) -> Result<Found, String> {
     let [first, second] = pictures.map(|Picture { name, recipe, film }| {
-        Side::of_rendered(name, recipe, film).map_err(|error| error.to_string())
+        pictures::Picture::of_rendered(name, recipe, film).map_err(|error| error.to_string())
     });
     let sides = [first?, second?];
-    let comparison = compare_sides(&sides, None).map_err(|error| error.to_string())?;
+    let comparison = compare::compare_sides(&sides, None).map_err(|error| error.to_string())?;
     let headline = match (comparison.is_equal(), comparison.is_same) {
         (true, true) => "Identical to the bit",
         (true, false) => "Only noise",
         (false, _) if comparison.unclear.is_some() => "Cannot tell",
         (false, _) => "More than noise",
     };
-    Ok(Found { headline, is_equal: comparison.is_equal(), text: told(&sides, &comparison) })
+    Ok(Found { headline, is_equal: comparison.is_equal(), text: compare::text(&sides, &comparison) })
 }
 
 #[cfg(test)]

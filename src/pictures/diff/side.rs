@@ -1,13 +1,13 @@
 //! A backend that can record what it does along a path.
 
-use crate::cli::SideChoice;
+use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::record::PathRecord;
 use crate::render::{RenderError, RenderJob, Renderer};
-use crate::render_cpu::{CpuError, CpuRenderer, Isa, record_path};
-use crate::render_gpu::{GpuError, GpuRenderer};
+use crate::render_cpu::{CpuRenderer, Isa, record_path};
+use crate::render_gpu::GpuRenderer;
+use anyhow::{Result, anyhow, bail};
 use std::sync::atomic::AtomicBool;
-use thiserror::Error;
 
 /// One of the two backends that are compared.
 pub struct Side {
@@ -24,61 +24,41 @@ enum Tracer {
     Gpu(Box<GpuRenderer>),
 }
 
-/// Why a side is not available.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum SideError {
-    /// The CPU cannot fulfil the options.
-    #[error(transparent)]
-    Cpu(#[from] CpuError),
-    /// No GPU is available.
-    #[error(
-        "the side gpu is not available: {reason}; compare other sides, such as --sides cpu,reference or --sides cpu,portable"
-    )]
-    Gpu {
-        /// The reason, with the adapters that exist.
-        reason: GpuError,
-    },
-}
-
 impl Side {
     /// Starts a side.
     ///
     /// # Errors
-    /// [`SideError`], which says what is available instead.
-    pub fn open(choice: &SideChoice) -> Result<Self, SideError> {
-        Ok(match choice {
-            SideChoice::Cpu(options) => {
-                let renderer = CpuRenderer::new(*options)?;
+    /// If it is not available; the message says what is available instead.
+    pub fn open(choice: &BackendChoice) -> Result<Self> {
+        let (name, about, tracer) = match choice {
+            BackendChoice::Cpu(options) => {
+                let renderer = Box::new(CpuRenderer::new(*options)?);
                 let best = Isa::available().last().copied().unwrap_or(Isa::Portable);
                 let isa = options.isa.unwrap_or(best);
                 let rounding = if isa.is_fused() { "rounded once" } else { "rounded separately" };
-                Side {
-                    name: format!("cpu {isa}"),
-                    about: format!("cpu {isa}, f32, multiply and add {rounding}"),
-                    tracer: Tracer::Cpu(Box::new(renderer), Some(isa)),
-                }
+                let about = format!("cpu {isa}, f32, multiply and add {rounding}");
+                (format!("cpu {isa}"), about, Tracer::Cpu(renderer, Some(isa)))
             }
-            SideChoice::Reference => Side {
-                name: "reference".to_owned(),
-                about: "reference, f64 on the CPU".to_owned(),
-                tracer: Tracer::Cpu(Box::new(CpuRenderer::reference(None)?), None),
-            },
-            SideChoice::Gpu(options) => {
-                let renderer =
-                    GpuRenderer::new(options.clone()).map_err(|reason| SideError::Gpu { reason })?;
-                Side {
-                    name: "gpu".to_owned(),
-                    about: format!("gpu, {}", renderer.adapter()),
-                    tracer: Tracer::Gpu(Box::new(renderer)),
-                }
+            BackendChoice::Reference { threads } => {
+                let tracer = Tracer::Cpu(Box::new(CpuRenderer::reference(*threads)?), None);
+                ("reference".to_owned(), "reference, f64 on the CPU".to_owned(), tracer)
             }
-        })
+            BackendChoice::Gpu(options) => {
+                let renderer = GpuRenderer::new(options.clone()).map_err(|reason| {
+                    anyhow!(
+                        "the side gpu is not available: {reason}; compare other sides, such as --sides cpu,reference or \
+                         --sides cpu,portable"
+                    )
+                })?;
+                let about = format!("gpu, {}", renderer.adapter());
+                ("gpu".to_owned(), about, Tracer::Gpu(Box::new(renderer)))
+            }
+            BackendChoice::Both(..) => bail!("a side is one backend, not two"),
+        };
+        Ok(Side { name, about, tracer })
     }
 
     /// Records a path; `pixel` must be inside the picture.
-    ///
-    /// # Errors
-    /// [`RenderError::Backend`].
     pub fn record(
         &mut self,
         job: &RenderJob,
@@ -92,9 +72,6 @@ impl Side {
     }
 
     /// Renders one sample of every pixel.
-    ///
-    /// # Errors
-    /// [`RenderError`].
     pub fn film(&mut self, job: &RenderJob, sample: u64) -> Result<Film, RenderError> {
         let settings = job.settings();
         let mut film = Film::try_new(settings.width, settings.height, settings.half_count())?;

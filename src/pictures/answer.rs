@@ -1,0 +1,65 @@
+//! What a program about pictures answers: lines for people, JSON for other programs, and an exit code.
+
+use crate::cli::JsonTarget;
+use crate::failure::{BAD_INPUT, FAILED};
+use crate::files::check_writable;
+use crate::terminal::{print_beside, write_json};
+use anyhow::Result;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The answer to the question whether two things are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Same,
+    Different,
+    Unclear,
+}
+
+impl Verdict {
+    /// 0, 1 and 2.
+    pub fn exit_code(self) -> ExitCode {
+        match self {
+            Verdict::Same => ExitCode::SUCCESS,
+            Verdict::Different => ExitCode::from(FAILED),
+            Verdict::Unclear => ExitCode::from(BAD_INPUT),
+        }
+    }
+}
+
+/// Refuses files that could not be written, before the work begins.
+pub fn check_outputs<'a>(json: Option<&JsonTarget>, files: impl IntoIterator<Item = &'a Path>) -> Result<()> {
+    if let Some(JsonTarget::File(path)) = json {
+        check_writable(path)?;
+    }
+    Ok(files.into_iter().try_for_each(check_writable)?)
+}
+
+/// Lines with labels, in columns.
+pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
+    let lines: Vec<(&str, String)> = lines.into_iter().collect();
+    let width = lines.iter().map(|(label, _)| label.len()).max().unwrap_or(0) + 1;
+    lines.iter().fold(String::new(), |mut text, (label, content)| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{label:<width$} {content}");
+        text
+    })
+}
+
+#[derive(Serialize)]
+struct Envelope<'a, T: Serialize> {
+    /// Grows when a key changes its meaning or is removed.
+    schema: u32,
+    version: &'static str,
+    #[serde(flatten)]
+    figures: &'a T,
+}
+
+/// Prints `text`, to standard error if JSON takes standard output, and writes `figures` as JSON.
+pub fn deliver(json: Option<&JsonTarget>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
+    print_beside(json, text)?;
+    let version = env!("CARGO_PKG_VERSION");
+    json.map_or(Ok(()), |target| write_json(&Envelope { schema, version, figures }, target))
+}

@@ -1,0 +1,254 @@
+//! Pictures as they should be if a certain mistake was made, or none, and how near mine comes to them.
+
+use super::Mine;
+use super::mistakes::Mistake;
+use super::tracer::{Steps, Tracer};
+use crate::recipe::Recipe;
+use crate::render::{RenderSettings, Renderer, SamplerKind};
+use crate::render_cpu::{CpuOptions, CpuRenderer};
+use crate::stages::Transfer;
+use crate::statistics::blocks::{BlockTest, Differences, Noise};
+use anyhow::Result;
+use std::sync::atomic::AtomicBool;
+
+/// By how many deviations the sum of squares of a right picture may differ. Noise alone stays below 4; the rest is for
+/// random numbers that are not quite independent and noise that is far from normal.
+const EXCESS_LIMIT: f64 = 10.0;
+
+/// By what factor a block of a right picture may exceed the limit for normal noise.
+const LARGEST_FACTOR: f64 = 1.6;
+
+/// A picture that could be mine: how its linear values are made, and how they become bytes.
+#[derive(Clone, Debug)]
+pub struct Hypothesis {
+    /// The mistake; `None` for the right picture.
+    pub mistake: Option<&'static Mistake>,
+    /// What else is to be said about it.
+    pub note: Option<String>,
+    pub making: Making,
+    pub written: Written,
+}
+
+/// What makes the linear values.
+#[derive(Clone, Debug)]
+pub enum Making {
+    /// The program's own tracer, from the right recipe.
+    Right,
+    /// The program's own tracer, from another recipe.
+    Fast(Box<Recipe>),
+    /// The plain tracer, with these steps.
+    Plain(Steps),
+}
+
+/// How the linear picture became bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Written {
+    pub is_flipped: bool,
+    pub is_mirrored: bool,
+    /// The channel that is written as red, green and blue.
+    pub channels: [usize; 3],
+    pub curve: Curve,
+    /// The number that displayed values are multiplied by.
+    pub levels: f64,
+}
+
+/// The curve from linear to displayed values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Curve {
+    /// That of the stage.
+    Transfer(Transfer),
+    /// The root with this exponent.
+    Gamma(f64),
+}
+
+impl Curve {
+    /// The exponent that makes a displayed value linear.
+    fn exponent(self, row: usize, height: usize) -> f64 {
+        match self {
+            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => 2.0,
+            Curve::Transfer(_) => 1.0,
+            Curve::Gamma(exponent) => exponent,
+        }
+    }
+}
+
+impl Hypothesis {
+    pub fn right(recipe: &Recipe) -> Hypothesis {
+        let curve = Curve::Transfer(recipe.rules.transfer);
+        let written =
+            Written { is_flipped: false, is_mirrored: false, channels: [0, 1, 2], curve, levels: 256.0 };
+        Hypothesis { mistake: None, note: None, making: Making::Right, written }
+    }
+}
+
+impl Written {
+    /// The linear value of a byte in a row, and half of its step.
+    pub fn linear(&self, byte: u8, row: usize, height: usize) -> [f64; 2] {
+        let exponent = self.curve.exponent(row, height);
+        let linear = |part: f64| power((f64::from(byte) + part) / self.levels, exponent);
+        [linear(0.5), (linear(1.0) - linear(0.0)) / 2.0]
+    }
+
+    /// The linear value that is read if the displayed value was multiplied by 255 instead of 256.
+    pub fn times_255(&self, linear: f64, row: usize, height: usize) -> f64 {
+        linear * power(255.0 / 256.0, self.curve.exponent(row, height))
+    }
+
+    /// The byte that a linear value becomes.
+    pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
+        let displayed = power(linear.max(0.0), 1.0 / self.curve.exponent(row, height));
+        (self.levels * displayed.min(0.999)) as u8
+    }
+
+    /// The bytes of a picture, row by row.
+    pub fn bytes_of(&self, linear: &[[f64; 3]], [width, height]: [u32; 2]) -> Vec<[u8; 3]> {
+        let byte = |index: usize, x: f64| self.byte_of(x, index / width as usize, height as usize);
+        linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
+    }
+
+    /// The linear picture in the layout of the file.
+    pub fn laid_out(&self, linear: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
+        let height = linear.len() / width;
+        (0..linear.len())
+            .map(|index| {
+                let (x, y) = (index % width, index / width);
+                let x = if self.is_mirrored { width - 1 - x } else { x };
+                let y = if self.is_flipped { height - 1 - y } else { y };
+                let pixel = linear[y * width + x];
+                self.channels.map(|channel| pixel[channel])
+            })
+            .collect()
+    }
+}
+
+/// `x^exponent`, in little time for the exponents of the book.
+fn power(x: f64, exponent: f64) -> f64 {
+    match exponent {
+        1.0 => x,
+        2.0 => x * x,
+        0.5 => x.sqrt(),
+        _ => x.powf(exponent),
+    }
+}
+
+/// Renders hypotheses of one recipe.
+pub struct Studio {
+    recipe: Recipe,
+    fast: CpuRenderer,
+    /// The right picture and its number of samples.
+    right: Option<(u64, Vec<[f64; 3]>)>,
+}
+
+/// The book's 400 x 225 pixels.
+const PIXELS: u64 = 90_000;
+
+impl Studio {
+    /// For pictures of `recipe`, `size` wide and high.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn new(recipe: Recipe, [width, height]: [u32; 2]) -> Result<Studio> {
+        let settings = RenderSettings {
+            sampler: SamplerKind::Independent,
+            estimate_error: false,
+            width: width.max(1),
+            height: height.max(1),
+            ..recipe.settings
+        };
+        let recipe = Recipe { settings, ..recipe };
+        Ok(Studio { recipe, fast: CpuRenderer::new(CpuOptions::default())?, right: None })
+    }
+
+    /// The recipe of the right picture.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// The picture of a hypothesis, with so many samples per pixel up to [`PIXELS`]; larger ones get as many paths, and the
+    /// plain tracer fewer. Linear RGB in the layout of the file.
+    pub fn render(&mut self, hypothesis: &Hypothesis, samples: u64) -> Result<Vec<[f64; 3]>> {
+        let RenderSettings { width, height, .. } = self.recipe.settings;
+        let is_exact = !self.recipe.rules.antialiasing && self.recipe.samples_per_pixel == 1;
+        let count = |samples: u64| match is_exact {
+            true => 1,
+            false => (samples * PIXELS / (u64::from(width) * u64::from(height))).clamp(1, samples),
+        };
+        let linear = match &hypothesis.making {
+            Making::Plain(steps) => {
+                Tracer::new(&self.recipe, *steps).means(count((samples / 8).min(16)) as u32)
+            }
+            Making::Fast(recipe) => means(&mut self.fast, recipe, count(samples))?,
+            Making::Right => {
+                let count = count(samples);
+                let kept = self.right.take().filter(|(samples, _)| *samples >= count);
+                let kept = kept
+                    .map_or_else(|| means(&mut self.fast, &self.recipe, count).map(|it| (count, it)), Ok)?;
+                self.right.insert(kept).1.clone()
+            }
+        };
+        Ok(hypothesis.written.laid_out(&linear, width as usize))
+    }
+}
+
+fn means(fast: &mut CpuRenderer, recipe: &Recipe, samples: u64) -> Result<Vec<[f64; 3]>> {
+    let job = recipe.job()?;
+    let mut film = job.new_film();
+    fast.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false))?;
+    Ok(film.means().into_iter().map(|pixel| pixel.map(f64::from)).collect())
+}
+
+/// My picture next to that of a hypothesis.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    pub hypothesis: Hypothesis,
+    /// Mean squared error beyond noise, of blocks as they are displayed.
+    pub misfit: f64,
+    /// Whether the rest is noise.
+    pub is_noise: bool,
+    /// The rendered picture.
+    pub expected: Vec<[f64; 3]>,
+}
+
+pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> Compared {
+    let (width, height) = (mine.width as usize, mine.height as usize);
+    let linear = |byte: u8, index: usize| hypothesis.written.linear(byte, index / width, height);
+    let pixels = mine.bytes.iter().zip(&expected).enumerate();
+    let (values, steps): (Vec<[f64; 3]>, Vec<[f64; 3]>) = pixels
+        .map(|(index, (bytes, expected))| {
+            let [least, most] = [0, 255].map(|byte| linear(byte, index)[0]);
+            let mine = bytes.map(|byte| linear(byte, index));
+            let value = [0, 1, 2].map(|channel| mine[channel][0] - expected[channel].clamp(least, most));
+            (value, mine.map(|[_, step]| step))
+        })
+        .unzip();
+    let test = BlockTest::of(&Differences {
+        width: mine.width,
+        values: &values,
+        noise: Noise::Spread,
+        steps: Some(&steps),
+        tolerance: 1e-4,
+        rare: 0.0,
+    });
+    let is_noise =
+        test.largest_excess() <= EXCESS_LIMIT && test.largest <= LARGEST_FACTOR * test.largest_limit;
+    let misfit = misfit(&test, &values, &expected, width);
+    Compared { hypothesis, misfit, is_noise, expected }
+}
+
+/// Mean over blocks and channels of the squared error beyond noise, as displayed.
+fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: usize) -> f64 {
+    let mut sum = 0.0;
+    for block in &test.blocks {
+        let pixels =
+            || block.y.clone().flat_map(|y| block.x.clone().map(move |x| y as usize * width + x as usize));
+        let count = pixels().count() as f64;
+        for (channel, mean) in block.means.into_iter().enumerate() {
+            let bright = pixels().map(|pixel| expected[pixel][channel]).sum::<f64>() / count;
+            let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
+            let noise = spread / (count * (count - 1.0).max(1.0));
+            // The derivative of the square root takes linear errors to displayed ones.
+            sum += (mean * mean - noise) / (4.0 * bright.max(0.02));
+        }
+    }
+    sum / (3 * test.blocks.len().max(1)) as f64
+}

@@ -1,0 +1,224 @@
+//! Decides which stage a picture shows, and whether it is right or which mistake explains it best.
+
+use super::Mine;
+use super::details::at_edges;
+use super::hypothesis::{Compared, Hypothesis, Making, Studio, compare};
+use super::mistakes::{Change, MISTAKES, Mistake};
+use crate::recipe::Recipe;
+use crate::stages::Stage;
+use anyhow::Result;
+
+/// Samples per pixel of the right picture and of those that are decided between.
+const FINE: u64 = 256;
+
+/// Samples per pixel of each mistake at first.
+const COARSE: u64 = 32;
+
+/// Samples per pixel for each stage when the stage is not known.
+const SMALL: u64 = 64;
+
+/// Mistakes that are rendered again with more samples.
+const REFINED: usize = 4;
+
+/// A mistake explains a picture if it leaves less than this part of the squared error of the right picture.
+const EXPLAINED: f64 = 0.3;
+
+/// How many stages are judged if the stage is not known.
+const CANDIDATES: usize = 5;
+
+/// The width of the small pictures that are compared with all stages, pixels.
+const SMALL_WIDTH: u32 = 64;
+
+/// A root mean square difference below which a stage is taken for found, display values.
+const FOUND: f64 = 0.03;
+
+/// The finding about a picture.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// The stage that it shows.
+    pub stage: &'static Stage,
+    /// The right picture.
+    pub right: Compared,
+    /// The likeliest mistake, if it is not right.
+    pub mistake: Option<Compared>,
+}
+
+impl Finding {
+    /// Whether the picture differs by noise only.
+    pub fn is_right(&self) -> bool {
+        self.mistake.is_none() && self.right.is_noise
+    }
+
+    /// The mistake that was found.
+    pub fn named(&self) -> Option<&'static Mistake> {
+        self.mistake.as_ref()?.hypothesis.mistake
+    }
+
+    /// How far the picture is from what was found, for the choice among stages.
+    fn rank(&self) -> (u8, f64) {
+        match &self.mistake {
+            None if self.right.is_noise => (0, self.right.misfit),
+            Some(found) if found.is_noise => (1, found.misfit),
+            Some(found) => (2, found.misfit),
+            None => (2, self.right.misfit),
+        }
+    }
+}
+
+/// Judges a picture; `stage` is the one that it shows, if known.
+///
+/// # Errors
+/// If a picture cannot be rendered.
+pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
+    let stages = match stage {
+        Some(stage) => vec![stage],
+        None => candidates(mine)?,
+    };
+    let mut trials = Vec::new();
+    for stage in stages {
+        let trial = Trial::new(mine, stage)?;
+        if trial.right.is_noise {
+            return trial.of_right();
+        }
+        trials.push(trial);
+    }
+    let mut best: Option<Finding> = None;
+    for trial in trials {
+        let finding = trial.of_wrong()?;
+        let explains_all = finding.mistake.as_ref().is_some_and(|found| found.is_noise);
+        if best.as_ref().is_none_or(|best| finding.rank() < best.rank()) {
+            best = Some(finding);
+        }
+        if explains_all {
+            break;
+        }
+    }
+    match best {
+        Some(best) => Ok(best),
+        None => Trial::new(mine, &Stage::ALL[0])?.of_wrong(),
+    }
+}
+
+/// A picture next to the right one of a stage.
+struct Trial<'a> {
+    mine: &'a Mine,
+    stage: &'static Stage,
+    studio: Studio,
+    right: Compared,
+}
+
+impl<'a> Trial<'a> {
+    fn new(mine: &'a Mine, stage: &'static Stage) -> Result<Self> {
+        let mut studio = Studio::new(stage.recipe(), [mine.width, mine.height])?;
+        let hypothesis = Hypothesis::right(studio.recipe());
+        let expected = studio.render(&hypothesis, FINE)?;
+        let right = compare(mine, hypothesis, expected);
+        Ok(Trial { mine, stage, studio, right })
+    }
+
+    fn finding(self, mistake: Option<Compared>) -> Finding {
+        Finding { stage: self.stage, right: self.right, mistake }
+    }
+
+    /// The finding if blocks differ by noise only: what blocks cannot show is looked for.
+    fn of_right(mut self) -> Result<Finding> {
+        let mistake = at_edges(self.mine, &mut self.studio, &self.right, FINE)?.or_else(|| self.in_bytes());
+        Ok(self.finding(mistake))
+    }
+
+    /// The finding if blocks differ by more than noise.
+    fn of_wrong(mut self) -> Result<Finding> {
+        if let Some(found) = self.in_bytes() {
+            return Ok(self.finding(Some(found)));
+        }
+        let (mut pictures, mut best) = (all_mistakes(self.studio.recipe()), None);
+        for (samples, count) in [(COARSE, REFINED), (FINE, 1)] {
+            let mut compared = Vec::new();
+            for hypothesis in pictures {
+                let expected = self.studio.render(&hypothesis, samples)?;
+                compared.push(compare(self.mine, hypothesis, expected));
+            }
+            compared.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+            compared.truncate(count);
+            pictures = compared.iter().map(|found| found.hypothesis.clone()).collect();
+            best = compared.into_iter().next();
+        }
+        let Some(best) = best else { return Ok(self.finding(None)) };
+        if best.hypothesis.mistake.is_some_and(Mistake::is_at_edges)
+            && let Some(found) = at_edges(self.mine, &mut self.studio, &self.right, FINE)?
+        {
+            return Ok(self.finding(Some(found)));
+        }
+        let explains = best.is_noise || best.misfit < EXPLAINED * self.right.misfit;
+        Ok(self.finding(explains.then_some(best)))
+    }
+
+    /// The first mistake that shows in the bytes.
+    fn in_bytes(&self) -> Option<Compared> {
+        let shows = |mistake: &&Mistake| match mistake.change {
+            Change::InBytes(test, _) => test(self.mine, &self.right),
+            _ => false,
+        };
+        let mistake = MISTAKES.iter().find(shows)?;
+        let hypothesis = Hypothesis { mistake: Some(mistake), ..self.right.hypothesis.clone() };
+        Some(Compared { hypothesis, is_noise: true, ..self.right.clone() })
+    }
+}
+
+fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
+    Mistake::applying_to(recipe).flat_map(|mistake| mistake.pictures(recipe)).collect()
+}
+
+/// The stages that can be checked. The small balls of the final picture are placed at random, so every program's picture
+/// of it is another.
+pub fn stages() -> impl Iterator<Item = &'static Stage> {
+    Stage::ALL.iter().filter(|stage| stage.id != "book")
+}
+
+/// The stages that the picture looks like most: right or written wrongly, and only if it looks like none of them, with any
+/// mistake.
+fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>> {
+    let factor = (mine.width / SMALL_WIDTH).clamp(1, mine.height.max(1));
+    let mut ranked = Vec::new();
+    for is_thorough in [false, true] {
+        ranked.clear();
+        for stage in stages() {
+            let mut studio = Studio::new(stage.recipe(), [mine.width / factor, mine.height / factor])?;
+            let right = Hypothesis::right(studio.recipe());
+            let is_tried = |picture: &Hypothesis| is_thorough || matches!(picture.making, Making::Right);
+            let mistakes = all_mistakes(studio.recipe()).into_iter().filter(is_tried);
+            let mut least = f64::INFINITY;
+            for hypothesis in std::iter::once(right).chain(mistakes) {
+                let expected = studio.render(&hypothesis, SMALL)?;
+                least = least.min(rough_difference(mine, factor, &hypothesis, &expected));
+            }
+            ranked.push((least, stage));
+        }
+        // Of stages that show the same, the one whose width is nearer comes first.
+        let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
+        ranked.sort_by(|(a, stage_a), (b, stage_b)| {
+            a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
+        });
+        if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
+            break;
+        }
+    }
+    Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect())
+}
+
+/// Root mean square difference of reduced pictures, display values.
+fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected: &[[f64; 3]]) -> f64 {
+    let [width, height] = [mine.width, mine.height].map(|side| side / factor);
+    let shown = hypothesis.written.bytes_of(expected, [width, height]);
+    let mut sum = 0.0;
+    for (place, shown) in (0..).zip(&shown) {
+        let [x, y] = [place % width, place / width].map(|at| at * factor);
+        let square =
+            (y..y + factor).flat_map(|y| (x..x + factor).map(move |x| (y * mine.width + x) as usize));
+        for (channel, shown) in shown.iter().enumerate() {
+            let bytes: f64 = square.clone().map(|at| f64::from(mine.bytes[at][channel])).sum();
+            sum += ((bytes / f64::from(factor * factor) - f64::from(*shown)) / 256.0).powi(2);
+        }
+    }
+    (sum / (3.0 * expected.len() as f64)).sqrt()
+}

@@ -1,0 +1,160 @@
+//! `weekender check`: finds the mistake in a picture that a reader's own program has rendered. (All chapters of book 1.)
+//!
+//! Each mistake that readers are known to make is rendered: by the program's own tracer where a rule, the scene or the
+//! camera can express it, otherwise by a plain tracer that follows the book. A picture is right if it differs from ours
+//! by noise only; otherwise the mistake whose picture comes nearest is named.
+
+mod details;
+mod hypothesis;
+mod judge;
+mod mine;
+mod mistakes;
+mod tracer;
+
+pub use hypothesis::Compared;
+pub use judge::{Finding, judge, stages};
+pub use mine::{Damage, Mine};
+pub use mistakes::{MISTAKES, Mistake};
+
+use super::answer::{Verdict, check_outputs, deliver, lines};
+use crate::cli::CheckOptions;
+use crate::failure::Failure;
+use crate::files::replace_file;
+use crate::heat::HeatScale;
+use crate::stages::Shading;
+use anyhow::{Context, Result, bail};
+use image::{ImageFormat, RgbImage};
+use serde_json::json;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Checks a picture. The exit code is 0 if it is right and 1 if there is a mistake.
+///
+/// # Errors
+/// [`Failure::Input`] if it could not be checked.
+pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
+    checked(options).map_err(Failure::Input)
+}
+
+fn checked(options: &CheckOptions) -> Result<ExitCode> {
+    if let Some(stage) = options.stage
+        && !stages().any(|known| known == stage)
+    {
+        bail!(
+            "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
+             check an earlier section, such as --stage defocus",
+            stage.id
+        );
+    }
+    if let Some(directory) = &options.out {
+        fs::create_dir_all(directory).with_context(|| {
+            format!("cannot create the directory {}; choose another with --out", directory.display())
+        })?;
+    }
+    let files = options.pictures();
+    check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
+    let mine = Mine::read(&options.picture)?;
+    let finding = judge(&mine, options.stage)?;
+    for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
+        let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
+        let image = image.context("a picture has another size than its pixels")?;
+        replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
+    }
+    let text = text(&options.picture, &mine, &finding, &files);
+    deliver(options.json.as_ref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
+    Ok(finding.verdict(&mine).exit_code())
+}
+
+impl Finding {
+    /// A picture in a damaged file is not right for other programs.
+    pub fn verdict(&self, mine: &Mine) -> Verdict {
+        if self.is_right() && mine.damages.is_empty() { Verdict::Same } else { Verdict::Different }
+    }
+}
+
+/// The reader's picture, ours and a heat map of their difference, 8-bit RGB, row by row from the top.
+pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
+    let right = &finding.right;
+    let ours = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
+    let difference = mine.bytes.iter().zip(&ours).map(|(mine, ours)| {
+        let square = |channel: usize| ((f64::from(mine[channel]) - f64::from(ours[channel])) / 255.0).powi(2);
+        HeatScale::ERROR.colour(((square(0) + square(1) + square(2)) / 3.0).sqrt())
+    });
+    let difference = difference.collect();
+    [mine.bytes.clone(), ours, difference]
+}
+
+/// The finding for people; `files` were written.
+pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> String {
+    let stage = finding.stage;
+    let mut text = vec![
+        ("picture", format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height)),
+        ("stage", format!("{}, section {}, {}", stage.id, stage.section, stage.section_title)),
+    ];
+    for damage in &mine.damages {
+        text.push(("file", damage.title.clone()));
+        text.push(("change", damage.remedy.to_owned()));
+    }
+    if let (Some(found), Some(mistake)) = (&finding.mistake, finding.named()) {
+        let certainty = if found.is_noise { "a mistake" } else { "most likely a mistake" };
+        text.push(("verdict", format!("{certainty}: {} (section {})", mistake.title, mistake.section)));
+        text.extend(found.hypothesis.note.iter().map(|note| ("seen", note.clone())));
+        text.push(("change", mistake.remedy.to_owned()));
+        if !found.is_noise {
+            text.push((
+                "note",
+                "it does not explain everything, so there may be a second mistake".to_owned(),
+            ));
+        }
+    } else if finding.is_right() {
+        text.push(("verdict", "right: it differs from ours by noise only".to_owned()));
+        if mine.width == mine.height && stage.setup.rules.shading != Shading::ImageGradient {
+            let note = "the picture is square; if you wanted 16:9, divide 16.0 by 9.0, not 16 by 9";
+            text.push(("note", note.to_owned()));
+        }
+    } else {
+        let verdict = "not right, but none of the known mistakes explains it; name the stage with --stage if it is \
+                       another one, and see with --out DIR where it differs (the final picture of section 14.1 \
+                       cannot be checked: its small spheres are random)";
+        text.push(("verdict", verdict.to_owned()));
+    }
+    if !finding.is_right() {
+        text.push(("read", stage.url()));
+    }
+    if !files.is_empty() {
+        let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
+        text.push(("files", files.join(", ")));
+    }
+    lines(text)
+}
+
+/// The finding for other programs.
+fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> serde_json::Value {
+    let mistake = finding.named().zip(finding.mistake.as_ref()).map(|(mistake, found)| {
+        json!({
+            "id": mistake.id,
+            "section": mistake.section,
+            "title": mistake.title,
+            "remedy": mistake.remedy,
+            "note": found.hypothesis.note,
+            "explains_all": found.is_noise,
+        })
+    });
+    json!({
+        "picture": path.display().to_string(),
+        "format": mine.format,
+        "width": mine.width,
+        "height": mine.height,
+        "stage": finding.stage.id,
+        "section": finding.stage.section,
+        "is_right": finding.verdict(mine) == Verdict::Same,
+        "mistake": mistake,
+        "damages": mine.damages,
+        "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,311 @@
+//! Mistakes, their pictures, what blocks cannot show, and what is said.
+
+use super::details::{at_edges, is_times_255, is_truncated};
+use super::hypothesis::{Compared, Curve, Hypothesis, Making, Studio, compare};
+use super::mistakes::{MISTAKES, Mistake, bubble};
+use super::tracer::Steps;
+use super::*;
+use crate::recipe::Recipe;
+use crate::scene::Material;
+use crate::stages::{Stage, SurfaceRule, Transfer};
+use crate::statistics::blocks::{BlockTest, Differences, Noise};
+use glam::DVec3;
+use std::sync::Arc;
+
+fn recipe(id: &str) -> Recipe {
+    Stage::find(id).unwrap().recipe()
+}
+
+fn mistake(id: &str) -> &'static Mistake {
+    MISTAKES.iter().find(|mistake| mistake.id == id).unwrap()
+}
+
+fn picture_of(bytes: Vec<[u8; 3]>, [width, height]: [u32; 2]) -> Mine {
+    Mine { width, height, bytes, format: "P3", damages: Vec::new() }
+}
+
+/// Compares bytes with linear values; both are functions of column and row.
+fn compared(
+    size @ [width, height]: [u32; 2],
+    transfer: Transfer,
+    bytes: impl Fn(u32, u32) -> [u8; 3],
+    linear: impl Fn(u32, u32) -> [f64; 3],
+) -> (Mine, Compared) {
+    let mut recipe = recipe("sky");
+    recipe.rules.transfer = transfer;
+    let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let mine = picture_of(places().map(|(x, y)| bytes(x, y)).collect(), size);
+    let expected = places().map(|(x, y)| linear(x, y)).collect();
+    let found = compare(&mine, Hypothesis::right(&recipe), expected);
+    (mine, found)
+}
+
+#[test]
+fn every_mistake_has_its_own_id_and_shows_in_some_stage() {
+    let mut ids: Vec<&str> = MISTAKES.iter().map(|mistake| mistake.id).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), MISTAKES.len());
+    for mistake in &MISTAKES {
+        let shows = |stage: &Stage| {
+            let recipe = stage.recipe();
+            (mistake.applies)(&recipe) && (mistake.id == "truncated" || !mistake.pictures(&recipe).is_empty())
+        };
+        assert!(Stage::ALL.iter().any(shows), "{}", mistake.id);
+    }
+    for (id, can_show) in [("sky", false), ("normals-world", false), ("lambertian-gamma", true)] {
+        for name in ["zero-t-min", "bounce-limit"] {
+            assert_eq!((mistake(name).applies)(&recipe(id)), can_show, "{name} in {id}");
+        }
+    }
+}
+
+#[test]
+fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() {
+    let (glass, air) = (1.5, 1.0 / 1.5);
+    let found = |spheres: &[(f64, f64, f64)]| {
+        let mut recipe = recipe("metal");
+        let scene = Arc::make_mut(&mut recipe.scene);
+        scene.spheres.clear();
+        for (index, (x, radius, refraction_index)) in spheres.iter().copied().enumerate() {
+            let material = scene.add_material(format!("{index}"), Material::Dielectric { refraction_index });
+            scene.add_sphere(DVec3::X * x, radius, material);
+        }
+        bubble(scene)
+    };
+    assert_eq!(found(&[(0.0, 0.5, glass), (0.0, 0.4, air)]), Some(1));
+    assert_eq!(found(&[(1.0, 0.4, air), (0.0, 0.4, air), (0.0, 0.5, glass)]), Some(1));
+    assert_eq!(found(&[(0.0, 0.4, air)]), None, "alone");
+    assert_eq!(found(&[(0.0, 0.4, glass), (0.0, 0.4, air)]), None, "as large");
+    assert_eq!(found(&[(0.1, 0.5, glass), (0.0, 0.4, air)]), None, "beside the middle");
+    assert_eq!(found(&[(0.0, 0.5, glass), (0.0, 0.4, 1.0)]), None, "of nothing");
+}
+
+#[test]
+fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
+    // Acne depends on the precision, and the gradient has no rays.
+    let is_traced = |stage: &&Stage| {
+        let rules = stage.setup.rules;
+        rules.shading != Shading::ImageGradient && rules.surface != SurfaceRule::Acne
+    };
+    for stage in stages().filter(is_traced) {
+        let mut studio = Studio::new(stage.recipe(), [96, 54]).unwrap();
+        let right = Hypothesis::right(studio.recipe());
+        let plain = Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..right.clone() };
+        let [right, plain] = [right, plain].map(|hypothesis| studio.render(&hypothesis, 256).unwrap());
+        // The grid of one sample per pixel meets edges where the precisions may differ.
+        let values: Vec<[f64; 3]> =
+            right.iter().zip(&plain).map(|(a, b)| [0, 1, 2].map(|i| b[i] - a[i])).collect();
+        let (noise, steps, tolerance) = (Noise::Spread, None, 2e-3);
+        let test =
+            BlockTest::of(&Differences { width: 96, values: &values, noise, steps, tolerance, rare: 0.0 });
+        assert!(test.largest_excess() < 6.0 && test.largest < 7.0, "{}: {:?}", stage.id, test.excess);
+    }
+}
+
+#[test]
+fn bytes_and_linear_values_belong_together() {
+    for id in ["sky", "metal", "gamut"] {
+        let recipe = recipe(id);
+        let others = ["no-gamma", "gamma-early", "gamma-twice", "scale-255"].map(mistake);
+        let others = others.into_iter().flat_map(|mistake| mistake.pictures(&recipe));
+        for Hypothesis { written, mistake, .. } in others.chain([Hypothesis::right(&recipe)]) {
+            for byte in 0..254 {
+                let [linear, half_step] = written.linear(byte, 3, 9);
+                assert_eq!(written.byte_of(linear, 3, 9), byte, "{id}, {mistake:?}");
+                assert!(half_step > 0.0);
+                // Of a value times 255, cut off, the upper half of all bytes is one less.
+                let less = written.byte_of(written.times_255(linear, 3, 9), 3, 9);
+                assert_eq!(less, byte - u8::from(byte >= 128), "{id}, {mistake:?}");
+            }
+        }
+    }
+    let right = Hypothesis::right(&recipe("metal")).written;
+    let other = hypothesis::Written { curve: Curve::Gamma(2.2), ..right };
+    assert_eq!(
+        [right.byte_of(0.25, 0, 1), other.byte_of(0.25, 0, 1)],
+        [128, (256.0 * 0.25_f64.powf(1.0 / 2.2)) as u8]
+    );
+}
+
+#[test]
+fn a_picture_is_laid_out_as_it_was_written() {
+    // Three columns and two rows; each pixel has the number of its place.
+    let linear: Vec<[f64; 3]> = (0..6).map(|place| [0.0, 0.1, 0.2].map(|c| f64::from(place) + c)).collect();
+    let laid_out = |id| mistake(id).pictures(&recipe("metal"))[0].written.laid_out(&linear, 3);
+    let places = |of: Vec<[f64; 3]>| of.iter().map(|pixel| pixel[0] as u32).collect::<Vec<_>>();
+    assert_eq!(places(laid_out("no-gamma")), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(places(laid_out("flipped-rows")), [3, 4, 5, 0, 1, 2]);
+    assert_eq!(places(laid_out("mirrored-columns")), [2, 1, 0, 5, 4, 3]);
+    assert_eq!(laid_out("swapped-channels")[4], [4.2, 4.1, 4.0]);
+}
+
+#[test]
+fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
+    let misfit = |bytes: &dyn Fn(u32, u32) -> [u8; 3], linear: &dyn Fn(u32, u32) -> [f64; 3]| {
+        compared([16, 8], Transfer::Linear, bytes, linear).1.misfit
+    };
+    let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+    let middle = |byte: f64| (byte + 0.5) / 256.0;
+    close(misfit(&|_, _| [153; 3], &|_, _| [0.5; 3]), (middle(153.0) - 0.5).powi(2) / 2.0);
+    // In the dark, errors count as at 0.02.
+    close(misfit(&|_, _| [2; 3], &|_, _| [0.01; 3]), (middle(2.0) - 0.01).powi(2) / 0.08);
+    // The mean of 64 pixels has a 64th of their variance.
+    let chequers = |x: u32, y: u32| [[140, 160][((x + y) % 2) as usize]; 3];
+    let (mean, apart) = (middle(150.0) - 0.5, 10.0_f64 / 256.0);
+    close(misfit(&chequers, &|_, _| [0.5; 3]), (mean * mean - apart * apart / 63.0) / 2.0);
+    // What is brighter or darker than bytes can tell is no error.
+    close(misfit(&|_, _| [255, 0, 255], &|_, _| [2.0, 0.0, 1.0]), 0.0);
+    // Each row has its own curve.
+    let halves = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
+    let (_, found) = compared([16, 16], Transfer::LinearAboveGamma2, halves, |_, _| [0.25; 3]);
+    assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
+    // Noise is no error, and more than noise is one.
+    let noise = |x: u32, y: u32, c: u32| (crate::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
+    for (more, is_noise) in [(0, true), (12, false)] {
+        let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| 100 + more + noise(x, y, c));
+        let (_, found) = compared([48, 32], Transfer::Linear, bytes, |_, _| [116.0 / 256.0; 3]);
+        assert_eq!(found.is_noise, is_noise, "{more}: {}", found.misfit);
+    }
+}
+
+#[test]
+fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
+    let found = |id: &str, size: [u32; 2], planted: &'static Mistake| {
+        let mut studio = Studio::new(recipe(id), size).unwrap();
+        let right = Hypothesis::right(studio.recipe());
+        let planted = planted.pictures(studio.recipe()).remove(0);
+        [planted, right.clone()].map(|made| {
+            let shown = studio.render(&made, 64).unwrap();
+            let mine = picture_of(made.written.bytes_of(&shown, size), size);
+            let expected = studio.render(&right, 64).unwrap();
+            let compared = compare(&mine, right.clone(), expected);
+            at_edges(&mine, &mut studio, &compared, 64).unwrap()?.hypothesis.mistake.map(|mistake| mistake.id)
+        })
+    };
+    for planted in MISTAKES.iter().filter(|mistake| mistake.is_at_edges()) {
+        assert_eq!(found("antialiased", [64, 36], planted), [Some(planted.id), None]);
+    }
+    // The sky changes too slowly to tell a shift of half a pixel from another light.
+    assert_eq!(found("sky", [32, 18], mistake("half-pixel-up")), [None, None]);
+}
+
+#[test]
+fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
+    // Of three hundred values, so many are ends, and so many should be; others are white though they should be dark.
+    let is_found = |ends: u32, expected_ends: u32, too_bright: u32| {
+        let byte = |index: u32| match index {
+            index if index < too_bright => [254, 255][index as usize % 2],
+            index if index < ends => [0, 1][index as usize % 2],
+            _ => [2, 253][index as usize % 2],
+        };
+        let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| byte(3 * (10 * y + x) + c));
+        let linear = |x: u32, y: u32| [if 3 * (10 * y + x) < expected_ends { 1.0 } else { 0.25 }; 3];
+        let (mine, right) = compared([10, 10], Transfer::Linear, bytes, linear);
+        is_truncated(&mine, &right)
+    };
+    assert!(is_found(300, 0, 0) && is_found(297, 0, 0) && !is_found(296, 0, 0));
+    assert!(is_found(300, 147, 0) && !is_found(300, 150, 0));
+    assert!(is_found(300, 0, 3) && !is_found(300, 0, 4));
+}
+
+#[test]
+fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_255() {
+    let right = Hypothesis::right(&recipe("lambertian-gamma"));
+    let found = |pixels: u32, loss: f64, noise: f64, [from, to]: [f64; 2]| {
+        let value = |index: u32| from + (to - from) * f64::from(index * 7919 % 12_289) / 12_289.0;
+        let picture = |of: &dyn Fn(u32) -> f64| -> Vec<[f64; 3]> {
+            (0..pixels).map(|pixel| [0, 1, 2].map(|channel| of(3 * pixel + channel))).collect()
+        };
+        // The displayed value is the root of the linear one.
+        let darker = picture(&|index| {
+            let noise = if index.is_multiple_of(2) { noise } else { -noise };
+            value(index) * (1.0 - loss / 256.0_f64).powi(2) + noise
+        });
+        let mine = picture_of(right.written.bytes_of(&darker, [pixels, 1]), [pixels, 1]);
+        let compared = compare(&mine, right.clone(), picture(&value));
+        is_times_255(&mine, &Compared { is_noise: true, ..compared })
+    };
+    let losses = [-1.0, 0.0, 0.5, 0.7, 1.0, 1.3, 1.5, 2.0];
+    assert_eq!(
+        losses.map(|loss| found(4096, loss, 0.0, [0.25, 0.65])),
+        [false, false, false, true, true, true, false, false]
+    );
+    // Noise of which a mean over all values cannot be told from no loss.
+    assert_eq!([0.02, 0.2].map(|noise| found(4096, 1.0, noise, [0.25, 0.65])), [true, false]);
+    assert!(!found(333, 1.0, 0.0, [0.1, 0.9]) && found(334, 1.0, 0.0, [0.1, 0.9]));
+    // What is too dark or cut off tells nothing.
+    assert!(!found(2000, 1.0, 0.0, [0.0, 0.049]) && !found(2000, 1.0, 0.0, [0.981, 1.2]));
+}
+
+#[test]
+fn a_mistake_of_our_own_is_found_with_its_picture_and_told() {
+    let stage = Stage::find("metal-fuzzy").unwrap();
+    let size = [48, 27];
+    for planted in ["flipped-rows", "sky-reversed"].map(mistake) {
+        let mut studio = Studio::new(stage.recipe(), size).unwrap();
+        let hypothesis = planted.pictures(studio.recipe()).remove(0);
+        let expected = studio.render(&hypothesis, 256).unwrap();
+        let mine = picture_of(hypothesis.written.bytes_of(&expected, size), size);
+        let finding = judge(&mine, Some(stage)).unwrap();
+        assert!(!finding.is_right() && finding.stage.id == stage.id);
+        assert_eq!(finding.named().map(|found| found.id), Some(planted.id));
+        assert!(finding.mistake.as_ref().is_some_and(|found| found.is_noise && found.expected == expected));
+        let path = Path::new("a.ppm");
+        let json = figures(path, &mine, &finding, &[]);
+        assert_eq!(json["mistake"]["id"], planted.id);
+        assert_eq!((&json["is_right"], &json["mistake"]["explains_all"]), (&false.into(), &true.into()));
+        let told = text(path, &mine, &finding, &[]);
+        for part in [planted.title, planted.remedy, planted.section, &stage.url()] {
+            assert!(told.contains(part), "{told} should say {part}");
+        }
+    }
+}
+
+#[test]
+fn what_is_said_depends_on_damages_shape_and_how_much_is_explained() {
+    let stage = Stage::find("metal").unwrap();
+    let right = |is_noise| Compared {
+        hypothesis: Hypothesis::right(&stage.recipe()),
+        misfit: 0.0,
+        is_noise,
+        expected: Vec::new(),
+    };
+    let said = |size, damages, finding: &Finding| {
+        let mine = Mine { damages, ..picture_of(Vec::new(), size) };
+        (text(Path::new("a.ppm"), &mine, finding, &[]), finding.verdict(&mine))
+    };
+    let finding = Finding { stage, right: right(true), mistake: None };
+    let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
+    let (told, verdict) = said([40, 20], vec![damage], &finding);
+    assert!(told.contains("\nfile     it is torn\nchange   mend it\n"), "{told}");
+    assert_eq!(verdict, Verdict::Different, "a damaged file is not right for other programs");
+    let (told, verdict) = said([40, 40], Vec::new(), &finding);
+    assert!(told.contains("noise only") && told.contains("the picture is square"), "{told}");
+    assert_eq!(verdict, Verdict::Same);
+    let hypothesis = mistake("swapped-channels").pictures(&stage.recipe()).remove(0);
+    let found = Compared { hypothesis, ..right(false) };
+    let (told, _) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
+    for part in
+        ["most likely a mistake: ", "seen     the channels seem to be blue, green, red", "second mistake"]
+    {
+        assert!(told.contains(part), "{told}");
+    }
+    let (told, verdict) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
+    assert!(told.contains("none of the known mistakes explains it"), "{told}");
+    assert_eq!(verdict, Verdict::Different);
+}
+
+#[test]
+fn the_difference_is_the_root_mean_square_of_the_channels() {
+    let bytes = [[64, 64, 64], [64, 79, 64], [128, 128, 128], [0, 255, 128]];
+    let of = |x: u32, y: u32| bytes[(2 * y + x) as usize];
+    let (mine, right) = compared([2, 2], Transfer::LinearAboveGamma2, of, |_, _| [0.25; 3]);
+    let stage = Stage::find("sky").unwrap();
+    let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None });
+    // The upper row is linear, the lower row the square root.
+    assert_eq!((shown, ours), (bytes.to_vec(), vec![[64; 3], [64; 3], [128; 3], [128; 3]]));
+    let colour = |squares: f64| HeatScale::ERROR.colour((squares / 3.0).sqrt() / 255.0);
+    let squares = [0.0, 15.0_f64.powi(2), 0.0, 128.0_f64.powi(2) + 127.0_f64.powi(2)];
+    assert_eq!(difference, squares.map(colour));
+}

@@ -1,0 +1,511 @@
+//! Noise, rounding, channels that are clipped or no numbers, and what a backend renders beside a file.
+
+use super::verdict::Relation;
+use super::*;
+use crate::film::{Description, FIXED_POINT_SCALE, PixelSum, checkpoint, fixed_point};
+use crate::heat::HeatScale;
+use crate::output::Encoding;
+use crate::recipe::file::to_picture_toml;
+use crate::render_cpu::CpuOptions;
+use crate::sampling::pcg4d;
+use crate::stages::{Diffuse, Transfer};
+use crate::statistics::blocks::{BlockTest, CHANCE, Differences, Noise};
+use crate::statistics::normal::largest_of;
+use std::io::Cursor;
+use std::sync::Arc;
+
+const PIXELS: usize = 80 * 48;
+
+fn random(pixel: u32, half: u32, seed: u32) -> f64 {
+    f64::from(pcg4d([pixel, half, seed, 5])[0]) / 4_294_967_296.0
+}
+
+/// A film of 80 x 48 pixels with one sample in each half, of the radiance that `value` returns for half and pixel.
+fn film_of(value: impl Fn(u32, u32) -> f64) -> Picture {
+    let mut film = Film::new(80, 48, 2);
+    for (half, pixels) in (0..).zip(film.halves_mut()) {
+        for (pixel, sum) in (0..).zip(pixels) {
+            *sum = fixed_point([value(half, pixel); 3]).unwrap();
+        }
+    }
+    film.record(0..2, 0).unwrap();
+    Picture::of_film(String::new(), String::new(), film)
+}
+
+/// A film of noise, with an offset.
+fn noisy(seed: u32, offset: f64) -> Picture {
+    film_of(|half, pixel| 0.5 + 0.2 * random(pixel, half, seed) + offset)
+}
+
+/// A picture of floats without halves.
+fn floats(value: impl Fn(u32) -> f64) -> Picture {
+    let pixels = (0..PIXELS as u32).map(|pixel| [value(pixel); 3]).collect();
+    Picture { film: None, pixels, ..Picture::of_film(String::new(), String::new(), Film::new(80, 48, 1)) }
+}
+
+/// The same in 8 bits of linear values.
+fn bytes(value: impl Fn(u32) -> f64) -> Picture {
+    let stored = |x: f64| if x >= 255.0 / 256.0 { f64::NAN } else { ((256.0 * x).floor() + 0.5) / 256.0 };
+    let steps = Some(vec![[0.5 / 256.0; 3]; PIXELS]);
+    Picture { steps, limit: 255.0 / 256.0, ..floats(|pixel| stored(value(pixel))) }
+}
+
+fn both_ways(a: &Picture, b: &Picture) -> [Comparison; 2] {
+    [compare(a, b, None), compare(b, a, None)]
+}
+
+#[test]
+fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
+    let noise = compare(&noisy(1, 0.0), &noisy(2, 0.0), None);
+    assert!(noise.is_equal() && noise.evidence == Evidence::Halves, "{:?}", noise.reasons);
+    assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
+    assert!(compare(&noisy(1, 0.0), &noisy(2, 2e-3), None).is_equal());
+    let same = compare(&noisy(1, 0.0), &noisy(1, 2e-3), None);
+    assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
+    assert!(compare(&noisy(1, 0.0), &noisy(1, 1e-6), None).is_equal());
+    assert!(compare(&noisy(1, 0.0), &noisy(1, 0.0), None).is_same);
+    // Without noise, pictures are equal or infinitely far apart.
+    let dark = film_of(|_, _| 0.25);
+    assert_eq!(compare(&dark, &dark, None).times_noise(), 0.0);
+    let found = compare(&dark, &film_of(|_, pixel| 0.25 + f64::from(pixel % 2)), None);
+    assert_eq!((found.rms, found.times_noise()), (0.5_f64.sqrt(), f64::INFINITY));
+}
+
+#[test]
+fn the_noise_of_a_difference_is_that_of_both_films() {
+    let film = |seed: u32, samples: u64, middle: f64| {
+        let mut film = Film::new(80, 48, 2);
+        for (sample, pixel) in (0..samples).flat_map(|sample| (0..PIXELS).map(move |pixel| (sample, pixel))) {
+            let value = middle + 0.2 * (random(pixel as u32, sample as u32, seed) - 0.5);
+            film.halves_mut()[(sample % 2) as usize][pixel].add(fixed_point([value; 3]).unwrap());
+        }
+        film.record(0..samples, 0).unwrap();
+        Picture::of_film(String::new(), String::new(), film)
+    };
+    let [there, back] = both_ways(&film(1, 64, 0.5), &film(2, 4, 0.51));
+    assert!((there.bias - 0.01).abs() < 2e-3 && (there.bias + back.bias).abs() < 1e-12, "{}", there.bias);
+    let figures = |found: &Comparison| [found.bias_deviation, found.noise, Some(found.test.largest)];
+    assert_eq!(figures(&there), figures(&back));
+    let deviation = 0.2 / 12.0_f64.sqrt() * (1.0 / 64.0 + 1.0 / 4.0_f64).sqrt();
+    assert!((there.noise.unwrap() / deviation - 1.0).abs() < 0.05, "{:?} {deviation}", there.noise);
+    let of_mean = deviation / (PIXELS as f64).sqrt();
+    assert!(
+        (there.bias_deviation.unwrap() / of_mean - 1.0).abs() < 0.1,
+        "{:?} {of_mean}",
+        there.bias_deviation
+    );
+}
+
+/// With many samples the noise of the mean is far below what rounding may do to it.
+#[test]
+fn a_mean_that_rounding_moves_is_equal() {
+    let picture = |offset: f64| {
+        let samples = 1 << 20;
+        let sum = (samples / 2) as f64 * (0.5 + offset) * FIXED_POINT_SCALE;
+        let mut film = Film::new(80, 48, 2);
+        film.halves_mut().iter_mut().flatten().for_each(|pixel| *pixel = PixelSum([sum.round() as u64; 3]));
+        film.record(0..samples, 0).unwrap();
+        Picture::of_film(String::new(), String::new(), film)
+    };
+    let rounded = compare(&picture(0.0), &picture(ROUNDING_BIAS), None);
+    assert!(rounded.is_equal(), "{:?}", rounded.reasons);
+    let moved = compare(&picture(0.0), &picture(5.0 * ROUNDING_BIAS), None);
+    assert!(moved.reasons.iter().any(|reason| reason.starts_with("the mean is")), "{:?}", moved.reasons);
+}
+
+#[test]
+fn blocks_that_are_nearer_than_noise_allows_are_noted() {
+    let halves = |seed| move |half: u32, pixel: u32| random(pixel, half, seed);
+    let [one, other] = [1, 2].map(|seed| film_of(halves(seed)));
+    let swapped = film_of(|half, pixel| random(pixel, 1 - half, 1));
+    let is_noted = |a: &Picture, b: &Picture, paired: Option<PairedSamples>| {
+        compare(a, b, paired).notes.iter().any(|note| note.starts_with("the blocks differ by less"))
+    };
+    assert!(is_noted(&one, &swapped, None) && !is_noted(&one, &other, None));
+    // Pictures of the same samples may be as near as they like.
+    assert!(!is_noted(&one, &swapped, Some(PairedSamples::default())));
+}
+
+#[test]
+fn nan_or_infinity_in_only_one_picture_is_a_difference() {
+    let with = |value: f64| {
+        let mut picture = floats(|pixel| 0.5 + 0.2 * random(pixel, 0, 1));
+        picture.pixels[200..260].iter_mut().for_each(|pixel| pixel[1] = value);
+        picture
+    };
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    for (a, b) in [(nan, 0.5), (0.5, inf), (-inf, 0.5), (nan, inf), (inf, -inf), (nan, -inf)] {
+        let found = compare(&with(a), &with(b), None);
+        assert_eq!((found.verdict(), found.is_same), (Verdict::Different, false), "{a} and {b}");
+        let expected = NonFinite { differing_pixels: 60, differing: 60, first: Some([40, 2]), alike: 0 };
+        assert_eq!(found.non_finite, expected);
+        assert!(found.reasons[0].starts_with("60 channels of 60 pixels are NaN"), "{:?}", found.reasons);
+    }
+    for (a, b) in [(nan, -nan), (inf, inf), (-inf, -inf)] {
+        let found = compare(&with(a), &with(b), None);
+        assert!(found.is_equal() && found.is_same, "{a} and {b}: {:?}", found.reasons);
+        assert_eq!((found.non_finite.differing, found.non_finite.alike, found.left_out), (0, 60, 60));
+    }
+    // Zeros of different signs are equal, but not to the bit.
+    let found = compare(&with(0.0), &with(-0.0), None);
+    assert!(found.is_equal() && !found.is_same);
+    // A picture without a finite number equals no picture.
+    let none = floats(|_| nan);
+    let found = compare(&none, &none, None);
+    assert_eq!((found.verdict(), found.is_same), (Verdict::Unclear, false), "{found:?}");
+}
+
+#[test]
+fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
+    let whole = |value: f64| bytes(move |pixel| if pixel == 7 { value } else { 0.3 });
+    let float = |value: f64| floats(move |pixel| if pixel == 7 { value } else { 0.3 });
+    for beyond in [1.0, 50.0, f64::INFINITY] {
+        assert!(compare(&whole(1.0), &float(beyond), None).is_equal(), "{beyond}");
+    }
+    assert!(compare(&whole(1.0), &whole(1.0), None).is_same);
+    for other in [f64::NAN, f64::NEG_INFINITY] {
+        assert!(!compare(&float(other), &whole(1.0), None).is_equal(), "{other}");
+    }
+    assert!(!compare(&whole(0.5), &float(f64::INFINITY), None).is_equal());
+    // At or above the limit of the other picture: unknown, and no difference.
+    let rows = |value: f64| move |pixel: u32| if pixel < 80 * 8 { value } else { 0.3 };
+    for (a, b) in [(1.0, 5.0), (1.0, 255.0 / 256.0)] {
+        for found in both_ways(&bytes(rows(a)), &floats(rows(b))) {
+            assert!(found.is_equal(), "{a} and {b}: {:?}", found.reasons);
+            assert_eq!(found.left_out, 3 * 80 * 8, "{a} and {b}");
+        }
+    }
+    assert_eq!(compare(&bytes(rows(0.5)), &floats(rows(0.5)), None).left_out, 0);
+    assert!(!compare(&bytes(rows(0.5)), &floats(rows(0.6)), None).is_equal());
+}
+
+#[test]
+fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
+    let scene = |seed: u32| move |pixel: u32| 0.2 + 0.4 * random(pixel, 0, seed);
+    let is_clipped =
+        |found: &Comparison| found.reasons.iter().any(|reason| reason.contains("darker in the other"));
+    let painted: [fn(u32) -> bool; 3] = [
+        |pixel| (16..40).contains(&(pixel % 80)) && (8..32).contains(&(pixel / 80)),
+        |pixel| (24..32).contains(&(pixel % 80)) && (16..24).contains(&(pixel / 80)),
+        |pixel| pixel / 80 < 47,
+    ];
+    for is_painted in painted {
+        let white = bytes(move |pixel| if is_painted(pixel) { 1.0 } else { scene(2)(pixel) });
+        for found in [floats(scene(1)), bytes(scene(1))].iter().flat_map(|other| both_ways(other, &white)) {
+            assert!(!found.is_equal() && is_clipped(&found), "{:?}", found.reasons);
+            let worst = &found.test.worst(1)[0];
+            assert!(is_painted(worst.y.start * 80 + worst.x.start), "{worst:?}");
+        }
+    }
+    let bright =
+        |seed: u32| move |pixel: u32| if pixel % 80 < 24 { 2.0 + random(pixel, 0, seed) } else { 0.3 };
+    for other in [floats(bright(1)), bytes(bright(1))] {
+        let found = compare(&other, &bytes(bright(2)), None);
+        assert!(found.is_equal(), "{:?} {:?}", found.reasons, found.unclear);
+    }
+    // Noise around the limit: even, or a path of radiance 8 once in a while.
+    for (samples, is_rare) in [(2, false), (16, false), (2, true), (16, true)] {
+        let mean = move |seed: u32, pixel: u32| {
+            let path = |x: f64| if is_rare { if x < 0.08 { 8.0 } else { 0.1 } } else { 0.5 + x };
+            (0..samples).map(|sample| path(random(pixel, sample, seed))).sum::<f64>() / f64::from(samples)
+        };
+        let there = bytes(|pixel| mean(1, pixel));
+        for other in [floats(|pixel| mean(2, pixel)), bytes(|pixel| mean(3, pixel))] {
+            let found = compare(&there, &other, None);
+            assert!(!is_clipped(&found), "{samples} samples: {:?}", found.reasons);
+        }
+    }
+    // If nearly everything is clipped, nothing can be said.
+    let white = |columns: u32| move |pixel: u32| if pixel % 80 < columns { 1.0 } else { 0.5 };
+    for (columns, verdict) in [(80, Verdict::Unclear), (48, Verdict::Unclear), (40, Verdict::Same)] {
+        let found = compare(&bytes(white(columns)), &floats(white(columns)), None);
+        assert_eq!(found.verdict(), verdict, "{columns}: {:?}", found.reasons);
+        assert!(compare(&bytes(white(columns)), &bytes(white(columns)), None).is_same, "{columns}");
+    }
+}
+
+#[test]
+fn pictures_are_the_same_to_the_bit_only_in_one_format() {
+    let picture = |steps: Option<f64>, limit: f64| {
+        let value = |pixel| if pixel == 7 { f64::NAN } else { 0.5 + 0.2 * random(pixel, 0, 1) };
+        Picture { steps: steps.map(|step| vec![[step; 3]; PIXELS]), limit, ..floats(value) }
+    };
+    let formats = [(None, f64::INFINITY), (Some(0.002), 0.99), (Some(0.004), 0.99), (Some(0.002), 0.98)];
+    for (first, second) in (0..16).map(|pair| (pair / 4, pair % 4)) {
+        let [a, b] = [first, second].map(|format: usize| picture(formats[format].0, formats[format].1));
+        assert_eq!(compare(&a, &b, None).is_same, first == second, "{first} and {second}");
+    }
+}
+
+#[test]
+fn a_difference_is_measured_by_the_steps_of_both_pictures() {
+    let picture = |step: f64, value: f64| {
+        let steps = (step > 0.0).then(|| vec![[step; 3]; PIXELS]);
+        Picture { steps, limit: 0.99, ..floats(move |_| value) }
+    };
+    // Without noise, the deviation is the root of the sum of both squares; these are two deviations apart.
+    for (first, second, deviation) in [(0.003, 0.004, 0.005), (0.003, 0.0, 0.003), (0.0, 0.004, 0.004)] {
+        let found = compare(&picture(first, 0.5), &picture(second, 0.5 + 2.0 * deviation), None);
+        assert!((found.test.largest - 2.0).abs() < 1e-3, "{first} {second}: {}", found.test.largest);
+        assert!((found.bias - 2.0 * deviation).abs() < 1e-12, "{first} {second}: {}", found.bias);
+    }
+    // Neighbouring bytes differ by no more than rounding.
+    assert_eq!(
+        compare(&bytes(|_| 0.5), &bytes(|_| 0.5 + 1.0 / 256.0), None).test.largest_limit,
+        largest_of(0, CHANCE)
+    );
+}
+
+#[test]
+fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else() {
+    let directory = tempfile::tempdir().unwrap();
+    let read = |most: u32, is_rounded: bool, brighter: f64| {
+        let mut file = format!("P6 64 64 {most} ").into_bytes();
+        for pixel in 0..64 * 64 {
+            let value = 0.2 + 0.4 * f64::from(pixel % 64) / 64.0 + brighter;
+            let most = f64::from(most);
+            let stored = if is_rounded { (most * value).round() } else { ((most + 1.0) * value).floor() };
+            file.extend([stored as u8; 3]);
+        }
+        let path = directory.path().join("a.ppm");
+        std::fs::write(&path, file).unwrap();
+        Picture::read(&path, Encoding::Book(Transfer::Gamma2)).unwrap()
+    };
+    let fine = read(255, false, 0.0);
+    for (most, is_rounded) in [(31, false), (15, true), (100, true)] {
+        for found in both_ways(&fine, &read(most, is_rounded, 0.0)) {
+            assert!(found.is_equal(), "{most}, {is_rounded}: {:?} {:?}", found.reasons, found.unclear);
+        }
+        assert!(!compare(&fine, &read(most, is_rounded, 0.3), None).is_equal(), "{most}, {is_rounded}");
+    }
+}
+
+/// A picture next to itself with other values at some columns and rows.
+fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
+    let value = |pixel: u32| 0.3 + 0.2 * random(pixel, 0, 1);
+    compare(
+        &floats(value),
+        &floats(|pixel| value(pixel) + if is_changed(pixel % 80, pixel / 80) { by } else { 0.0 }),
+        None,
+    )
+}
+
+#[test]
+fn in_pictures_that_are_equal_elsewhere_a_hole_differs_and_a_few_pixels_allow_no_verdict() {
+    let hole = changed(|x, y| (33..37).contains(&x) && (17..20).contains(&y), -0.25);
+    assert!(hole.reasons.iter().any(|reason| reason.starts_with("a block is")), "{hole:?}");
+    let worst = hole.test.worst(1)[0];
+    assert_eq!((worst.x.clone(), worst.y.clone()), (32..40, 16..24));
+    // A thousandth of the pixels are few: 3.84. More of them are noise, as far as can be told.
+    let places = [(5, 20), (35, 20), (65, 20), (75, 40)];
+    let verdict = |count: usize| changed(|x, y| places[..count].contains(&(x, y)), 0.5).verdict();
+    let [same, unclear] = [Verdict::Same, Verdict::Unclear];
+    assert_eq!([0, 1, 3, 4].map(verdict), [same, unclear, unclear, same]);
+    for (by, verdict) in [(0.09, same), (-0.09, same), (0.11, unclear), (-0.11, unclear)] {
+        let found = changed(|x, y| (x, y) == (30, 20), by);
+        let text =
+            format!("only 1 of 3840 pixels differ by more than rounding, most by {:.1e} at 30,20", by.abs());
+        let told: Vec<&String> = found.notes.iter().chain(&found.unclear).collect();
+        assert!(told.iter().any(|told| told.starts_with(&text)), "{told:?}");
+        assert_eq!(found.verdict(), verdict, "{by}");
+    }
+}
+
+#[test]
+fn only_channels_of_blocks_that_differ_count_as_tries() {
+    /// Column, row and channel.
+    type Place = (usize, usize, usize);
+    let one = floats(|pixel| 0.3 + 0.2 * random(pixel, 0, 1));
+    let cases: [(&[Place], usize); 4] = [
+        (&[], 0),
+        (&[(3, 3, 0)], 1),
+        (&[(3, 3, 0), (4, 5, 0), (3, 3, 2)], 2),
+        (&[(7, 7, 0), (8, 7, 0), (7, 8, 0), (79, 47, 2)], 4),
+    ];
+    for (places, tries) in cases {
+        let mut other = one.clone();
+        places.iter().for_each(|(x, y, channel)| other.pixels[y * 80 + x][*channel] += 0.05);
+        assert_eq!(compare(&one, &other, None).test.largest_limit, largest_of(tries, CHANCE), "{places:?}");
+    }
+}
+
+#[test]
+fn samples_are_parted_by_any_channel_and_the_others_are_averaged() {
+    let row = |pixels: &[[f64; 3]]| {
+        let mut film = Film::new(pixels.len() as u32, 1, 1);
+        for (sum, pixel) in film.halves_mut()[0].iter_mut().zip(pixels) {
+            *sum = fixed_point(*pixel).unwrap();
+        }
+        film.record(0..1, 0).unwrap();
+        film
+    };
+    // In units that a film holds exactly; five are more than a thousandth.
+    let unit = 2.0_f64.powi(-12);
+    let other = [[0.0, 0.0, 5.0], [-5.0, 0.0, 0.0], [1.0, 2.0, 3.0], [0.0, -4.0, 0.0], [0.0; 3]];
+    let other = row(&other.map(|pixel| pixel.map(|x| 0.5 + x * unit)));
+    let mut sums = PairedSums::default();
+    assert_eq!((sums.finish(), sums.finish().parted_share()), (PairedSamples::default(), 0.0));
+    sums.add(&row(&[[0.5; 3]; 5]), &other);
+    let found = sums.finish();
+    assert_eq!((found.count, found.parted, found.parted_share()), (5, 2, 0.4));
+    // Nine channels are left, with the sum 1 + 2 + 3 - 4 and the squares 1 + 4 + 9 + 16.
+    assert!((found.bias - 2.0 / 9.0 * unit).abs() < 1e-15, "{found:?}");
+    assert!((found.rms - (30.0_f64 / 9.0).sqrt() * unit).abs() < 1e-15, "{found:?}");
+    // Too large a difference of either kind is a reason.
+    let reasons = |rms: f64, parted: u64| {
+        let paired = PairedSamples { count: 10_000, parted, rms, bias: 0.0 };
+        compare(&noisy(1, 0.0), &noisy(1, 0.0), Some(paired)).reasons
+    };
+    assert!(reasons(4e-5, 9).is_empty());
+    for (found, word) in [(reasons(6e-5, 5), "on the same path"), (reasons(1e-5, 11), "a different path")] {
+        assert!(found.len() == 1 && found[0].contains(word), "{found:?}");
+    }
+}
+
+#[test]
+fn a_heat_map_shows_differences_and_frames_the_worst_blocks() {
+    let nan = f64::NAN;
+    // In turn, in the middle of a block: a difference, an eighth darker than the end of the format, brighter than it, no
+    // number beside it, no number in both.
+    let at = |values: [f64; 5]| {
+        move |pixel: u32| match (pixel % 80, pixel / 80) {
+            (x, 3) if x % 8 == 3 && x < 40 => values[(x / 8) as usize],
+            _ => 0.5,
+        }
+    };
+    let a = floats(at([0.51, 0.75, 5.0, nan, nan]));
+    let b = floats(at([0.5, nan, nan, nan, 0.5]));
+    let b = Picture { steps: Some(vec![[0.01; 3]; PIXELS]), limit: 0.875, ..b };
+    assert_eq!(Relation::of_all(&a, &b)[3 * 80 + 3], [Relation::Difference(0.5 - 0.51); 3]);
+    // Of six blocks in the upper row that differ, the fifth differs least.
+    let off = [0.0, 6.0, 1.0, 5.0, -4.0, 0.5, 3.0, 2.0, 0.0, 0.0];
+    let values: Vec<[f64; 3]> =
+        (0..PIXELS).map(|pixel| [if pixel < 640 { off[pixel % 80 / 8] } else { 0.0 }; 3]).collect();
+    let (noise, steps) = (Noise::Spread, None);
+    let test =
+        BlockTest::of(&Differences { width: 80, values: &values, noise, steps, tolerance: 1.0, rare: 0.0 });
+    let mut png = Cursor::new(Vec::new());
+    heat_map::write(&a, &b, &test, &mut png).unwrap();
+    let map = image::load_from_memory(png.get_ref()).unwrap().to_rgb8();
+    let of = |difference: f64| HeatScale::ERROR.colour(difference);
+    let colours = [3, 11, 19, 27, 35].map(|x| map.get_pixel(x, 3).0);
+    assert_eq!(colours, [of(0.01), of(0.125), of(0.0), of(f64::INFINITY), of(f64::INFINITY)]);
+    for (x, y, colour) in map.enumerate_pixels() {
+        let is_edge = [0, 7].contains(&(x % 8)) || [0, 7].contains(&y);
+        let is_framed = is_edge && y < 8 && [1, 3, 4, 6, 7].contains(&(x / 8));
+        assert_eq!(colour.0 == [0, 220, 255], is_framed, "{x},{y}");
+    }
+}
+
+fn one_thread() -> BackendChoice {
+    BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() })
+}
+
+fn backend() -> CompareSide {
+    CompareSide::Backend { name: "cpu".to_owned(), choice: one_thread() }
+}
+
+/// Three spheres at 8x6 with 5 samples per pixel.
+fn small() -> Recipe {
+    let mut recipe = Recipe::find("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (8, 6, 5);
+    recipe
+}
+
+fn options_of(first: CompareSide, second: CompareSide) -> CompareOptions {
+    let encoding = Encoding::Book(Transfer::Gamma2);
+    let (recipe, sides) = (small(), [first, second]);
+    CompareOptions { sides, recipe, samples: None, encoding, heat_map: None, json: None }
+}
+
+/// The picture of a film of `recipe` that holds the samples of `ranges`.
+fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
+    let mut film = recipe.job().unwrap().new_film();
+    ranges.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
+    Picture::of_rendered("film.exr".to_owned(), recipe.clone(), Arc::new(film)).unwrap()
+}
+
+#[test]
+fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_recipe_says() {
+    let recipe = small();
+    let mut seeded = recipe.clone();
+    seeded.settings.seed = 7;
+    let [film, other] = [&recipe, &seeded].map(|recipe| rendered(recipe, &[4..6, 8..11]));
+    let picture = Picture { film: None, job: None, ..film.clone() };
+    for (read, asked, expected) in [
+        (&film, None, "4..6, 8..11"),
+        (&film, Some(5), "0..5"),
+        (&other, None, "0..5"),
+        (&other, Some(9), "0..9"),
+        (&picture, None, "0..3"),
+        (&picture, Some(9), "0..9"),
+    ] {
+        // The recipe's own size and samples are not those of the file.
+        let mut recipe = recipe.clone();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (40, 30, 3);
+        let options = CompareOptions { recipe, samples: asked, ..options_of(backend(), backend()) };
+        let mut rendering = Rendering::start(&one_thread(), "cpu").unwrap();
+        let found = beside(&options, read, &mut rendering).unwrap();
+        assert_eq!((found.width, found.height, found.name.as_str()), (8, 6, "cpu"));
+        assert_eq!(found.film.unwrap().samples().to_string(), expected, "{asked:?}");
+    }
+}
+
+#[test]
+fn a_backend_and_a_file_keep_their_order() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    let recipe = small();
+    let mut film = recipe.job().unwrap().new_film();
+    film.halves_mut()[0].iter_mut().for_each(|sum| sum.add(fixed_point([50.0; 3]).unwrap()));
+    film.record(0..2, 0).unwrap();
+    checkpoint::save(&path, &film, &Description::new(&to_picture_toml(&recipe))).unwrap();
+    let file = || CompareSide::File(path.clone());
+    for (options, is_file_first) in
+        [(options_of(file(), backend()), true), (options_of(backend(), file()), false)]
+    {
+        let (found, paired) = sides(&options).unwrap();
+        // The film in the file is far brighter than any picture of the scene.
+        assert_eq!(compare(&found[0], &found[1], None).bias < 0.0, is_file_first);
+        assert_eq!((found[0].name == "cpu", found[1].name == "cpu"), (!is_file_first, is_file_first));
+        assert!(paired.is_none());
+    }
+}
+
+#[test]
+fn two_backends_render_the_same_samples() {
+    for (asked, count) in [(None, 5), (Some(7), 7)] {
+        let options = CompareOptions { samples: asked, ..options_of(backend(), backend()) };
+        let (found, paired) = sides(&options).unwrap();
+        for side in &found {
+            assert_eq!(side.film.as_ref().unwrap().samples().to_string(), format!("0..{count}"));
+        }
+        assert_eq!(found.each_ref().map(|side| side.name.as_str()), ["cpu (first)", "cpu (second)"]);
+        assert_eq!(paired.map(|paired| (paired.count, paired.parted)), Some((count * 8 * 6, 0)));
+    }
+}
+
+#[test]
+fn jobs_are_noted_if_they_explain_the_result() {
+    type Change = fn(&mut Recipe);
+    let film = |change: Change, samples: Range<u64>| {
+        let mut recipe = small();
+        change(&mut recipe);
+        rendered(&recipe, &[samples])
+    };
+    let note = |second: Picture| note_on_jobs(&film(|_| {}, 0..4), &second).map(|note| &note[..6]);
+    assert_eq!(note(film(|_| {}, 0..4)), Some("both h"));
+    assert_eq!(note(film(|_| {}, 4..8)), None);
+    // Only the job counts, not how many samples the recipe asks for.
+    assert_eq!(note(film(|recipe| recipe.samples_per_pixel = 9, 0..4)), Some("both h"));
+    let changes: [(Change, Option<&str>); 4] = [
+        (|recipe| recipe.settings.seed = 1, None),
+        (|recipe| recipe.camera.vfov_degrees = 40.0, Some("the re")),
+        (|recipe| recipe.rules.diffuse = Diffuse::Hemisphere, Some("the re")),
+        (|recipe| recipe.scene = Recipe::find("metals").unwrap().scene, Some("the re")),
+    ];
+    for (change, expected) in changes {
+        assert_eq!(note(film(change, 0..4)), expected);
+    }
+    assert_eq!(note(Picture { job: None, ..film(|recipe| recipe.camera.vfov_degrees = 40.0, 0..4) }), None);
+}

@@ -1,0 +1,438 @@
+//! Decides whether two pictures are the same except for noise and rounding.
+
+use super::paired::{PARTED_SHARE, PairedSamples, ROUNDING_RMS};
+use crate::film::{Film, PixelSum};
+use crate::pictures::Picture;
+use crate::pictures::answer::Verdict;
+use crate::statistics::blocks::{Block, BlockTest, CHANCE, Differences, Noise, SUM_DEVIATIONS};
+use crate::statistics::normal::largest_of;
+use serde::Serialize;
+
+/// The largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.
+pub const ROUNDING_BIAS: f64 = 2e-6;
+
+/// The share of pixels that may differ where all others are equal: as many as rounding may send along a different path.
+const FEW_PIXELS: f64 = 1e-3;
+
+/// A larger difference is not that of a few paths among many.
+const LOUD: f64 = 0.1;
+
+/// How the noise of the difference was estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Evidence {
+    /// From the halves of both films.
+    Halves,
+    /// From the spread of the differences within each block.
+    Spread,
+}
+
+/// How two pictures differ, and how much of the difference is noise. Values are linear RGB.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Whether all pixels are equal to the bit; any NaN is equal to any other.
+    pub is_same: bool,
+    /// Root mean square difference over pixels and channels.
+    pub rms: f64,
+    /// Mean difference, second less first.
+    pub bias: f64,
+    /// Standard deviation of the bias from noise and rounding; `None` if the noise is not known.
+    pub bias_deviation: Option<f64>,
+    /// Root mean square noise of both pictures together, as if they shared none; `None` if it is not known.
+    pub noise: Option<f64>,
+    pub evidence: Evidence,
+    /// Channels that could not be compared, over all pixels.
+    pub left_out: usize,
+    pub non_finite: NonFinite,
+    #[serde(skip)]
+    pub test: BlockTest,
+    /// The comparison sample by sample, if backends rendered both.
+    #[serde(rename = "paired_samples")]
+    pub paired: Option<PairedSamples>,
+    /// Why the pictures are not equal; empty if they are.
+    pub reasons: Vec<String>,
+    /// What to know when reading the figures.
+    pub notes: Vec<String>,
+    /// Why nothing can be said, if there is no reason to call the pictures different.
+    pub unclear: Option<String>,
+}
+
+impl Comparison {
+    pub fn verdict(&self) -> Verdict {
+        match (self.reasons.is_empty(), &self.unclear) {
+            (false, _) => Verdict::Different,
+            (true, Some(_)) => Verdict::Unclear,
+            (true, None) => Verdict::Same,
+        }
+    }
+
+    /// Whether the pictures differ only by noise and rounding.
+    pub fn is_equal(&self) -> bool {
+        self.verdict() == Verdict::Same
+    }
+
+    /// The difference divided by its noise: 1 for equal pictures that share no random numbers. Measured over pixels if
+    /// the noise of both pictures is known, else over blocks.
+    pub fn times_noise(&self) -> f64 {
+        match self.noise {
+            Some(noise) if noise > 0.0 => self.rms / noise,
+            Some(_) if self.rms == 0.0 => 0.0,
+            Some(_) => f64::INFINITY,
+            None => self.test.ratio(),
+        }
+    }
+}
+
+/// Compares two pictures of one size.
+pub fn compare(a: &Picture, b: &Picture, paired: Option<PairedSamples>) -> Comparison {
+    let relations = Relation::of_all(a, b);
+    let values: Vec<[f64; 3]> = relations.iter().map(|pixel| pixel.map(Relation::difference)).collect();
+    let noise = a.film.as_deref().zip(b.film.as_deref()).and_then(|(a, b)| HalvesNoise::of(a, b));
+    let steps = steps_of_both(a, b);
+    let differences = Differences {
+        width: a.width,
+        values: &values,
+        noise: noise.as_ref().map_or(Noise::Spread, |noise| Noise::Variances(&noise.variances)),
+        steps: steps.as_deref(),
+        tolerance: ROUNDING_BIAS,
+        rare: noise.as_ref().map_or(0.0, |noise| noise.rare),
+    };
+    let mut test = BlockTest::of(&differences);
+    let (mut clipped, mut few) = (0, None);
+    if noise.is_none() {
+        let is_moved = |pixel: usize, channel: usize| {
+            let step = steps.as_ref().map_or(0.0, |steps| steps[pixel][channel]);
+            values[pixel][channel].abs() > rounding(step)
+        };
+        narrow(&mut test, a.width, is_moved);
+        // Two backends compare sample by sample, which tells paths apart.
+        few = paired.is_none().then(|| few_pixels(&values, is_moved)).flatten();
+        clipped = add_clipped(&mut test, a, b, &differences);
+    }
+    let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
+    let count = finite().count();
+    let mean = |sum: f64| sum / count.max(1) as f64;
+    let mut comparison = Comparison {
+        // An integer that is not known is the largest of its format.
+        is_same: (count > 0 || a.steps.is_some()) && is_same(a, b),
+        rms: mean(finite().map(|x| x * x).sum()).sqrt(),
+        bias: mean(finite().sum()),
+        bias_deviation: noise.as_ref().map(|noise| noise.of_mean.hypot(ROUNDING_BIAS)),
+        evidence: if noise.is_some() { Evidence::Halves } else { Evidence::Spread },
+        noise: noise.map(|noise| noise.of_both),
+        left_out: 3 * values.len() - count,
+        non_finite: NonFinite::of(&relations, a.width),
+        test,
+        paired,
+        reasons: Vec::new(),
+        notes: Vec::new(),
+        unclear: None,
+    };
+    if clipped > 0 {
+        comparison.reasons.push(format!(
+            "{clipped} blocks are at the largest value of an integer format in one picture, but are darker in the other"
+        ));
+    }
+    judge(&mut comparison);
+    note(&mut comparison);
+    if !comparison.is_same {
+        doubt(&mut comparison, few, [a.width as usize, values.len()]);
+    }
+    comparison
+}
+
+/// Whether two pictures hold the same bits in the same format; any NaN is equal to any other.
+fn is_same(a: &Picture, b: &Picture) -> bool {
+    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+    let all_same = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().flatten().zip(b.iter().flatten()).all(same);
+    let has_same_steps = match (&a.steps, &b.steps) {
+        (Some(a), Some(b)) => all_same(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    // The largest value has no step.
+    has_same_steps && a.limit.to_bits() == b.limit.to_bits() && all_same(&a.pixels, &b.pixels)
+}
+
+/// The quantisation steps of both pictures together, if either has steps. The largest value has none: it is a bound.
+fn steps_of_both(a: &Picture, b: &Picture) -> Option<Vec<[f64; 3]>> {
+    let step = |picture: &Picture, pixel: usize, channel: usize| {
+        let step = picture.steps.as_ref().map_or(0.0, |steps| steps[pixel][channel]);
+        if step.is_finite() { step } else { 0.0 }
+    };
+    let of = |pixel| [0, 1, 2].map(|channel| step(a, pixel, channel).hypot(step(b, pixel, channel)));
+    (a.steps.is_some() || b.steps.is_some()).then(|| (0..a.pixels.len()).map(of).collect())
+}
+
+/// The largest difference that rounding explains, if `step` is the root of the sum of both squared quantisation errors.
+fn rounding(step: f64) -> f64 {
+    // The sum of two numbers is at most the root of two times the root of the sum of their squares. Neighbouring bytes
+    // reach this limit, so it is widened by the rounding of this arithmetic.
+    std::f64::consts::SQRT_2 * step * (1.0 + 1e-9) + ROUNDING_BIAS
+}
+
+/// Narrows the limit of a test without known noise: a block in which all differences are within rounding cannot reach it,
+/// so only the others count as tries.
+fn narrow(test: &mut BlockTest, width: u32, is_moved: impl Fn(usize, usize) -> bool) {
+    let moved = |block: &Block, channel: usize| {
+        let mut pixels = block.y.clone().flat_map(|y| block.x.clone().map(move |x| (y * width + x) as usize));
+        block.is_known(channel) && pixels.any(|pixel| is_moved(pixel, channel))
+    };
+    let tries = test.blocks.iter().map(|block| (0..3).filter(|channel| moved(block, *channel)).count()).sum();
+    test.largest_limit = largest_of(tries, CHANCE);
+}
+
+/// Adds the blocks of which all pixels are at the largest value of an integer format in one picture and none in the
+/// other: there, the difference to that value is the least that it can be. Returns their number.
+fn add_clipped(test: &mut BlockTest, a: &Picture, b: &Picture, differences: &Differences) -> usize {
+    let limit = a.limit.min(b.limit);
+    if limit.is_infinite() {
+        return 0;
+    }
+    let is_top = |picture: &Picture, pixel, channel| picture.value(pixel, channel).is_none_or(|x| x >= limit);
+    let least = |pixel: usize, channel: usize| match [a, b].map(|picture| is_top(picture, pixel, channel)) {
+        [true, false] => b.pixels[pixel][channel] - limit,
+        [false, true] => limit - a.pixels[pixel][channel],
+        _ => f64::NAN,
+    };
+    let values: Vec<[f64; 3]> =
+        (0..a.pixels.len()).map(|pixel| [0, 1, 2].map(|channel| least(pixel, channel))).collect();
+    let bounds = BlockTest::of(&Differences { values: &values, ..differences.clone() });
+    let mut count = 0;
+    for (block, bound) in test.blocks.iter_mut().zip(&bounds.blocks) {
+        let proven: Vec<usize> = (0..3).filter(|c| bound.z[*c].abs() > bounds.largest_limit).collect();
+        count += usize::from(!proven.is_empty());
+        for channel in proven {
+            (block.z[channel], block.means[channel]) = (bound.z[channel], bound.means[channel]);
+            test.largest = test.largest.max(bound.z[channel].abs());
+        }
+    }
+    count
+}
+
+/// The noise of two films' difference, estimated from their halves.
+struct HalvesNoise {
+    /// Variance of each pixel's difference. Noise that the films share cancels.
+    variances: Vec<[f64; 3]>,
+    /// Root mean square noise of both films, as if they shared none.
+    of_both: f64,
+    /// Standard deviation of the mean difference over all pixels and channels.
+    of_mean: f64,
+    /// What two samples of radiance 1, one in each half, add to a pixel.
+    rare: f64,
+}
+
+impl HalvesNoise {
+    /// `None` unless both films have samples in two halves.
+    fn of(a: &Film, b: &Film) -> Option<Self> {
+        let (of_a, of_b) = (half_differences(a)?, half_differences(b)?);
+        let count = of_a.len();
+        let both: f64 = of_a.iter().chain(&of_b).flatten().map(|x| x * x).sum();
+        let deviations =
+            of_a.iter().zip(&of_b).map(|(a, b)| [0, 1, 2].map(|channel| b[channel] - a[channel]));
+        // Channels of a pixel share their noise.
+        let of_mean: f64 = deviations.clone().map(|pixel| (pixel.iter().sum::<f64>() / 3.0).powi(2)).sum();
+        // Both halves may hold the same rare path, which their difference then does not show.
+        let pair = |film: &Film| std::f64::consts::SQRT_2 / film.sample_count() as f64;
+        let rare = pair(a).hypot(pair(b));
+        Some(HalvesNoise {
+            variances: deviations.map(|pixel| pixel.map(|x| x * x)).collect(),
+            of_both: (both / (3 * count) as f64).sqrt(),
+            of_mean: of_mean.sqrt().hypot(rare) / count as f64,
+            rare,
+        })
+    }
+}
+
+/// Half the difference of the halves' means of each pixel. Its square estimates the variance of their mean.
+fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
+    let [first, second] = film.halves() else { return None };
+    let [count_a, count_b] = [0, 1].map(|half| film.half_sample_count(half) as f64);
+    let half = |(a, b): (&PixelSum, &PixelSum)| {
+        let (a, b) = (a.radiance(), b.radiance());
+        [0, 1, 2].map(|channel| 0.5 * (a[channel] / count_a - b[channel] / count_b))
+    };
+    (count_a > 0.0 && count_b > 0.0).then(|| first.iter().zip(second).map(half).collect())
+}
+
+/// How two values of a channel relate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Relation {
+    /// The second less the first.
+    Difference(f64),
+    /// NaN in both pictures, or infinite with the same sign.
+    Alike,
+    /// Finite in only one picture, or NaN in one and infinite in the other, or infinite with different signs.
+    Apart,
+    /// At or beyond the largest value of an integer format, which stands for any larger one.
+    Unknown,
+}
+
+impl Relation {
+    pub(super) fn of_all(a: &Picture, b: &Picture) -> Vec<[Relation; 3]> {
+        let limit = a.limit.min(b.limit);
+        let of = |a: Option<f64>, b: Option<f64>| match (a, b) {
+            (Some(a), Some(b)) if a < limit && b < limit && a.is_finite() && b.is_finite() => {
+                Relation::Difference(b - a)
+            }
+            (Some(a), Some(b)) if a.is_finite() && b.is_finite() => Relation::Unknown,
+            (Some(a), Some(b)) if a == b || (a.is_nan() && b.is_nan()) => Relation::Alike,
+            (Some(_), Some(_)) => Relation::Apart,
+            (Some(x), None) | (None, Some(x)) if x.is_nan() || x == f64::NEG_INFINITY => Relation::Apart,
+            _ => Relation::Unknown,
+        };
+        let pixel = |pixel| [0, 1, 2].map(|channel| of(a.value(pixel, channel), b.value(pixel, channel)));
+        (0..a.pixels.len()).map(pixel).collect()
+    }
+
+    fn difference(self) -> f64 {
+        if let Relation::Difference(difference) = self { difference } else { f64::NAN }
+    }
+}
+
+/// Channels that are NaN or infinite in a picture of floats.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct NonFinite {
+    /// Pixels with a channel that is [`Relation::Apart`].
+    pub differing_pixels: usize,
+    /// Channels that are [`Relation::Apart`]. These are differences.
+    pub differing: usize,
+    /// Column and row of the first differing pixel.
+    pub first: Option<[u32; 2]>,
+    /// Channels that are [`Relation::Alike`]. These are equal, and left out of all means.
+    pub alike: usize,
+}
+
+impl NonFinite {
+    fn of(relations: &[[Relation; 3]], width: u32) -> Self {
+        let count = |relation| relations.iter().flatten().filter(|found| **found == relation).count();
+        let mut apart = (0..).zip(relations).filter(|(_, pixel)| pixel.contains(&Relation::Apart));
+        let first = apart.next().map(|(pixel, _): (u32, _)| [pixel % width.max(1), pixel / width.max(1)]);
+        NonFinite {
+            differing_pixels: usize::from(first.is_some()) + apart.count(),
+            differing: count(Relation::Apart),
+            first,
+            alike: count(Relation::Alike),
+        }
+    }
+}
+
+/// The number of pixels that differ by more than rounding, the largest of them and its difference, if they are few in
+/// pictures that are equal otherwise, so that their noise is zero.
+fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> Option<(usize, usize, f64)> {
+    let by = |pixel: usize| {
+        let moved = (0..3).filter(|channel| is_moved(pixel, *channel));
+        moved.map(|channel| values[pixel][channel].abs()).fold(0.0, f64::max)
+    };
+    let moved = (0..values.len()).map(|pixel| (pixel, by(pixel))).filter(|(_, by)| *by > 0.0);
+    let count = moved.clone().count();
+    let (pixel, largest) = moved.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (count as f64 <= (FEW_PIXELS * values.len() as f64).max(1.0)).then_some((count, pixel, largest))
+}
+
+/// Adds the reasons to call the pictures different.
+fn judge(comparison: &mut Comparison) {
+    let Comparison { test, non_finite, .. } = comparison;
+    let mut reason = |is_so: bool, text: String| comparison.reasons.extend(is_so.then_some(text));
+    if let Some([column, row]) = non_finite.first {
+        let NonFinite { differing, differing_pixels, .. } = non_finite;
+        reason(
+            true,
+            format!(
+                "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
+                 {column},{row}: find out what made them"
+            ),
+        );
+    }
+    let excess = test.largest_excess();
+    reason(
+        excess > SUM_DEVIATIONS,
+        format!(
+            "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
+             {SUM_DEVIATIONS:.0}"
+        ),
+    );
+    let (largest, limit) = (test.largest, test.largest_limit);
+    reason(
+        largest > limit,
+        format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}"),
+    );
+    let off = comparison.bias_deviation.map_or(0.0, |deviation| comparison.bias.abs() / deviation);
+    reason(
+        off > SUM_DEVIATIONS,
+        format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"),
+    );
+    let paired = comparison.paired.unwrap_or_default();
+    reason(
+        paired.rms > ROUNDING_RMS,
+        format!(
+            "samples on the same path differ by {:.1e} RMS, but rounding causes at most {ROUNDING_RMS:.0e}",
+            paired.rms
+        ),
+    );
+    let share = paired.parted_share();
+    reason(
+        share > PARTED_SHARE,
+        format!(
+            "a share of {share:.1e} of the samples takes a different path, but rounding causes at most {PARTED_SHARE:.0e}"
+        ),
+    );
+}
+
+/// Notes what to know when reading the figures.
+fn note(comparison: &mut Comparison) {
+    let Comparison { test, notes, is_same, left_out, non_finite, .. } = comparison;
+    let mut note = |is_so: bool, text: &str| notes.extend(is_so.then(|| text.to_owned()));
+    note(
+        comparison.evidence == Evidence::Spread && !*is_same,
+        "the noise is estimated from the spread of the differences within each block, so differences finer than 8 pixels \
+         pass for noise; films with two halves (--checkpoint) give a sharper comparison",
+    );
+    note(
+        test.is_too_near() && comparison.paired.is_none(),
+        "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern finer \
+         than 8 pixels, or their halves do not belong together",
+    );
+    let alike = non_finite.alike;
+    note(
+        alike > 0,
+        &format!(
+            "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
+        ),
+    );
+    note(
+        *left_out > 0,
+        &format!(
+            "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the largest \
+             value of an integer format"
+        ),
+    );
+}
+
+/// Withholds the verdict if too little can be judged.
+fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, pixels]: [usize; 2]) {
+    let known: usize = comparison.test.counts.iter().sum();
+    let all = 3 * comparison.test.blocks.len();
+    let mut unclear = (2 * known < all).then(|| {
+        format!(
+            "only {known} of {all} channels of blocks can be judged: the others are NaN, infinite, or at the largest \
+             value of an integer format; compare films, or render both with a darker sky"
+        )
+    });
+    if let Some((count, pixel, largest)) = few {
+        let (column, row) = (pixel % width, pixel / width);
+        let text = format!(
+            "only {count} of {pixels} pixels differ by more than rounding, most by {largest:.1e} at {column},{row}"
+        );
+        if largest > LOUD {
+            unclear.get_or_insert_with(|| {
+                format!(
+                    "{text}: too few to tell noise from a fault; look at them with --heat-map, or compare films with two \
+                     halves"
+                )
+            });
+        } else {
+            comparison.notes.push(text);
+        }
+    }
+    comparison.unclear = unclear.filter(|_| comparison.reasons.is_empty());
+}

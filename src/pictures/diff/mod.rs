@@ -1,0 +1,124 @@
+//! `weekender diff`: shows a path as two backends trace it, side by side, and where the paths part.
+
+mod paths;
+mod side;
+mod text;
+
+pub use paths::{Difference, Pair, PathComparison, Quantity};
+
+use super::answer::{Verdict, check_outputs, deliver, lines};
+use crate::cli::{DiffOptions, PathChoice};
+use crate::failure::Failure;
+use crate::render::{RenderError, RenderJob};
+use anyhow::Result;
+use paths::radiance_amount;
+use serde_json::json;
+use side::Side;
+use std::process::ExitCode;
+
+/// Compares a path and prints it. The exit code is 0 if the sides agree within the tolerance, otherwise 1.
+///
+/// # Errors
+/// [`Failure::Input`], even if a backend fails on the way, because exit code 1 means that the paths differ.
+pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
+    compared(options).map_err(Failure::Input)
+}
+
+fn compared(options: &DiffOptions) -> Result<ExitCode> {
+    let DiffOptions { job, tolerance, json, .. } = options;
+    check_outputs(json.as_ref(), None)?;
+    let [a, b] = &options.sides;
+    let mut sides = [Side::open(a)?, Side::open(b)?];
+    if sides[0].name == sides[1].name {
+        sides[0].name.push_str(" (left)");
+        sides[1].name.push_str(" (right)");
+    }
+    let found = match options.path {
+        PathChoice::Given { pixel, sample } => Found { pixel, sample, searched: 0, differing: 0 },
+        PathChoice::Find { samples } => find(job, &mut sides, samples, *tolerance)?,
+    };
+    let mut record = |side: usize| sides[side].record(job, found.pixel, found.sample);
+    let paths = [&record(0)?, &record(1)?];
+    let names = [sides[0].name.as_str(), sides[1].name.as_str()];
+    let pair = Pair { job, names, paths, tolerance: *tolerance };
+    let comparison = pair.compare();
+
+    let text = opening(options, &sides, found) + "\n" + &text::text(&pair, &comparison);
+    let side = |side: usize| json!({ "name": names[side], "about": sides[side].about, "path": paths[side] });
+    let figures = json!({
+        "scene": options.scene,
+        "width": job.settings().width,
+        "height": job.settings().height,
+        "pixel": found.pixel,
+        "sample": found.sample,
+        "tolerance": tolerance,
+        "sides": [side(0), side(1)],
+        "first": comparison.first,
+        "parting": comparison.parting,
+        "largest": comparison.largest,
+        "radiance": comparison.radiance,
+        "verdict": pair.verdict(&comparison),
+    });
+    deliver(json.as_ref(), &text, 2, &figures)?;
+    let verdict = if comparison.first.is_some() { Verdict::Different } else { Verdict::Same };
+    Ok(verdict.exit_code())
+}
+
+/// The lines that say what is compared.
+fn opening(options: &DiffOptions, sides: &[Side; 2], found: Found) -> String {
+    let settings = options.job.settings();
+    let (width, height, sampler) = (settings.width, settings.height, settings.sampler.name());
+    let Found { pixel: [x, y], sample, searched, differing } = found;
+    let scene = &options.scene;
+    let depth = settings.max_depth;
+    let mut text = vec![(
+        "scene",
+        format!("{scene}, {width}x{height}, depth {depth}, {sampler}, seed {}", settings.seed),
+    )];
+    if searched > 0 {
+        let all = u64::from(width) * u64::from(height) * searched;
+        let tolerance = options.tolerance;
+        text.push(("search", format!("{differing} of {all} samples differ by more than {tolerance:.0e}")));
+        text.push(("again", format!("--size {width}x{height} --pixel {x},{y} --sample {sample}")));
+    }
+    text.push(("path", format!("pixel {x},{y}, sample {sample}")));
+    text.push(("left", sides[0].about.clone()));
+    text.push(("right", sides[1].about.clone()));
+    lines(text)
+}
+
+/// The path that is compared, and the result of the search for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Found {
+    /// Column and row.
+    pixel: [u32; 2],
+    sample: u64,
+    /// Number of samples per pixel that were searched.
+    searched: u64,
+    /// Number of samples, over all pixels, that differ by more than the tolerance.
+    differing: u64,
+}
+
+/// Searches samples `0 .. samples` of all pixels for the one whose radiance differs most.
+fn find(job: &RenderJob, sides: &mut [Side; 2], samples: u64, tolerance: f64) -> Result<Found, RenderError> {
+    let mut found = Found { pixel: [0, 0], sample: 0, searched: samples, differing: 0 };
+    let mut most = 0.0;
+    for sample in 0..samples {
+        let [a, b] = sides;
+        let films = [a.film(job, sample)?, b.film(job, sample)?];
+        let width = films[0].width() as usize;
+        for pixel in 0..width * films[0].height() as usize {
+            let [a, b] = [0, 1].map(|side| films[side].pixel_sum(pixel).radiance());
+            found.differing += u64::from(radiance_amount(a, b) > tolerance);
+            let by = (0..3).map(|channel| (a[channel] - b[channel]).abs()).fold(0.0, f64::max);
+            if by > most {
+                most = by;
+                (found.pixel, found.sample) = ([(pixel % width) as u32, (pixel / width) as u32], sample);
+            }
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,299 @@
+//! Compares two records of the same path: where they differ, in which quantity, and by how much.
+
+use crate::console::printable;
+use crate::film::FIXED_POINT_SCALE;
+use crate::record::{PathRecord, RecordedRay};
+use crate::render::RenderJob;
+use crate::scene::Look;
+use crate::stages::Shading;
+use glam::DVec3;
+use serde::Serialize;
+use std::borrow::Cow;
+
+/// A ray that misses a sphere by less than this fraction of the radius grazes it.
+const GRAZING_SHARE: f64 = 0.01;
+
+/// A quantity of a ray or of the whole path, in the order in which they are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Quantity {
+    Origin,
+    Direction,
+    /// Throughput of the path before the ray hits anything.
+    Throughput,
+    /// The sphere that the ray hits, or the sky.
+    Object,
+    /// Distance to the hit.
+    Distance,
+    /// How the path continues, or why it ends.
+    Departure,
+    /// Radiance of the sample.
+    Radiance,
+}
+
+/// A difference above the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Index of the ray among the path's rays, 0 for the camera's.
+    pub ray: usize,
+    pub quantity: Quantity,
+    /// The difference relative to the larger value; infinite if the quantity has no magnitude.
+    pub amount: f64,
+}
+
+/// How two paths differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PathComparison {
+    /// The first difference above the tolerance.
+    pub first: Option<Difference>,
+    /// The first difference after which the paths are not the same. Their numbers may drift apart before that.
+    pub parting: Option<Difference>,
+    /// Largest difference of any quantity before the paths part.
+    pub largest: f64,
+    /// Difference of the radiances, relative to the larger one.
+    pub radiance: f64,
+}
+
+/// A quantity of a ray on both sides.
+pub struct Row {
+    pub quantity: Quantity,
+    pub label: &'static str,
+    /// `None` where a side has none.
+    pub values: [Option<String>; 2],
+    /// Difference relative to the larger value.
+    pub amount: f64,
+}
+
+/// Two records of the same path, with what is needed to compare and describe them.
+#[derive(Clone, Copy)]
+pub struct Pair<'a> {
+    /// The job that was rendered.
+    pub job: &'a RenderJob,
+    /// Short names of the sides.
+    pub names: [&'a str; 2],
+    pub paths: [&'a PathRecord; 2],
+    /// Largest difference that does not count.
+    pub tolerance: f64,
+}
+
+impl Pair<'_> {
+    /// Number of rays of the longer path.
+    pub fn rays(&self) -> usize {
+        self.paths.iter().map(|path| path.rays.len()).max().unwrap_or(0)
+    }
+
+    pub fn compare(&self) -> PathComparison {
+        let [a, b] = self.paths;
+        let radiance = radiance_amount(a.radiance, b.radiance);
+        let mut comparison = PathComparison { first: None, parting: None, largest: 0.0, radiance };
+        for (ray, row) in (0..self.rays()).flat_map(|ray| self.rows(ray).map(|row| (ray, row))) {
+            let difference = Difference { ray, quantity: row.quantity, amount: row.amount };
+            if row.amount > self.tolerance {
+                comparison.first.get_or_insert(difference);
+            }
+            if row.amount.is_infinite() {
+                comparison.parting = Some(difference);
+                break;
+            }
+            comparison.largest = comparison.largest.max(row.amount);
+        }
+        if radiance > self.tolerance {
+            let ray = self.rays().saturating_sub(1);
+            let difference = Difference { ray, quantity: Quantity::Radiance, amount: radiance };
+            comparison.first.get_or_insert(difference);
+        }
+        comparison
+    }
+
+    /// The quantities of the rays with this index.
+    pub fn rows(&self, index: usize) -> [Row; 6] {
+        let rays = self.paths.map(|path| path.rays.get(index));
+        // If only one side has a ray, the paths have parted.
+        let amount = |of: &dyn Fn(&RecordedRay, &RecordedRay) -> f64| match rays {
+            [Some(a), Some(b)] => of(a, b),
+            _ => f64::INFINITY,
+        };
+        let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
+        let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
+        let departures = self.paths.map(|path| self.departure(path, index));
+        let row = |quantity, label, values, amount| Row { quantity, label, values, amount };
+        // Positions are only as exact as the largest coordinate that the path has passed through.
+        let length = |ray: &RecordedRay| DVec3::from(ray.origin).length();
+        let extent = self.paths[0].rays.iter().take(index + 1).map(length).fold(0.0, f64::max);
+        let origins = |a: &RecordedRay, b: &RecordedRay| {
+            share((DVec3::from(a.origin) - DVec3::from(b.origin)).length(), extent.max(length(b)))
+        };
+        let directions =
+            |a: &RecordedRay, b: &RecordedRay| (DVec3::from(a.direction) - DVec3::from(b.direction)).length();
+        let throughputs = |a: &RecordedRay, b: &RecordedRay| vector_share(a.throughput, b.throughput, 0.0);
+        let spheres = |a: &RecordedRay, b: &RecordedRay| {
+            apart(a.hit.map(|hit| hit.sphere) != b.hit.map(|hit| hit.sphere))
+        };
+        let distances = |a: &RecordedRay, b: &RecordedRay| match (a.hit, b.hit) {
+            (Some(a), Some(b)) => {
+                share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
+            }
+            _ => 0.0,
+        };
+        let meets = rays.map(|ray| ray.map(|ray| self.numbered(ray)));
+        let reaches = rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()));
+        let continues = departures.map(|word| word.map(str::to_owned));
+        [
+            row(Quantity::Origin, "from", vectors(|ray| ray.origin), amount(&origins)),
+            row(Quantity::Direction, "direction", vectors(|ray| ray.direction), amount(&directions)),
+            row(Quantity::Throughput, "throughput", vectors(|ray| ray.throughput), amount(&throughputs)),
+            row(Quantity::Object, "meets", meets, amount(&spheres)),
+            row(Quantity::Distance, "distance", reaches, amount(&distances)),
+            row(
+                Quantity::Departure,
+                "then",
+                continues,
+                amount(&|_, _| apart(departures[0] != departures[1])),
+            ),
+        ]
+    }
+
+    /// What happens to a path after the ray with this index, in a word that can follow "is"; `None` if that ray hits no
+    /// sphere.
+    fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
+        let ray = path.rays.get(index)?;
+        let sphere = self.job.scene().spheres.get(ray.hit?.sphere)?;
+        let look = self.job.scene().material_of(sphere).look();
+        let is_last = index + 1 >= self.job.settings().max_depth as usize;
+        Some(match (path.rays.get(index + 1), look) {
+            (Some(next), Look::Glass { .. }) => {
+                let outward = DVec3::from(next.origin) - sphere.center;
+                let side = |ray: &RecordedRay| DVec3::from(ray.direction).dot(outward) > 0.0;
+                if side(ray) == side(next) { "refracted" } else { "reflected" }
+            }
+            (Some(_), Look::Matte) => "scattered",
+            (Some(_), Look::Mirror { .. }) => "reflected",
+            // The stage follows no further rays.
+            (None, _) if self.job.rules().shading != Shading::Path => "shown",
+            (None, _) if is_last => "cut off",
+            // The fuzzy reflection went into the surface.
+            (None, Look::Mirror { .. }) => "absorbed",
+            (None, _) => "shown",
+        })
+    }
+
+    /// The result in one or two sentences.
+    pub fn verdict(&self, comparison: &PathComparison) -> String {
+        match (comparison.first, comparison.parting) {
+            (None, _) if comparison.largest == 0.0 && comparison.radiance == 0.0 => {
+                "the paths agree to the bit".to_owned()
+            }
+            (None, _) => format!(
+                "the paths agree: the largest difference is {:.1e}, and up to {:.0e} is allowed",
+                comparison.largest.max(comparison.radiance),
+                self.tolerance
+            ),
+            (Some(first), Some(parting)) if first != parting => {
+                format!("{}. Then {}", self.sentence(&first), self.sentence(&parting))
+            }
+            (Some(first), _) => self.sentence(&first),
+        }
+    }
+
+    /// A difference in a sentence: `ray 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`. Rays are counted
+    /// from 1, as in the window.
+    pub fn sentence(&self, difference: &Difference) -> String {
+        let Difference { ray: index, quantity, amount } = *difference;
+        let number = index + 1;
+        let [a, b] = self.names;
+        let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(index));
+        let allowed = format!("differ by {amount:.1e}, but only {:.0e} is allowed", self.tolerance);
+        match quantity {
+            Quantity::Origin => format!("ray {number}: the origins of the rays {allowed}"),
+            Quantity::Direction => format!("ray {number}: the directions {allowed}"),
+            Quantity::Throughput => format!("ray {number}: the throughputs {allowed}"),
+            Quantity::Distance => format!("ray {number}: the distances {allowed}"),
+            Quantity::Radiance => format!("the radiances {allowed}, although the rays agree"),
+            Quantity::Object => {
+                let [meets_a, meets_b] = [ray_a, ray_b].map(|ray| self.object(ray));
+                let near_miss = self.near_miss(ray_a, ray_b).unwrap_or_default();
+                format!("ray {number}: the paths part: {a} meets {meets_a}, {b} {meets_b}{near_miss}")
+            }
+            Quantity::Departure => {
+                let [word_a, word_b] = self.paths.map(|path| self.departure(path, index).unwrap_or("gone"));
+                let at = self.object(ray_a.or(ray_b));
+                format!("ray {number}: the paths part at {at}: {a} is {word_a}, {b} is {word_b}")
+            }
+        }
+    }
+
+    /// `sphere 7 (glass)`, or the sky.
+    fn object(&self, ray: Option<&RecordedRay>) -> String {
+        match ray.map(|ray| ray.hit) {
+            None => "nothing".to_owned(),
+            Some(None) => "the sky".to_owned(),
+            Some(Some(hit)) => match self.material(hit.sphere) {
+                Some((name, _)) => format!("sphere {} ({name})", hit.sphere),
+                None => format!("sphere {}", hit.sphere),
+            },
+        }
+    }
+
+    /// `#7 glass (dielectric)`, or the sky.
+    fn numbered(&self, ray: &RecordedRay) -> String {
+        let Some(hit) = ray.hit else { return "the sky".to_owned() };
+        match self.material(hit.sphere) {
+            Some((name, kind)) => format!("#{} {name} ({kind})", hit.sphere),
+            None => format!("#{}", hit.sphere),
+        }
+    }
+
+    /// Name (printable) and kind of a sphere's material.
+    fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
+        let scene = self.job.scene();
+        let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
+        Some((printable(&named.name), named.material.kind()))
+    }
+
+    /// A note if one side only just misses the sphere that the other hits, so that rounding decided.
+    fn near_miss(&self, a: Option<&RecordedRay>, b: Option<&RecordedRay>) -> Option<String> {
+        let (a, b) = (a?, b?);
+        [(a, b, self.names[1]), (b, a, self.names[0])].into_iter().find_map(|(hitting, missing, name)| {
+            let sphere = self.job.scene().spheres.get(hitting.hit?.sphere)?;
+            let to_center = sphere.center - DVec3::from(missing.origin);
+            let miss = to_center.cross(DVec3::from(missing.direction)).length() / sphere.radius.abs() - 1.0;
+            (0.0..GRAZING_SHARE)
+                .contains(&miss)
+                .then(|| format!("; {name} misses that sphere by {miss:.0e} of its radius"))
+        })
+    }
+}
+
+/// Relative difference of two radiances. The last unit of the film in either direction does not count.
+pub fn radiance_amount(a: [f64; 3], b: [f64; 3]) -> f64 {
+    vector_share(a, b, 2.0 / FIXED_POINT_SCALE)
+}
+
+/// Difference of the largest component beyond `forgiven`, relative to the largest component.
+fn vector_share(a: [f64; 3], b: [f64; 3], forgiven: f64) -> f64 {
+    let (a, b) = (DVec3::from(a), DVec3::from(b));
+    let difference = (a - b).abs().max_element() - forgiven;
+    share(difference.max(0.0), a.abs().max_element().max(b.abs().max_element()))
+}
+
+fn share(difference: f64, of: f64) -> f64 {
+    match difference / of {
+        _ if difference == 0.0 => 0.0,
+        share if share.is_nan() => f64::INFINITY,
+        share => share,
+    }
+}
+
+pub fn vector(v: [f64; 3]) -> String {
+    v.map(number).join(" ")
+}
+
+/// Nine characters, with as many digits as fit.
+fn number(x: f64) -> String {
+    let text = match x.abs() {
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e5).contains(&size) => format!("{x:.2e}"),
+        size => format!("{x:.*}", 6 - (size.log10().floor().max(0.0) as usize).min(4)),
+    };
+    format!("{text:>9}")
+}

@@ -1,0 +1,10 @@
+//! Programs on pictures: `compare` (the same but for noise?), `check` (right, or which mistake?) and `diff` (one path on
+//! two backends).
+
+mod answer;
+pub mod check;
+pub mod compare;
+pub mod diff;
+mod picture;
+
+pub use picture::Picture;

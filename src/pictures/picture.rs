@@ -1,0 +1,120 @@
+//! A picture of any kind, in linear radiance: a film, a file of any program, or what a backend has rendered.
+
+use crate::film::{Film, key};
+use crate::memory;
+use crate::output::{Encoding, read_picture};
+use crate::recipe::Recipe;
+use crate::render::RenderJob;
+use crate::saved::{OpenError, Saved};
+use anyhow::Result;
+use std::path::Path;
+use std::sync::Arc;
+
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The file's or backend's name.
+    pub name: String,
+    /// What is known about the picture, for the reader.
+    pub about: String,
+    pub width: u32,
+    pub height: u32,
+    /// Linear RGB, row by row from the top. With `steps`, NaN is the largest value of an integer format, which stands for
+    /// any larger one.
+    pub pixels: Vec<[f64; 3]>,
+    /// Largest quantisation error of each channel in either direction; `None` if the format has none.
+    pub steps: Option<Vec<[f64; 3]>>,
+    /// The value from which on a channel is NaN because the format ends there; infinite for floats.
+    pub limit: f64,
+    pub film: Option<Arc<Film>>,
+    /// The film's job.
+    pub job: Option<RenderJob>,
+    /// The recipe that the file contains.
+    pub recipe: Option<Recipe>,
+}
+
+impl Picture {
+    /// Reads a file. `encoding` is that of integer pictures without a description.
+    ///
+    /// # Errors
+    /// If the file cannot be read; the message says what to do.
+    pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
+        let name = path.display().to_string();
+        let saved = match Saved::read(path) {
+            Ok(saved) => Some(saved),
+            // Most pictures have no description. The picture itself is read below, which reports its own errors.
+            Err(OpenError::Picture(_) | OpenError::NotFilm(_)) => None,
+            Err(error) => return Err(error.into()),
+        };
+        // Pixels can be compared even if the recipe is not valid.
+        let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
+        let samples = saved.as_ref().and_then(|saved| saved.description.get(key::SAMPLES));
+        let samples = samples.map_or_else(String::new, |samples| format!(", {samples} samples"));
+        if let Some(film) = saved.and_then(|saved| saved.film) {
+            check_memory(film.width(), film.height(), 0)?;
+            let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
+            let about = format!("film, {}", about_film(&film, recipe.as_ref()));
+            return Ok(Picture { recipe, job, ..Picture::of_film(name, about, film) });
+        }
+        let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
+        let read = read_picture(path, encoding)?;
+        let kind = if read.steps.is_some() { "integers" } else { "floats" };
+        Ok(Picture {
+            about: format!("picture, {}x{}, {kind}{samples}", read.width, read.height),
+            name,
+            width: read.width,
+            height: read.height,
+            pixels: read.pixels,
+            steps: read.steps,
+            limit: read.limit,
+            film: None,
+            job: None,
+            recipe,
+        })
+    }
+
+    pub fn of_film(name: String, about: String, film: impl Into<Arc<Film>>) -> Self {
+        let film = film.into();
+        let (width, height) = (film.width(), film.height());
+        let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
+        let (limit, film) = (f64::INFINITY, Some(film));
+        Picture { name, about, width, height, pixels, steps: None, limit, film, job: None, recipe: None }
+    }
+
+    /// The picture of a film that the program itself has rendered from `recipe`.
+    ///
+    /// # Errors
+    /// If a comparison of this size does not fit into memory.
+    pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
+        check_memory(film.width(), film.height(), 0)?;
+        let about = format!("film, {}", about_film(&film, Some(&recipe)));
+        Ok(Picture { job: recipe.job().ok(), recipe: Some(recipe), ..Picture::of_film(name, about, film) })
+    }
+
+    /// A channel's value; `None` is the largest value of an integer format.
+    pub(super) fn value(&self, pixel: usize, channel: usize) -> Option<f64> {
+        let value = self.pixels[pixel][channel];
+        (self.steps.is_none() || !value.is_nan()).then_some(value)
+    }
+}
+
+/// Bytes per pixel during a comparison, without films: both pictures, how they relate (twice as much), their difference, the
+/// halves' differences or the steps and bounds, the noise, and the heat map.
+const BYTES_PER_PIXEL: u64 = 8 * 24 + 8;
+
+/// Refuses pictures that do not fit into memory together with `films` films of two halves.
+pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
+    let pixels = u64::from(width) * u64::from(height);
+    let bytes = films * Film::bytes(width, height, 2) + pixels * BYTES_PER_PIXEL;
+    let what = || format!("comparing pictures of {width}x{height}");
+    Ok(memory::check(what, bytes, "compare smaller pictures (--size sets the size of rendered ones)")?)
+}
+
+pub(super) fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
+    let size = format!("{}x{}, {} samples", film.width(), film.height(), film.sample_count());
+    match recipe {
+        Some(Recipe { name, settings, .. }) => {
+            format!("{name}, {size}, {}, seed {}", settings.sampler.name(), settings.seed)
+        }
+        None => size,
+    }
+}
