@@ -2,7 +2,7 @@
 
 use super::identity::resolved;
 use super::leftovers::{LOCK, PREFIX};
-use super::shown::ShownPath;
+use super::paths::ShownPath;
 use same_file::Handle;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
