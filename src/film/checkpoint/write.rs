@@ -88,7 +88,11 @@ fn compressed(
 ) -> exr::error::Result<Vec<(usize, Chunk)>> {
     let compress = |blocks: &[(usize, BlockIndex)]| -> exr::error::Result<Vec<(usize, Chunk)>> {
         let chunk = |(number, index): &(usize, BlockIndex)| {
-            let block = row_block(film, planes, meta, *index);
+            let mut data =
+                Vec::with_capacity(film.width() as usize * meta.headers[0].channels.bytes_per_pixel);
+            // With RLE, a block is a row.
+            planes::append_row(film, planes, index.pixel_position.y(), &mut data);
+            let block = UncompressedBlock { index: *index, data };
             Ok((*number, block.compress_to_chunk(&meta.headers)?))
         };
         blocks.iter().map(chunk).collect()
@@ -98,20 +102,6 @@ fn compressed(
     let chunks: Result<Vec<_>, _> =
         shared(shares, compress).into_iter().map(|share| share.unwrap_or_else(failed)).collect();
     Ok(chunks?.into_iter().flatten().collect())
-}
-
-fn row_block(
-    film: &Film,
-    planes: &[(ChannelDescription, Plane)],
-    meta: &MetaData,
-    index: BlockIndex,
-) -> UncompressedBlock {
-    let mut data = Vec::with_capacity(index.pixel_size.area() * meta.headers[0].channels.bytes_per_pixel);
-    let first_row = index.pixel_position.y();
-    for row in first_row..first_row + index.pixel_size.y() {
-        planes::append_row(film, planes, row, &mut data);
-    }
-    UncompressedBlock { index, data }
 }
 
 fn text(text: &[u8]) -> Text {
