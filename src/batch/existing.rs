@@ -126,7 +126,7 @@ mod tests {
             assert!(check(&going_on, &Places::of(&going_on).unwrap(), Some(&film)).unwrap().is_empty());
             put(&path, &render, 0..3000, 1);
             let told = check(&render, &Places::of(&render).unwrap(), None).unwrap_err().to_string();
-            assert!(told.contains("another picture: seed is 0 here, 1 there"), "{told}");
+            assert!(told.contains("another picture (seed is 0 here, 1 there)"), "{told}");
             std::fs::remove_file(&path).unwrap();
         }
     }

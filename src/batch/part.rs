@@ -129,10 +129,11 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
             part.samples[1]
         ))),
         Ok(found) => Ok(Some(found)),
-        Err(
-            OpenError::Film(damaged @ CheckpointError::Damaged { .. })
-            | OpenError::NotFilm(damaged @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })),
-        ) => {
+        Err(OpenError::Film(
+            damaged @ (CheckpointError::Damaged { .. }
+            | CheckpointError::NotExr { .. }
+            | CheckpointError::NotFilm { .. }),
+        )) => {
             let aside = free_name(|number| damaged_name(path, number)).ok_or_else(|| {
                 let last = damaged_name(path, NAME_LIMIT);
                 Failure::Input(anyhow!(

@@ -35,12 +35,8 @@ pub(super) struct Versions {
     pub sample_version: Option<i64>,
 }
 
-/// The texts that a file holds beside its head and pixels.
-#[derive(Clone, Copy)]
-pub(super) struct Texts<'a> {
-    pub recipe: &'a [u8],
-    pub comments: &'a [u8],
-}
+/// The texts that a file holds beside its head and pixels: the recipe, and the comments.
+pub(super) type Texts<'a> = [&'a [u8]; 2];
 
 /// The number of bands of a picture of this height.
 pub(super) fn band_count(height: u32) -> u32 {
@@ -107,8 +103,7 @@ impl Head {
         sum.words(&[self.version.into(), self.width.into(), self.height.into(), self.halves as u64]);
         sum.words(&[self.rejected, self.samples.len() as u64]);
         self.samples.iter().for_each(|range| sum.words(range));
-        sum.text(texts.recipe);
-        sum.text(texts.comments);
+        texts.iter().for_each(|text| sum.text(text));
         sum.word(self.sample_version.into());
         self.bands.iter().for_each(|band| sum.text(band.as_bytes()));
         sum.finish()

@@ -97,7 +97,7 @@ mod tests {
     use std::io::Cursor;
     use std::path::Path;
 
-    const TEXTS: Texts = Texts { recipe: b"[render]\n", comments: b"Scene: none\n" };
+    const TEXTS: Texts = [b"[render]\n", b"Scene: none\n"];
 
     fn film() -> Film {
         let mut film = Film::new(4, 3, 2);
@@ -172,6 +172,6 @@ mod tests {
         let told = claim(SIZE_LIMIT);
         assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{told}");
         let told = claim(20_000);
-        assert!(told.contains("its size is 20000x20000, but each side must have 1 to 16384"), "{told}");
+        assert!(told.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{told}");
     }
 }

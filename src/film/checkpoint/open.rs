@@ -1,6 +1,6 @@
 //! Opening film files: the head, the file's length and its description are checked before any sum is read.
 
-use super::head::{Head, Texts, Versions, band_count};
+use super::head::{Head, Versions, band_count};
 use super::length::check_length;
 use super::planes::{self, Plane};
 use super::{
@@ -112,7 +112,7 @@ fn read_texts(header: &Header, path: &Path) -> Result<Option<(Head, Description)
     let head = read_head_text(head, header, path)?;
     let recipe = attribute(header, RECIPE_ATTRIBUTE).ok_or_else(|| damaged(path, "its recipe is missing"))?;
     let comments = header.own_attributes.comments.as_ref().map_or(&[][..], |text| text.as_slice());
-    if head.checksum(Texts { recipe, comments }) != head.head_checksum {
+    if head.checksum([recipe, comments]) != head.head_checksum {
         return Err(damaged(path, "its head or texts do not match their checksum"));
     }
     let no_text = |_| damaged(path, "its recipe or description is not text");
