@@ -7,8 +7,7 @@ use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
 use weekender::{
-    batch, bench, check, companion, compare, diff, gallery, info, interrupt, journal, merge,
-    report, stress,
+    batch, bench, check, companion, compare, diff, gallery, info, interrupt, journal, merge, report, stress,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.

@@ -12,7 +12,9 @@ pub use identity::FileIdentity;
 pub(crate) use identity::Stamp;
 pub use lock::{lock_path, lock_within};
 pub use pages::{GENERATOR, check_page};
-pub use paths::{JsonPath, NAME_LIMIT, ShownPath, cache_directory, free_name, home_directory, state_directory};
+pub use paths::{
+    JsonPath, NAME_LIMIT, ShownPath, cache_directory, free_name, home_directory, state_directory,
+};
 pub use read::{InputError, open, read};
 pub(crate) use replace::NewFile;
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};
