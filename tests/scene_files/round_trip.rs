@@ -4,7 +4,7 @@ use super::common::{CAMERA, assert_round_trip};
 use std::path::Path;
 use std::sync::Arc;
 use weekender::recipe::Recipe;
-use weekender::recipe::file::{load, parse, to_picture_toml, to_toml};
+use weekender::recipe::file::{load, parse, to_picture_toml};
 use weekender::render::{RenderSettings, SamplerKind, SettingValue};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
