@@ -206,7 +206,11 @@ mod tests {
         assert_eq!(shared.exit_code(), 130);
         assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);
         assert_eq!((shared.is_set.load(Ordering::Relaxed), shared.exit_code()), (true, 129));
-        assert_eq!(shared.signalled(TERMINATED, now + 2 * ECHO), Answer::Nothing, "no scheduler is in a hurry");
+        assert_eq!(
+            shared.signalled(TERMINATED, now + 2 * ECHO),
+            Answer::Nothing,
+            "no scheduler is in a hurry"
+        );
         assert_eq!(shared.exit_code(), 143);
         assert_eq!(shared.signalled(INTERRUPTED, now + ECHO / 2), Answer::Nothing, "an echo");
         assert_eq!(shared.exit_code(), 130);

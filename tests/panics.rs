@@ -1,4 +1,4 @@
-//! A panic in the tracer: the picture is complete, and the user is told. A panic of the program: the samples are kept,
+//! A panic in the tracer: the picture is complete, with a warning. A panic of the program: the samples are kept,
 //! and a report says what happened.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
@@ -54,7 +54,7 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
 }
 
 #[test]
-fn a_panic_of_the_tracer_is_told_in_an_animation_too() {
+fn a_panic_of_the_tracer_is_a_warning_in_an_animation() {
     let directory = tempfile::tempdir().unwrap();
     let flags = ["--batch", "--device", "cpu", "--size", "24x14", "--samples", "4", "--turntable=2"];
     let files = ["--simulate-panic", "0", "--out", "frames", "--json", "frames.json"];

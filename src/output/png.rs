@@ -2,9 +2,9 @@
 
 use super::read::invalid;
 use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
-use ::png::EncodingError;
 use crate::film::Film;
 use crate::stages::Transfer;
+use ::png::EncodingError;
 use std::io::{self, BufRead, Seek, Write};
 
 pub(super) fn write(

@@ -7,7 +7,7 @@ use crate::film::checkpoint;
 use crate::memory;
 use crate::stages::Transfer;
 use image::codecs::{png::PngDecoder, pnm::PnmDecoder};
-use image::{ColorType, DynamicImage, ExtendedColorType, ImageDecoder, ImageFormat};
+use image::{DynamicImage, ImageDecoder, ImageFormat};
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
@@ -167,7 +167,7 @@ fn read_whole(
 
 /// The picture, and the number of values that a sample in the file can have, 2 to 65536.
 fn decode(
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     length: u64,
     format: ImageFormat,
 ) -> io::Result<(DynamicImage, u32)> {
@@ -176,14 +176,15 @@ fn decode(
         let most = decoder.header().maximal_sample().clamp(1, u16::MAX.into());
         return Ok((image_of(decoder, length, 8)?, most + 1));
     }
+    let mut head = [0; 26];
+    reader.read_exact(&mut head)?;
+    reader.rewind()?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
     let decoder = PngDecoder::with_limits(reader, limits).map_err(invalid)?;
-    let levels = match (decoder.original_color_type(), decoder.color_type()) {
-        (ExtendedColorType::L1, _) => 1 << 1,
-        (ExtendedColorType::L2, _) => 1 << 2,
-        (ExtendedColorType::L4, _) => 1 << 4,
-        (_, ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16) => 1 << 16,
+    let levels = match head[24..] {
+        // The bits of a sample, unless it is the index of a colour in a palette.
+        [bits @ (1 | 2 | 4 | 16), colour_type] if colour_type != 3 => 1 << bits,
         _ => 1 << 8,
     };
     Ok((image_of(decoder, length, LARGEST_RATIO)?, levels))
@@ -195,7 +196,9 @@ fn image_of(decoder: impl ImageDecoder, length: u64, ratio: u64) -> io::Result<D
     pixel_count(width, height)?;
     let least = decoder.total_bytes() / ratio;
     if least > length {
-        return Err(invalid(format!("it has {length} bytes, but {width}x{height} pixels need at least {least}")));
+        return Err(invalid(format!(
+            "it has {length} bytes, but {width}x{height} pixels need at least {least}"
+        )));
     }
     check_memory(width, height)?;
     DynamicImage::from_decoder(decoder).map_err(invalid)
@@ -208,7 +211,9 @@ const PIXEL_LIMIT: u64 = 1 << 28;
 pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
     let count = u64::from(width) * u64::from(height);
     if !(1..=PIXEL_LIMIT).contains(&count) {
-        return Err(invalid(format!("its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read")));
+        return Err(invalid(format!(
+            "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
+        )));
     }
     Ok(count as usize)
 }
@@ -378,17 +383,20 @@ mod tests {
     /// A byte of a bitmap has eight pixels, so no PNM is shorter than an eighth of what becomes of it.
     #[test]
     fn a_pnm_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
-        let told = |length: u64| {
+        let message = |length: u64| {
             let header = io::Cursor::new(b"P6 160 100 255 ");
             decode_picture(header, length, Encoding::Srgb).unwrap_err().to_string()
         };
-        assert_eq!(told(5999), "it has 5999 bytes, but 160x100 pixels need at least 6000");
-        assert!(!told(6000).contains("need at least"), "{}", told(6000));
+        assert_eq!(message(5999), "it has 5999 bytes, but 160x100 pixels need at least 6000");
+        assert!(!message(6000).contains("need at least"), "{}", message(6000));
     }
 
     #[test]
     fn a_png_has_as_many_levels_as_its_bits_and_its_palette_has_256() {
-        use ::png::{BitDepth, ColorType::{self, Grayscale, Indexed}};
+        use ::png::{
+            BitDepth,
+            ColorType::{self, Grayscale, Indexed},
+        };
         let png_of = |colour: ColorType, depth: BitDepth, width: u32, row: &[u8]| {
             let mut file = Vec::new();
             let mut encoder = ::png::Encoder::new(&mut file, width, 1);

@@ -298,7 +298,8 @@ mod tests {
     /// Two spheres that are close are found to be close, wherever they lie and however large they are.
     #[test]
     fn layers_are_found_across_borders() {
-        let random = |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
+        let random =
+            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
         for i in 0..5000 {
             let at = |k: u32| 10.0 * random(i, k) - 5.0;
             let radius = (6.0 * random(i, 3) - 3.0).exp2();
@@ -380,7 +381,8 @@ mod tests {
     /// Shells around one place, and coated balls that overlap.
     #[test]
     fn layers_in_a_crowd_are_found() {
-        let random = |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
+        let random =
+            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
         for count in [2, 63, 65, 500] {
             let has = |facts: &Facts, pair: [u32; 2]| facts.layers.iter().any(|layer| layer.spheres == pair);
             let shells = (0..count).map(|i| (DVec3::splat(0.5), 1.0 + 1e-5 * f64::from(i)));

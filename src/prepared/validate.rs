@@ -72,9 +72,13 @@ impl<R: Real> PreparedScene<R> {
     fn validate_rows(&self) -> Result<(), String> {
         let listed = self.opaque.iter().chain(&self.two_root).map(|[x, y, z, _]| ([*x, *y, *z], false));
         let anchored = self.anchored.iter().map(|sphere| (sphere.anchor, true));
-        for (number, (row, (place, is_anchored))) in self.records.iter().zip(listed.chain(anchored)).enumerate()
+        for (number, (row, (place, is_anchored))) in
+            self.records.iter().zip(listed.chain(anchored)).enumerate()
         {
-            ensure!(row.0.iter().all(|x| x.to_f64().is_finite()), "the shading record of sphere {number} is {row:?}");
+            ensure!(
+                row.0.iter().all(|x| x.to_f64().is_finite()),
+                "the shading record of sphere {number} is {row:?}"
+            );
             let is_own = row.reference() == place && is_anchored == (row.anchoring() > R::default());
             ensure!(is_own, "the shading record of sphere {number} is of another");
         }
@@ -122,7 +126,10 @@ fn validate_hierarchy<R: Real>(
             ensure!(holds(node, low, high), "sphere {number} reaches out of the leaf {index}");
         }
     }
-    ensure!(reached == nodes.len() && held.iter().all(|is_held| *is_held), "a node or a sphere is not reached");
+    ensure!(
+        reached == nodes.len() && held.iter().all(|is_held| *is_held),
+        "a node or a sphere is not reached"
+    );
     Ok(())
 }
 

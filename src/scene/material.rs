@@ -169,7 +169,9 @@ mod tests {
             assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
             assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));
         }
-        Material::Lambertian { albedo: DVec3::ONE }.validate(format_args!("materials.m")).expect("white is fine");
+        Material::Lambertian { albedo: DVec3::ONE }
+            .validate(format_args!("materials.m"))
+            .expect("white is fine");
     }
 
     #[test]
@@ -186,13 +188,17 @@ mod tests {
     #[test]
     fn limits_of_materials_are_allowed() {
         for refraction_index in [1e-9, 1e9] {
-            Material::Dielectric { refraction_index }.validate(format_args!("materials.m")).expect("at the limit");
+            Material::Dielectric { refraction_index }
+                .validate(format_args!("materials.m"))
+                .expect("at the limit");
         }
         for refraction_index in [0.9e-9, 1.1e9] {
             assert!(refusal(Material::Dielectric { refraction_index }).contains("within 1e-9 and 1e9"));
         }
         for albedo in [DVec3::ZERO, DVec3::ONE] {
-            Material::Metal { albedo, fuzz: 0.0 }.validate(format_args!("materials.m")).expect("at the limit");
+            Material::Metal { albedo, fuzz: 0.0 }
+                .validate(format_args!("materials.m"))
+                .expect("at the limit");
         }
         assert!(refusal(Material::Metal { albedo: DVec3::splat(1.01), fuzz: 0.0 }).contains("albedo"));
     }

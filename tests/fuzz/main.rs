@@ -39,7 +39,8 @@ struct Parser {
 fn parsers() -> Vec<Parser> {
     let exr = "sum.a.R.lo weekenderFilm chlist box2i tiledesc deepscanline";
     let exrs = seeds::exrs().into_iter().chain(seeds::kept("tests/fuzz/finds/exr")).collect();
-    let parser = |name, seeds, words, parse, bytes_per_byte| Parser { name, seeds, words, parse, bytes_per_byte };
+    let parser =
+        |name, seeds, words, parse, bytes_per_byte| Parser { name, seeds, words, parse, bytes_per_byte };
     vec![
         parser("scene", seeds::scenes(), SCENE_WORDS, scene, 600),
         parser("film", seeds::films(), exr, film, 3000),
@@ -62,8 +63,28 @@ const FLAG_WORDS: &str = "--batch --scene --stage --size --samples --depth --see
 
 /// Numbers that often cause errors.
 const NUMBERS: &[&str] = &[
-    "0", "-0", "-1", "1", "1e308", "-1e308", "1e-320", "1e400", "nan", "inf", "-inf", "0.5", "4294967296", "4294967295",
-    "9223372036854775807", "18446744073709551615", "99999999999999999999999999", "0x7f", "1e", "16384", "16385", "20000",
+    "0",
+    "-0",
+    "-1",
+    "1",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "1e400",
+    "nan",
+    "inf",
+    "-inf",
+    "0.5",
+    "4294967296",
+    "4294967295",
+    "9223372036854775807",
+    "18446744073709551615",
+    "99999999999999999999999999",
+    "0x7f",
+    "1e",
+    "16384",
+    "16385",
+    "20000",
 ];
 
 /// At a place of an input, so many bytes are replaced by others.
@@ -72,11 +93,12 @@ type Change = (Index, Option<usize>, Vec<u8>);
 fn change(words: &'static str) -> impl Strategy<Value = Change> {
     let text = |list: Vec<&'static str>| select(list).prop_map(|word| word.as_bytes().to_vec());
     let words = words.split_whitespace().flat_map(|word| [word, "\n"]).collect();
-    let binary = (any::<u64>(), 0..64_u32, 1..=8_usize, any::<bool>()).prop_map(|(number, shift, size, is_little)| {
-        let number = number >> shift;
-        let bytes = if is_little { number.to_le_bytes() } else { number.swap_bytes().to_le_bytes() };
-        if is_little { bytes[..size].to_vec() } else { bytes[8 - size..].to_vec() }
-    });
+    let binary =
+        (any::<u64>(), 0..64_u32, 1..=8_usize, any::<bool>()).prop_map(|(number, shift, size, is_little)| {
+            let number = number >> shift;
+            let bytes = if is_little { number.to_le_bytes() } else { number.swap_bytes().to_le_bytes() };
+            if is_little { bytes[..size].to_vec() } else { bytes[8 - size..].to_vec() }
+        });
     let inserted = prop_oneof![
         3 => prop::collection::vec(any::<u8>(), 0..4),
         3 => text(words),

@@ -67,7 +67,8 @@ pub fn load(path: &Path) -> Result<Recipe, FileError> {
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
-        let reason = "this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file";
+        let reason =
+            "this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file";
         FileError::at(&good, &label, good.len(), reason.to_owned())
     })?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());

@@ -80,7 +80,8 @@ fn camera_keys(camera: &Camera) -> String {
     let numbers = [("vfov_degrees", vfov_degrees), ("defocus_angle_degrees", defocus_angle_degrees)];
     let focus = focus_distance.as_ref().map(|distance| ("focus_distance", distance));
     let vectors = vectors.map(|(key, value)| format!("{key} = {}\n", vector(*value)));
-    let numbers = numbers.into_iter().chain(focus).map(|(key, value)| format!("{key} = {}\n", number(*value)));
+    let numbers =
+        numbers.into_iter().chain(focus).map(|(key, value)| format!("{key} = {}\n", number(*value)));
     vectors.into_iter().chain(numbers).collect()
 }
 
