@@ -42,7 +42,7 @@ fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
         let mut film = job.new_film();
         renderer.accumulate(&job, 0..16, &mut film, &AtomicBool::new(false)).unwrap();
         match film.error() {
-            Some(estimate) => (estimate, film.doubt(Some(&estimate), 1.0).is_some()),
+            Some(estimate) => (estimate, film.doubt(&estimate).is_some()),
             // No path has found light: nothing is stated.
             None => (ErrorEstimate { rmse: 0.0, rmse_deviation: 0.0, rel_mse: 0.0 }, true),
         }

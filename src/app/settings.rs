@@ -181,7 +181,7 @@ fn write(path: &Path, known: Option<&Remembered>, mine: &Remembered) -> Result<(
 /// Windows that write at the same time take turns. Where files cannot be locked, or another window has stopped during its
 /// turn, the later one wins.
 fn take_turn(path: &Path) -> Option<File> {
-    lock_path(path, LONGEST_TURN)
+    lock_path(path, LONGEST_TURN).ok()
 }
 
 fn fields_of(settings: &Remembered) -> Result<Fields, String> {

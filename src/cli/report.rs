@@ -1,7 +1,7 @@
 //! The flags of `weekender report` and their validation.
 
 use super::error::CliError;
-use super::paths::{Paths, same_name};
+use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSwitch};
 use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size, whole};
@@ -249,15 +249,13 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
 fn check_paths(raw: &RawReport, scenes: &[Recipe]) -> Result<(), CliError> {
     let reference = |scene: &Recipe| format!("reference-{}.exr", plain_name(&scene.name));
     let made: &[Recipe] = if raw.reference.is_some() { &[] } else { scenes };
-    let references: Vec<String> = made.iter().map(reference).collect();
+    let names = REPORT_FILES.iter().map(|name| (*name).to_owned()).chain(made.iter().map(reference));
     let files = raw.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
     let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
-    REPORT_FILES
-        .iter()
+    names
         .fold(paths.read("--reference", raw.reference.as_deref()), |paths, name| {
             paths.write("a file of --out,", Some(&raw.out.join(name)))
         })
-        .own("a file of --out,", &raw.out, move |name| same_name(name, references.iter().cloned()))
         .check(&[])
 }
 

@@ -7,7 +7,7 @@ use super::values::{JsonTarget, Levels, parse_levels, parse_seconds, whole};
 use crate::backends::BackendError;
 use crate::render_cpu::{CpuError, Isa};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Debug, Args)]
@@ -66,14 +66,6 @@ pub struct StressOptions {
     pub progress: ProgressChoice,
 }
 
-/// The name, if a picture of a case or a scene of the search may have it.
-fn own_name(name: &str) -> Option<String> {
-    let folded = name.to_lowercase();
-    let is_picture = folded.ends_with("-ours.png") || folded.ends_with("-book.png");
-    let is_scene = folded.starts_with("found-") && folded.ends_with(".toml");
-    (is_picture || is_scene).then(|| name.to_owned())
-}
-
 /// Validates the flags of `weekender stress`.
 pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
     let available = Isa::available();
@@ -91,7 +83,6 @@ pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
     pages
         .fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)))
         .write_json(json.as_ref())
-        .own("a file of --out,", raw.out.as_deref().unwrap_or(Path::new("stress")), own_name)
         .check(&[])?;
     Ok(StressOptions {
         filter: raw.filter.unwrap_or_default(),

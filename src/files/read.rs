@@ -45,7 +45,7 @@ pub enum InputError {
 }
 
 impl InputError {
-    fn unreadable(path: &Path, reason: impl ToString) -> Self {
+    pub(crate) fn unreadable(path: &Path, reason: impl ToString) -> Self {
         InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() }
     }
 }

@@ -1,6 +1,6 @@
 //! Output files that are written whole or not at all: first beside their destination, then renamed.
 
-use super::identity::follow_links;
+use super::identity::resolved;
 use super::leftovers;
 use super::shown::ShownPath;
 use std::fs::{self, File, Metadata, OpenOptions};
@@ -49,7 +49,7 @@ pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> Result<(), WriteError> {
-    NewFile::write(path, write)?.put()
+    try_write(path, write).map_err(|reason| WriteError { path: path.to_owned(), reason })
 }
 
 /// Replaces `path` with a text, as [`replace_file`] does.
@@ -77,47 +77,6 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         }
     };
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
-}
-
-/// A file that is written but not yet at its destination. Dropping it deletes the file.
-pub(crate) struct NewFile {
-    named: PathBuf,
-    /// The file and its destination; `None` if it was written directly, to a device.
-    pending: Option<(NamedTempFile, PathBuf)>,
-}
-
-impl NewFile {
-    /// Writes the file beside its destination.
-    pub fn write(
-        path: &Path,
-        write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
-    ) -> Result<NewFile, WriteError> {
-        match try_write(path, write) {
-            Ok(pending) => Ok(NewFile { named: path.to_owned(), pending }),
-            Err(reason) => Err(WriteError { path: path.to_owned(), reason }),
-        }
-    }
-
-    /// The file's path before it is put in place. On Unix, renaming keeps the same file and modification time.
-    pub fn pending_path(&self) -> Option<&Path> {
-        self.pending.as_ref().map(|(file, _)| file.path())
-    }
-
-    /// Moves the file to its destination.
-    pub fn put(self) -> Result<(), WriteError> {
-        let Some((file, place)) = self.pending else { return Ok(()) };
-        file.persist(place).map(drop).map_err(|error| WriteError { path: self.named, reason: error.error })
-    }
-
-    /// Moves the file to its destination if nothing exists there. Returns whether it was moved.
-    pub fn put_new(self) -> Result<bool, WriteError> {
-        let Some((file, place)) = self.pending else { return Ok(true) };
-        match file.persist_noclobber(place) {
-            Ok(_) => Ok(true),
-            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => Ok(false),
-            Err(error) => Err(WriteError { path: self.named, reason: error.error }),
-        }
-    }
 }
 
 /// Like [`check_writable`], for a film, which is not written sequentially.
@@ -156,7 +115,7 @@ impl Target {
             let reason = format!("the {end} at its end stands for a directory");
             return Err(io::Error::new(ErrorKind::InvalidFilename, reason));
         }
-        let path = if old.is_some() { fs::canonicalize(named)? } else { follow_links(named)? };
+        let path = resolved(named)?;
         let directory = match path.parent() {
             Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
             Some(parent) => parent.to_owned(),
@@ -168,10 +127,6 @@ impl Target {
         match fs::metadata(&directory) {
             Ok(found) if found.is_dir() => Ok(Target::File { path, directory, old }),
             Ok(_) => Err(ErrorKind::NotADirectory.into()),
-            Err(error) if error.kind() == ErrorKind::NotFound && path != named => {
-                let reason = format!("it is a link to {}, whose directory is not there", path.shown());
-                Err(io::Error::new(ErrorKind::NotFound, reason))
-            }
             Err(error) => Err(error),
         }
     }
@@ -209,26 +164,20 @@ fn new_file_in(directory: &Path, old: Option<&Metadata>) -> io::Result<NamedTemp
     Ok(file)
 }
 
-fn try_write(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
-) -> io::Result<Option<(NamedTempFile, PathBuf)>> {
+fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
     let fill = |file: &File| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         write(&mut writer)?;
         writer.flush()
     };
     match Target::find(path)? {
-        Target::Device { path, .. } => {
-            fill(&OpenOptions::new().write(true).open(path)?)?;
-            Ok(None)
-        }
+        Target::Device { path, .. } => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
             // Without this, a system that crashes after the rename may come back with an empty file.
             new.as_file().sync_data()?;
-            Ok(Some((new, path)))
+            new.persist(path).map(drop).map_err(|error| error.error)
         }
     }
 }

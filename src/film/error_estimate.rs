@@ -6,18 +6,23 @@ use super::{FIXED_POINT_SCALE, Film, ROUNDING_LIMIT};
 /// not show where both are rounded the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
-    /// Root of the mean squared error over pixels and channels, linear radiance. It is [`ROUNDING_LIMIT`] only if the
-    /// halves are equal, and just above it if they differ by less.
+    /// Root of the mean squared error over pixels and channels, linear radiance, at least [`ROUNDING_LIMIT`].
     pub rmse: f64,
-    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels; 0 if the halves are equal.
+    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels; 0 if rounding is all.
     /// Neither number includes features that no sample has hit yet.
     pub rmse_deviation: f64,
     /// `mean(error^2 / (mean^2 + 0.01))`, which gives errors in dark regions more weight.
     pub rel_mse: f64,
 }
 
-/// The error of halves that differ, but by less than rounding can cost.
-const WITHIN_ROUNDING: f64 = ROUNDING_LIMIT.next_up();
+/// The error estimate is doubtful if it effectively rests on fewer pixels than this.
+const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
+
+/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
+const DOMINANT_SHARE: f64 = 0.2;
+
+/// A doubtful estimate must be below a target by this many of its standard deviations.
+const DEVIATIONS: f64 = 3.0;
 
 /// The most that rounding can add to `rel_mse`.
 const ROUNDING_REL_MSE: f64 = ROUNDING_LIMIT * ROUNDING_LIMIT / 1e-2;
@@ -31,7 +36,7 @@ impl ErrorEstimate {
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// Whether the halves do not differ, so that only rounding is left: the picture has no noise.
+    /// Whether the halves differ by no more than rounding can cost: the picture has no noise to speak of.
     pub fn is_without_noise(&self) -> bool {
         self.rmse <= ROUNDING_LIMIT
     }
@@ -40,8 +45,6 @@ impl ErrorEstimate {
     pub fn words(&self) -> String {
         if self.is_without_noise() {
             format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding alone")
-        } else if self.rmse <= WITHIN_ROUNDING {
-            format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding; the noise is below that")
         } else {
             format!("{:.3e} {} RMSE", self.rmse, self.uncertainty())
         }
@@ -91,12 +94,40 @@ impl Film {
         let [square, fourth_power] = [square_sum / (3.0 * pixels), fourth_power_sum / (9.0 * pixels)];
         let deviation_of_square = ((fourth_power - square * square).max(0.0) / pixels).sqrt();
         let rmse = square.sqrt();
-        let has_noise = rmse > ROUNDING_LIMIT || self.halves_differ();
         Some(ErrorEstimate {
-            rmse: rmse.max(if has_noise { WITHIN_ROUNDING } else { ROUNDING_LIMIT }),
-            rmse_deviation: if has_noise && rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
+            rmse: rmse.max(ROUNDING_LIMIT),
+            rmse_deviation: if rmse > ROUNDING_LIMIT { 0.5 * deviation_of_square / rmse } else { 0.0 },
             rel_mse: (relative_sum / (3.0 * pixels)).max(ROUNDING_REL_MSE),
         })
+    }
+
+    /// Whether the error of this film, of which `estimate` is the estimate, is at most `target`. An estimate that few
+    /// pixels dominate must be lower, and while no path has found any light, the error may be as large as `brightest`, the
+    /// largest radiance that a sample can have.
+    pub fn meets(&self, target: f64, estimate: Option<&ErrorEstimate>, brightest: f64) -> bool {
+        match estimate {
+            Some(found) if self.rests_on_few_pixels(found) => {
+                found.rmse + DEVIATIONS * found.rmse_deviation <= target
+            }
+            Some(found) => found.rmse <= target,
+            None => self.has_both_halves() && brightest <= target,
+        }
+    }
+
+    /// Why the estimate is doubtful: few pixels dominate it. It and its deviation are then most likely too low.
+    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves[0].len());
+        self.rests_on_few_pixels(estimate).then(|| {
+            format!(
+                "a few pixels dominate the error estimate: it effectively rests on {pixels:.0} of {all} pixels, but needs \
+                 {PIXELS_IN_EFFECT_MIN:.0}; until there are more samples it may be far too low"
+            )
+        })
+    }
+
+    fn rests_on_few_pixels(&self, estimate: &ErrorEstimate) -> bool {
+        let pixels = estimate.pixels_in_effect();
+        pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * self.halves[0].len() as f64
     }
 
     /// Whether no path has found any light.
@@ -116,15 +147,7 @@ impl Film {
     }
 
     /// Whether there are two halves, each with samples.
-    pub(super) fn has_both_halves(&self) -> bool {
+    fn has_both_halves(&self) -> bool {
         self.halves.len() == 2 && (0..2).all(|half| self.half_sample_count(half) > 0)
-    }
-
-    /// Whether the means of the halves differ anywhere. As integers, because quotients of equal means can differ.
-    fn halves_differ(&self) -> bool {
-        let [half_a, half_b] = self.halves.as_slice() else { return false };
-        let [count_a, count_b] = [0, 1].map(|half| u128::from(self.half_sample_count(half)));
-        let differ = |(a, b): (&u64, &u64)| u128::from(*a) * count_b != u128::from(*b) * count_a;
-        half_a.iter().zip(half_b).any(|(a, b)| a.0.iter().zip(&b.0).any(differ))
     }
 }

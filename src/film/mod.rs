@@ -8,15 +8,13 @@
 pub mod checkpoint;
 mod checksum;
 mod description;
-mod difference;
-mod doubt;
 mod error_estimate;
 mod fixed_point;
 mod histogram;
+mod locked;
 mod merge;
 mod ranges;
 mod resolve;
-mod shared_file;
 mod smooth;
 
 pub use checkpoint::{CheckpointError, FilmFile, FilmHead};
@@ -27,10 +25,10 @@ pub use fixed_point::{
     FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIMIT, ROUNDING_LIMIT, fixed_point,
 };
 pub use histogram::Histogram;
-pub use merge::{FilmSum, MergeError, Share, merge_files};
+pub use locked::LockedFilm;
+pub use merge::{FilmSum, MergeError, merge_files};
 pub use ranges::SampleRanges;
 pub use resolve::to_byte;
-pub use shared_file::{SaveOutcome, SharedFile};
 
 use crate::memory::{self, MemoryError};
 use std::ops::Range;
@@ -107,35 +105,28 @@ impl Film {
         rejected: u64,
     ) -> Result<Self, FilmError> {
         let film = Film { width, height, halves, samples, rejected };
-        film.validate().map_err(|what| FilmError::Parts { what })?;
-        Ok(film)
-    }
-
-    fn validate(&self) -> Result<(), String> {
-        let pixels = self.width as usize * self.height as usize;
-        if pixels == 0 {
-            return Err(format!("its size is {}x{}", self.width, self.height));
+        let pixels = width as usize * height as usize;
+        let invalid = |what: String| Err(FilmError::Parts { what });
+        if pixels == 0 || film.halves.iter().any(|half| half.len() != pixels) {
+            return invalid(format!("its halves do not have {width}x{height} sums"));
         }
-        if !(1..=2).contains(&self.halves.len()) {
-            return Err(format!("it has {} halves, but a film has 1 or 2", self.halves.len()));
+        if !(1..=2).contains(&film.halves.len()) {
+            return invalid(format!("it has {} halves, but a film has 1 or 2", film.halves.len()));
         }
-        if u128::from(self.rejected) > u128::from(self.sample_count()) * pixels as u128 {
-            return Err(format!(
-                "{} samples rejected, more than all pixels have with {} each",
-                self.rejected,
-                self.sample_count()
+        if u128::from(rejected) > u128::from(film.sample_count()) * pixels as u128 {
+            let count = film.sample_count();
+            return invalid(format!(
+                "{rejected} samples rejected, more than all pixels have with {count} each"
             ));
         }
-        for (index, half) in self.halves.iter().enumerate() {
-            if half.len() != pixels {
-                return Err(format!("a half has {} sums for {pixels} pixels", half.len()));
-            }
-            let limit = u128::from(self.half_sample_count(index)) * u128::from(FIXED_POINT_MAX);
-            if let Some(pixel) = half.iter().position(|sum| sum.0.iter().any(|k| u128::from(*k) > limit)) {
-                return Err(format!("the sum of pixel {pixel} is larger than its samples can give"));
+        for (index, half) in film.halves.iter().enumerate() {
+            // It is below 2^63, see SAMPLE_LIMIT.
+            let limit = film.half_sample_count(index) * u64::from(FIXED_POINT_MAX);
+            if let Some(pixel) = half.iter().position(|sum| sum.0.iter().any(|k| *k > limit)) {
+                return invalid(format!("the sum of pixel {pixel} is larger than its samples can give"));
             }
         }
-        Ok(())
+        Ok(film)
     }
 
     /// Bytes that the sums of such a film need.
@@ -143,12 +134,10 @@ impl Film {
         (u64::from(width) * u64::from(height)).saturating_mul((half_count * size_of::<PixelSum>()) as u64)
     }
 
-    /// Pixels across.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Pixels down.
     pub fn height(&self) -> u32 {
         self.height
     }
@@ -168,7 +157,6 @@ impl Film {
         self.rejected
     }
 
-    /// Samples per pixel.
     pub fn sample_count(&self) -> u64 {
         self.samples.count()
     }
@@ -238,36 +226,18 @@ const SMALLER_FILM: &str =
 /// Why films cannot be merged, or why data is not a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum FilmError {
-    /// The films differ in width, height or number of halves.
+    /// Width, height and number of halves of the two films.
     #[error("the films differ in shape: {}x{} with {} halves and {}x{} with {}", mine.0, mine.1, mine.2, theirs.0, theirs.1, theirs.2)]
-    Size {
-        /// Width, height and number of halves of this film.
-        mine: (u32, u32, usize),
-        /// Width, height and number of halves of the other film.
-        theirs: (u32, u32, usize),
-    },
-    /// The sample indices are outside the range that a film can hold.
+    Size { mine: (u32, u32, usize), theirs: (u32, u32, usize) },
     #[error(
         "{}..{} is not a range of samples: the start must be below the end, and the end at most {SAMPLE_LIMIT}",
         range.start, range.end
     )]
-    Range {
-        /// The rejected indices.
-        range: Range<u64>,
-    },
-    /// A sample would be counted twice.
+    Range { range: Range<u64> },
     #[error("samples {}..{} are already in the film; each sample may be added only once", range.start, range.end)]
-    Overlap {
-        /// The samples that are in both.
-        range: Range<u64>,
-    },
-    /// There is not enough memory for the sums.
+    Overlap { range: Range<u64> },
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// The parts do not fit together.
     #[error("this is not a valid film: {what}")]
-    Parts {
-        /// What is wrong.
-        what: String,
-    },
+    Parts { what: String },
 }

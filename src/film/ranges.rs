@@ -101,24 +101,17 @@ impl SampleRanges {
             return Ok(());
         }
         check(&range)?;
-        if let Some(range) = self.overlap(&range) {
-            return Err(FilmError::Overlap { range });
-        }
-        let place = self.ranges_before(range.start);
-        if place == self.ranges.len() {
+        if self.end() <= range.start {
             self.push(range);
             return Ok(());
         }
-        self.count += range.end - range.start;
-        let joins_next = self.ranges[place].start == range.end;
-        let joins_last = place > 0 && self.ranges[place - 1].end == range.start;
-        match (joins_last, joins_next) {
-            (true, true) => self.ranges[place - 1].end = self.ranges.remove(place).end,
-            (true, false) => self.ranges[place - 1].end = range.end,
-            (false, true) => self.ranges[place].start = range.start,
-            (false, false) => self.ranges.insert(place, range),
-        }
+        *self = self.union(&SampleRanges { count: range.end - range.start, ranges: vec![range] })?;
         Ok(())
+    }
+
+    /// Whether all samples of `other` are in the set.
+    pub fn contains(&self, other: &SampleRanges) -> bool {
+        other.iter().all(|range| self.first_gap(range, u64::MAX).is_none())
     }
 
     /// The samples of both sets.

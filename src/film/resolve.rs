@@ -12,18 +12,12 @@ impl Film {
 
     /// The whole picture, linear RGB, row by row from the top.
     pub fn means(&self) -> Vec<[f32; 3]> {
-        let mut pixels = vec![[0.0; 3]; self.width as usize * self.height as usize];
-        self.mean_rows(0..self.height, &mut pixels);
-        pixels
-    }
-
-    /// Writes rows `rows` of the picture, linear RGB, to `pixels` (`width` pixels per row).
-    ///
-    /// # Panics
-    /// If a row is below the picture, or `pixels` has another length.
-    pub fn mean_rows(&self, rows: Range<u32>, pixels: &mut [[f32; 3]]) {
         let unit = self.fixed_point_of_1();
-        self.for_each_sum(rows, pixels, |sum, pixel| *pixel = sum.0.map(|k| (k as f64 / unit) as f32));
+        let mut pixels = vec![[0.0; 3]; self.width as usize * self.height as usize];
+        self.for_each_sum(0..self.height, &mut pixels, |sum, pixel| {
+            *pixel = sum.0.map(|k| (k as f64 / unit) as f32)
+        });
+        pixels
     }
 
     /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.

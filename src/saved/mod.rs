@@ -12,17 +12,16 @@ pub use replaced::Replaced;
 pub use rescue::rescue;
 
 use crate::files::ShownPath;
-use crate::film::{CheckpointError, Description, Film, checkpoint, key};
+use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
 use crate::output::{OutputError, OutputFormat, RECIPE_LIMIT, length_of_missing, read_description};
 use crate::recipe::{Recipe, file};
-use crate::render::{JobError, RenderJob};
+use crate::render::RenderJob;
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be opened or resumed. The message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// The scene file cannot be read.
     #[error(transparent)]
     Scene(#[from] file::FileError),
     /// The film is damaged, of another version, or cannot be read.
@@ -34,59 +33,20 @@ pub enum OpenError {
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
     Picture(OutputError),
-    /// The picture was written without its recipe, which is too long for a picture.
-    #[error(
-        "{} does not hold its recipe, which has {length} bytes; a picture holds at most {RECIPE_LIMIT}; open the scene \
-         file, or a film (.exr) of the picture",
-        path.shown()
-    )]
-    NoRecipe {
-        /// The file.
-        path: PathBuf,
-        /// The length of the recipe in bytes.
-        length: u64,
-    },
-    /// The recipe in the file cannot be parsed.
-    #[error("the recipe in {} cannot be read: {reason}", path.shown())]
-    Recipe {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with the recipe.
-        reason: Box<file::FileError>,
-    },
-    /// The recipe in the file cannot be rendered.
-    #[error("the recipe in {} cannot be rendered: {reason}", path.shown())]
-    Job {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with the recipe.
-        reason: Box<JobError>,
-    },
-    /// The film does not match its recipe.
-    #[error("the film in {} does not have the size that its recipe says; render it again", path.shown())]
-    Shape {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The film is of a different job than the one to be resumed.
+    /// The recipe in the file is missing or cannot be rendered, or the film does not match it.
+    #[error("{} {what}", path.shown())]
+    Recipe { path: PathBuf, what: String },
     #[error(
         "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
         path.shown()
     )]
-    OtherPicture {
-        /// The file.
-        path: PathBuf,
-        /// The first difference between the two jobs.
-        difference: String,
-    },
+    OtherPicture { path: PathBuf, difference: String },
 }
 
 /// The description in a picture or film, and the film itself.
 #[derive(Debug)]
 pub struct Saved {
-    /// The file.
     pub path: PathBuf,
-    /// The description in the file.
     pub description: Description,
     /// The film, if the file has one and it was read.
     pub film: Option<Film>,
@@ -98,21 +58,20 @@ impl Saved {
     /// # Errors
     /// [`OpenError::Film`], [`OpenError::NotFilm`] or [`OpenError::Picture`].
     pub fn read(path: &Path) -> Result<Self, OpenError> {
-        match checkpoint::load(path) {
-            Ok(read) => {
-                Ok(Saved { path: path.to_owned(), description: read.description, film: Some(read.film) })
+        let error = match checkpoint::load(path) {
+            Ok(FilmFile { film, description }) => {
+                return Ok(Saved { path: path.to_owned(), description, film: Some(film) });
             }
-            Err(error @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })) => {
-                let is_named_film = OutputFormat::from_path(path).is_ok_and(|of| of == OutputFormat::Exr);
-                match Self::describe(path) {
-                    // The name says that it is meant as a film.
-                    Err(OpenError::Picture(OutputError::NoDescription { .. })) if is_named_film => {
-                        Err(OpenError::NotFilm(error))
-                    }
-                    outcome => outcome,
-                }
+            Err(error @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })) => error,
+            Err(error) => return Err(OpenError::Film(error)),
+        };
+        match Self::describe(path) {
+            Err(OpenError::Picture(OutputError::NoDescription { .. }))
+                if matches!(OutputFormat::from_path(path), Ok(OutputFormat::Exr)) =>
+            {
+                Err(OpenError::NotFilm(error))
             }
-            Err(error) => Err(OpenError::Film(error)),
+            outcome => outcome,
         }
     }
 
@@ -128,14 +87,18 @@ impl Saved {
     /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
     ///
     /// # Errors
-    /// [`OpenError::Recipe`] or [`OpenError::NoRecipe`].
+    /// [`OpenError::Recipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
+        let no_recipe = |what| OpenError::Recipe { path: self.path.clone(), what };
         if let Some(length) = length_of_missing(self.description.recipe()) {
-            return Err(OpenError::NoRecipe { path: self.path.clone(), length });
+            return Err(no_recipe(format!(
+                "does not hold its recipe, which has {length} bytes; a picture holds at most {RECIPE_LIMIT}; open the \
+                 scene file, or a film (.exr) of the picture"
+            )));
         }
         let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
-            .map_err(|reason| OpenError::Recipe { path: self.path.clone(), reason: Box::new(reason) })?;
+            .map_err(|reason| no_recipe(format!("has a recipe that cannot be read: {reason}")))?;
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let name = self.description.get(key::SCENE).map(str::to_owned).or(stem).unwrap_or(label);
         Ok(Recipe { name, ..recipe })
@@ -156,14 +119,9 @@ impl Saved {
         self.description.get(key::SECONDS)?.parse().ok()
     }
 
-    /// The backend that rendered it, if the description names one.
-    pub fn backend(&self) -> Option<&str> {
-        self.description.get(key::BACKEND)
-    }
-
     /// The film with its tracing time and backend; `None` for a picture.
     fn into_film(self) -> Option<SavedFilm> {
-        let (seconds, backend) = (self.seconds(), self.backend().map(str::to_owned));
+        let (seconds, backend) = (self.seconds(), self.description.get(key::BACKEND).map(str::to_owned));
         self.film.map(|film| SavedFilm { film, seconds, backend })
     }
 }
@@ -171,7 +129,6 @@ impl Saved {
 /// A film that was read, with what its file says about the tracing.
 #[derive(Debug)]
 pub struct SavedFilm {
-    /// The film with its samples.
     pub film: Film,
     /// Seconds that tracing the samples took, if the file says so.
     pub seconds: Option<f64>,
@@ -196,7 +153,6 @@ pub enum Content {
 /// A file that was opened.
 #[derive(Debug)]
 pub struct Opened {
-    /// The file.
     pub path: PathBuf,
     /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
     pub recipe: Recipe,
@@ -226,7 +182,8 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if let Content::Film(saved) = &content
         && !job.fits(&saved.film)
     {
-        return Err(OpenError::Shape { path: path.to_owned() });
+        let what = "is a film that does not have the size that its recipe says; render it again".to_owned();
+        return Err(OpenError::Recipe { path: path.to_owned(), what });
     }
     Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
 }
@@ -263,7 +220,10 @@ pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
 }
 
 fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
-    recipe.job().map_err(|reason| OpenError::Job { path: path.to_owned(), reason: Box::new(reason) })
+    recipe.job().map_err(|reason| {
+        let what = format!("has a recipe that cannot be rendered: {reason}");
+        OpenError::Recipe { path: path.to_owned(), what }
+    })
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {

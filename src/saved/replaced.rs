@@ -2,7 +2,7 @@
 
 use super::difference::same_job;
 use crate::files::ShownPath;
-use crate::film::{CheckpointError, SampleRanges, checkpoint};
+use crate::film::{SampleRanges, checkpoint};
 use std::path::Path;
 
 /// What is in the place where a film is to be written.
@@ -12,17 +12,8 @@ pub enum Replaced {
     Nothing,
     /// A film of the same picture, with these samples.
     Same(SampleRanges),
-    /// A film of another picture.
-    Other {
-        /// Samples per pixel.
-        count: u64,
-        /// The first difference between the two pictures.
-        difference: String,
-    },
-    /// A film that this program cannot read, because it is damaged or of another version.
-    Unreadable(CheckpointError),
-    /// A file of another kind.
-    NoFilm,
+    /// Something else, in words: `holds ...` or `cannot be read as a film (...)`.
+    Other(String),
 }
 
 impl Replaced {
@@ -34,33 +25,26 @@ impl Replaced {
         match checkpoint::read_head(path) {
             Ok(head) => match same_job(recipe, head.description.recipe()) {
                 Ok(()) => Replaced::Same(head.samples),
-                Err(difference) => Replaced::Other { count: head.samples.count(), difference },
+                Err(difference) => {
+                    let count = per_pixel(head.samples.count());
+                    Replaced::Other(format!("holds {count} of another picture ({difference})"))
+                }
             },
-            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => Replaced::NoFilm,
-            Err(error) => Replaced::Unreadable(error),
+            Err(error) => Replaced::Other(format!("cannot be read as a film ({error})")),
         }
     }
 
-    /// A warning that `--out` replaces the film at `path`, if that loses samples: those for which `is_kept` is false, and
-    /// those of other pictures.
-    pub fn warning(&self, path: &Path, is_kept: impl FnOnce(&SampleRanges) -> bool) -> Option<String> {
-        let path = path.shown();
-        match self {
-            Replaced::Same(samples) if !is_kept(samples) => Some(format!(
-                "--out replaces {path}, which holds {} of this picture ({samples}); to keep them, name another file",
-                per_pixel(samples.count())
-            )),
-            Replaced::Other { count, difference } => Some(format!(
-                "--out replaces {path}, which holds {} of another picture ({difference}); to keep them, name another file",
-                per_pixel(*count)
-            )),
-            // Rendering a damaged film again is the way to mend it.
-            Replaced::Unreadable(CheckpointError::Damaged { .. }) => None,
-            Replaced::Unreadable(error) => {
-                Some(format!("--out replaces {path}, whose samples cannot be read: {error}"))
+    /// A warning that `--out` replaces the file at `path`, unless it is a film of this picture whose samples `are_kept`.
+    pub fn warning(&self, path: &Path, are_kept: impl FnOnce(&SampleRanges) -> bool) -> Option<String> {
+        let what = match self {
+            Replaced::Nothing => return None,
+            Replaced::Same(samples) if are_kept(samples) => return None,
+            Replaced::Same(samples) => {
+                format!("holds {} of this picture ({samples})", per_pixel(samples.count()))
             }
-            Replaced::Nothing | Replaced::Same(_) | Replaced::NoFilm => None,
-        }
+            Replaced::Other(what) => what.clone(),
+        };
+        Some(format!("--out replaces {}, which {what}; to keep it, name another file", path.shown()))
     }
 
     /// Why `--checkpoint` must not be the file at `path`, and what to do; `None` if nothing would be lost.
@@ -74,14 +58,7 @@ impl Replaced {
                  --continue), or {REMEDY}",
                 per_pixel(samples.count())
             )),
-            Replaced::Other { count, difference } => Some(format!(
-                "{path} already holds {} of another picture: {difference}; {REMEDY}",
-                per_pixel(*count)
-            )),
-            Replaced::Unreadable(error) => {
-                Some(format!("{path} is there, but its samples cannot be read ({error}); {REMEDY}"))
-            }
-            Replaced::NoFilm => Some(format!("{path} is there, but it is not a film of Weekender; {REMEDY}")),
+            Replaced::Other(what) => Some(format!("{path} is there already and {what}; {REMEDY}")),
         }
     }
 }
@@ -129,43 +106,14 @@ mod tests {
             let found = Replaced::at(&at(name), &text);
             assert_eq!((found.warning(&path, |_| false), found.refusal(&path)), (None, None), "{name}");
         }
-        std::fs::write(at("no.exr"), "a picture").unwrap();
-        let found = Replaced::at(&at("no.exr"), &text);
-        assert_eq!(found, Replaced::NoFilm);
-        assert!(found.warning(&path, |_| false).is_none() && found.refusal(&path).is_some());
         let mut bytes = std::fs::read(&path).unwrap();
         bytes.truncate(100);
-        std::fs::write(at("short.exr"), bytes).unwrap();
-        let found = Replaced::at(&at("short.exr"), &text);
-        let Replaced::Unreadable(CheckpointError::Damaged { .. }) = found else { panic!("{found:?}") };
-        assert!(found.warning(&path, |_| false).is_none());
-        assert!(found.refusal(&path).unwrap().contains("is damaged"));
-    }
-
-    #[test]
-    fn samples_of_another_version_are_not_lost_without_a_word() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("a.exr");
-        let mut recipe = Recipe::find("three-spheres").unwrap();
-        (recipe.settings.width, recipe.settings.height) = (4, 3);
-        let text = file::to_picture_toml(&recipe);
-        let mut film = recipe.job().unwrap().new_film();
-        film.record(0..1, 0).unwrap();
-        checkpoint::save(&path, &film, &Description::new(&text)).unwrap();
-        let told = Replaced::at(&path, &text).refusal(&path).unwrap();
-        assert!(told.contains("a.exr already holds 1 sample per pixel of this picture (0..1)"), "{told}");
-
-        let version = b"sample_version = 3";
-        let mut bytes = std::fs::read(&path).unwrap();
-        let place = bytes.windows(version.len()).position(|window| window == version).unwrap();
-        bytes[place + version.len() - 1] = b'2';
-        std::fs::write(&path, bytes).unwrap();
-        let found = Replaced::at(&path, &text);
-        let (warning, refusal) = (found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap());
-        assert!(warning.contains("a.exr, whose samples cannot be read: "), "{warning}");
-        assert!(refusal.contains("a.exr is there, but its samples cannot be read ("), "{refusal}");
-        for told in [warning, refusal] {
-            assert!(told.contains("samples of version 2"), "{told}");
+        for (content, part) in [(&b"a picture"[..], "is not an EXR file"), (&bytes, "is damaged")] {
+            std::fs::write(at("no.exr"), content).unwrap();
+            let found = Replaced::at(&at("no.exr"), &text);
+            for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+                assert!(told.contains(part), "{told}");
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! Rescues samples whose file cannot be written, by saving them wherever there is room.
 
-use crate::files::{self, ShownPath, home_directory, state_directory};
+use crate::files::{ShownPath, home_directory, state_directory};
 use crate::film::{Description, Film, checkpoint, key};
 use crate::recipe::plain_name;
 use std::env;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// Most characters of the picture's name in the name of the file.
@@ -24,7 +25,9 @@ pub fn rescue(
         // If it cannot be created, writing the file will say so.
         let _ = std::fs::create_dir_all(state);
     }
-    keep_in(&places(first), name, film, description)
+    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
+    let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
+    keep_in(&places, name, film, description)
 }
 
 fn keep_in(
@@ -35,13 +38,9 @@ fn keep_in(
 ) -> Result<PathBuf, String> {
     let mut reasons = Vec::new();
     for place in places {
-        let Some(path) = free_name(place, name) else {
-            reasons.push(format!("{} (no free name)", place.shown()));
-            continue;
-        };
-        match checkpoint::save(&path, film, description) {
-            Ok(()) => return Ok(path),
-            Err(error) => reasons.push(format!("{} ({})", place.shown(), error.reason)),
+        match save_in(place, name, film, description) {
+            Ok(path) => return Ok(path),
+            Err(error) => reasons.push(format!("{} ({error})", place.shown())),
         }
     }
     let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
@@ -53,32 +52,21 @@ fn keep_in(
     ))
 }
 
-fn places(first: &[PathBuf]) -> Vec<PathBuf> {
-    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
-    let mut places: Vec<PathBuf> = Vec::new();
-    for place in first.iter().cloned().chain(others.into_iter().flatten()) {
-        if !places.contains(&place) {
-            places.push(place);
-        }
-    }
-    places
-}
-
-fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
+fn save_in(directory: &Path, picture: &str, film: &Film, description: &Description) -> io::Result<PathBuf> {
     let picture: String = plain_name(picture).chars().take(NAME_LENGTH).collect();
-    let process = std::process::id();
-    files::free_name(|number| {
-        directory.join(match number {
-            1 => format!("weekender-{picture}-{process}.exr"),
-            number => format!("weekender-{picture}-{process}-{number}.exr"),
-        })
-    })
+    let prefix = format!("weekender-{picture}-");
+    let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
+    let mut writer = BufWriter::new(file.as_file());
+    checkpoint::write(film, description, &mut writer)?;
+    writer.flush()?;
+    drop(writer);
+    file.as_file().sync_data()?;
+    Ok(file.into_temp_path().keep()?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::NAME_LIMIT;
 
     #[test]
     fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
@@ -105,34 +93,5 @@ mod tests {
         for part in ["lost", "6 per pixel", "7 s", "file/x"] {
             assert!(lost.contains(part), "{lost} should say {part}");
         }
-    }
-
-    #[test]
-    fn the_given_places_come_first_and_each_once() {
-        let [first, second] = [PathBuf::from("x"), env::temp_dir()];
-        let places = places(&[first.clone(), second.clone(), first.clone()]);
-        assert_eq!(places[..2], [first, second.clone()]);
-        assert_eq!(places.iter().filter(|place| **place == second).count(), 1, "{places:?}");
-    }
-
-    #[test]
-    fn a_place_without_a_free_name_is_passed_over() {
-        let directory = tempfile::tempdir().unwrap();
-        let [full, free] = ["full", "free"].map(|name| directory.path().join(name));
-        for place in [&full, &free] {
-            std::fs::create_dir(place).unwrap();
-        }
-        let process = std::process::id();
-        std::fs::write(full.join(format!("weekender-a-{process}.exr")), "").unwrap();
-        for number in 2..=NAME_LIMIT {
-            std::fs::write(full.join(format!("weekender-a-{process}-{number}.exr")), "").unwrap();
-        }
-        let (mut film, description) = (Film::new(4, 3, 2), Description::new("r"));
-        film.record(0..6, 0).unwrap();
-        let kept = keep_in(&[full.clone(), free.clone()], "a", &film, &description).unwrap();
-        assert_eq!(kept.parent(), Some(free.as_path()));
-        let lost = keep_in(std::slice::from_ref(&full), "a", &film, &description).unwrap_err();
-        assert!(lost.ends_with(&format!("failed, too: {} (no free name)", full.display())), "{lost}");
-        assert!(lost.starts_with("the samples are lost (6 per pixel); saving them elsewhere"), "{lost}");
     }
 }

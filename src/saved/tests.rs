@@ -41,27 +41,13 @@ fn a_film_is_opened_with_its_samples_and_what_it_says() {
 }
 
 #[test]
-fn what_has_no_name_is_called_as_its_file() {
+fn a_picture_says_its_samples_and_what_has_no_name_is_called_as_its_file() {
     let directory = tempfile::tempdir().unwrap();
-    for name in ["plain.exr", "plain.png", "plain.ppm"] {
-        let path = written(&directory, name, &[]);
-        assert_eq!(open(&path).unwrap().recipe.name, "plain", "{name}");
-        assert_eq!(Saved::describe(&path).unwrap().recipe().unwrap().name, "plain", "{name}");
-    }
-    let scene = directory.path().join("mine.toml");
-    std::fs::write(&scene, file::to_toml(&film(&[]).0)).unwrap();
-    let opened = open(&scene).unwrap();
-    assert_eq!((opened.recipe.name.as_str(), matches!(opened.content, Content::Scene)), ("mine", true));
-    assert!(open_film(&scene).is_err());
-}
-
-#[test]
-fn a_picture_has_the_samples_that_it_says() {
-    let directory = tempfile::tempdir().unwrap();
-    for (said, samples) in [("7", Some(7)), ("0", None), ("-1", None), ("many", None)] {
-        let path = written(&directory, "a.png", &[(key::SAMPLES, said)]);
-        let Content::Picture { samples: found } = open(&path).unwrap().content else { panic!("{said}") };
-        assert_eq!(found, samples);
+    for (said, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
+        let path = written(&directory, "plain.png", &[(key::SAMPLES, said)]);
+        let opened = open(&path).unwrap();
+        let Content::Picture { samples: found } = opened.content else { panic!("{said}") };
+        assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
         assert!(matches!(open_film(&path), Err(OpenError::NotFilm(_))));
     }
 }
@@ -92,9 +78,9 @@ fn a_film_that_its_recipe_does_not_fit_is_refused() {
         recipe.settings.estimate_error = estimate_error;
         let description = Description::new(&file::to_toml(&recipe));
         write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
-        assert!(matches!(open(&path), Err(OpenError::Shape { .. })));
+        assert!(matches!(open(&path), Err(OpenError::Recipe { .. })));
         let job = recipe.job().unwrap();
-        assert!(matches!(resume(&path, &job), Err(OpenError::Shape { .. })));
+        assert!(matches!(resume(&path, &job), Err(OpenError::Recipe { .. })));
     }
 }
 

@@ -18,26 +18,6 @@ fn warnings(directory: &Path, arguments: &[&str]) -> Vec<String> {
 }
 
 #[test]
-fn light_that_a_film_cannot_hold_is_warned_of() {
-    let directory = temp();
-    for (light, samples, part) in [
-        ("1e-7", "16", "the picture is so dark that rounding matters"),
-        ("1e-7", "1", "the picture is so dark that rounding matters"),
-        ("2.9e-8", "16", "the brightest light of the scene is 2.9e-8"),
-        ("0", "16", "the scene has no light"),
-    ] {
-        let scene = format!(
-            "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n\
-             [sky]\nbottom = [{light}, {light}, {light}]\ntop = [{light}, {light}, {light}]\n"
-        );
-        std::fs::write(directory.path().join("dark.toml"), scene).unwrap();
-        let warnings = warnings(directory.path(), &["--scene", "dark.toml", "--samples", samples]);
-        assert!(warnings.len() == 1 && warnings[0].contains(part), "{light}: {warnings:?}");
-    }
-    assert!(warnings(directory.path(), &["--samples", "1"]).is_empty());
-}
-
-#[test]
 fn flags_that_a_stage_ignores_are_named() {
     let directory = temp();
     let tiny = ["--stage", "ppm-tiny", "--look-from", "1,2,3"];

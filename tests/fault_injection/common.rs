@@ -23,9 +23,19 @@ pub fn rounds(usual: u32) -> u32 {
     std::env::var("WEEKENDER_FAULT_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
 }
 
+/// The program with all signals as usual, also if the tests are started by a script in the background, which ignores
+/// SIGINT.
 pub fn weekender(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = crate::program_common::weekender(at, arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let program = crate::program_common::weekender(at, arguments);
+    let mut command = Command::new("env");
+    command.arg("--default-signal=INT,TERM,HUP").arg(program.get_program()).args(program.get_args());
+    for (name, value) in program.get_envs() {
+        match value {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
+    }
+    command.current_dir(at).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 

@@ -1,8 +1,9 @@
 //! Full disks, limits on files and memory, and other runs.
 
-use super::common::{PICTURE, PROGRAM, batch, film, names, rounds, succeeds, text, wait, weekender};
+use super::common::{
+    ENDLESS, PICTURE, PROGRAM, batch, film, names, signal, succeeds, text, until, wait, weekender,
+};
 use std::fs::{self};
-use std::io::Read;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -93,28 +94,24 @@ fn films_are_read_and_written_where_no_thread_starts() {
 }
 
 #[test]
-fn two_runs_on_one_film_lose_nothing() {
-    for _ in 0..rounds(2) {
-        let at = TempDir::new().unwrap();
-        let at = at.path();
-        succeeds(&mut batch(at, "off", &["--samples", "8", "--checkpoint", "g.exr", "--out", "g.png"]));
-        let go_on = |range: &str, out: &str| {
-            let flags =
-                ["--resume", "g.exr", "--checkpoint", "g.exr", "--every", "0.1s", "--sample-range", range];
-            batch(at, "off", &[&flags[..], &["--out", out]].concat()).spawn().unwrap()
-        };
-        let mut runs = [go_on("8..3000", "a.png"), go_on("3000..6000", "b.png")];
-        for run in &mut runs {
-            let mut told = String::new();
-            run.stderr.take().unwrap().read_to_string(&mut told).unwrap();
-            assert!(wait(run).success(), "{told}");
-        }
-        succeeds(&mut batch(at, "off", &["--samples", "6000", "--out", "whole.exr"]));
-        assert!(
-            film(&at.join("g.exr")) == film(&at.join("whole.exr")),
-            "{}",
-            film(&at.join("g.exr")).samples()
-        );
-        assert_eq!(names(at), ["a.png", "b.png", "g.exr", "g.png", "whole.exr"]);
+fn the_second_run_on_one_film_is_refused_until_the_first_has_ended_or_was_killed() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let second = |flags: &[&str]| {
+        let output = batch(at, "off", &[flags, &["--samples", "2"]].concat()).output().unwrap();
+        (output.status.code(), text(&output.stderr))
+    };
+    let mut first = batch(at, "off", &ENDLESS).spawn().unwrap();
+    until("the film is not written", || at.join("g.exr").exists());
+    for flags in [&["--checkpoint", "./g.exr", "--continue", "--out", "b.png"][..], &["--out", "g.exr"]] {
+        let (code, told) = second(flags);
+        assert_eq!(code, Some(2), "{told}");
+        assert!(told.contains("g.exr is locked") && told.contains("name another file"), "{told}");
     }
+    assert_eq!(weekender(at, &["merge", "g.exr", "--out", "h.exr"]).status().unwrap().code(), Some(0));
+    signal(&first, "KILL");
+    wait(&mut first);
+    let (code, told) = second(&["--checkpoint", "g.exr", "--continue", "--out", "b.png"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(names(at), ["b.png", "g.exr", "h.exr"]);
 }

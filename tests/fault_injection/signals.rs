@@ -1,9 +1,10 @@
 //! Kills and other signals.
 
 use super::common::{
-    ENDLESS, PATIENCE, batch, film, names, rounds, signal, succeeds, text, until, wait, weekender,
+    ENDLESS, PATIENCE, PICTURE, PROGRAM, batch, film, names, rounds, signal, succeeds, text, until, wait,
+    weekender,
 };
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
@@ -155,21 +156,6 @@ fn a_signal_that_arrives_twice_is_one() {
 }
 
 #[test]
-fn who_presses_ctrl_c_is_told_that_a_second_time_is_faster() {
-    for (name, is_told) in [("INT", true), ("TERM", false)] {
-        let at = TempDir::new().unwrap();
-        let at = at.path();
-        let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
-        until("the film is not written", || at.join("g.exr").exists());
-        signal(&child, name);
-        wait(&mut child);
-        let told = text(&child.wait_with_output().unwrap().stderr);
-        assert!(told.contains("finishing the current samples"), "{name}: {told}");
-        assert_eq!(told.contains("press Ctrl-C again"), is_told, "{name}: {told}");
-    }
-}
-
-#[test]
 fn a_second_signal_ends_the_program_at_once() {
     // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
@@ -199,36 +185,15 @@ fn a_second_signal_ends_the_program_at_once() {
     panic!("no pass was under way when the first signal came");
 }
 
-#[test]
-fn a_signal_ends_the_gallery_of_stages_with_the_present_one() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let flags = ["--stage", "all", "--samples", "4294967296", "--estimate-error", "off", "--out", "gallery"];
-    let mut child = batch(at, "on", &[&flags[..], &["--json", "figures.json"]].concat()).spawn().unwrap();
-    let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    stderr.read_line(&mut String::new()).unwrap();
-    sleep(Duration::from_millis(300));
-    signal(&child, "INT");
-    assert_eq!(wait(&mut child).code(), Some(130));
-    let pictures = names(&at.join("gallery"));
-    assert!(pictures.len() <= 1, "one stage at most: {pictures:?}");
-    let figures: serde_json::Value =
-        serde_json::from_slice(&fs::read(at.join("figures.json")).unwrap()).unwrap();
-    assert_eq!(figures["stages"].as_array().map(Vec::len), Some(1), "{figures}");
-    assert_eq!(figures["stages"][0]["ended_by"], "stopped");
-}
-
 /// What nohup does for SIGHUP, and a shell without job control for SIGINT.
-#[cfg(target_os = "linux")]
 #[test]
 fn a_signal_that_was_ignored_at_the_start_stays_ignored() {
     for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
         let at = TempDir::new().unwrap();
         let at = at.path();
-        let render = batch(at, "off", &ENDLESS);
         let mut command = Command::new("sh");
-        command.args(["-c", "trap '' \"$0\" && exec \"$@\"", ignored]);
-        command.arg(render.get_program()).args(render.get_args()).current_dir(at);
+        command.args(["-c", "trap '' \"$0\" && exec \"$@\"", ignored, PROGRAM]);
+        command.args(PICTURE).arg("off").args(ENDLESS).current_dir(at);
         let mut child =
             command.stdin(Stdio::null()).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
         let path = at.join("g.exr");

@@ -1,12 +1,12 @@
 //! Film files: what is read back, and what is refused.
 
-use super::common::{description, noisy_film, same_recipe_text};
+use super::common::{description, noisy_film};
 use proptest::prelude::*;
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{CheckpointError, FIXED_POINT_MAX, Film, checkpoint, merge_files};
+use weekender::film::{CheckpointError, FIXED_POINT_MAX, Film, checkpoint};
 use weekender::output::decode_description;
 
 proptest! {
@@ -89,69 +89,22 @@ fn another_version_is_refused() {
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
     let writer = concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned();
-    spoil(&path, b"\nsample_version = 3", 18, b'2');
-    let error = load_error(&path);
-    for part in ["samples of version 2", &writer, "samples of version 3", "render it again"] {
-        assert!(error.to_string().contains(part), "{error}");
-    }
-    assert_eq!(
-        error,
-        CheckpointError::SampleVersion { path: path.clone(), version: 2, writer: writer.clone() }
-    );
-    for (version, digit) in [(9, b'9'), (2, b'2')] {
+    for (needle, offset, digit, layout, samples) in [
+        (&b"\nsample_version = 3"[..], 18, b'2', 4, 2),
+        (b"version = 4", 10, b'9', 9, 3),
+        (b"version = 4", 10, b'3', 3, 3),
+    ] {
         std::fs::write(&path, &whole).unwrap();
-        spoil(&path, b"version = 4", 10, digit);
+        spoil(&path, needle, offset, digit);
         let error = load_error(&path);
         let told = error.to_string();
-        assert!(told.contains(&format!("version {version}")) && told.contains("versions 3 to 4"), "{told}");
-        assert_eq!(error, CheckpointError::Version { path: path.clone(), version, writer: writer.clone() });
-    }
-}
-
-/// The words of a channel, read without this program.
-fn channel(path: &Path, name: &str) -> Vec<u32> {
-    use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
-    let read = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
-    let image = read.all_attributes().from_file(path).unwrap();
-    let channels = image.layer_data.channel_data.list;
-    let found = channels.into_iter().find(|channel| channel.name.to_string() == name).unwrap();
-    let FlatSamples::U32(words) = found.sample_data else { panic!("{name} has no words") };
-    words
-}
-
-#[test]
-fn a_film_of_the_last_version_is_read_and_goes_on_as_one_of_this() {
-    let old = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/version-3.exr"));
-    let head = checkpoint::check(old).unwrap();
-    assert_eq!(
-        (head.version, head.width, head.height, head.samples.to_string()),
-        (3, 16, 9, "0..6".to_owned())
-    );
-    let read = checkpoint::load(old).unwrap();
-    for (half, half_name) in ["a", "b"].into_iter().enumerate() {
-        for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
-            let [low, high] =
-                ["lo", "hi"].map(|word| channel(old, &format!("sum.{half_name}.{name}.{word}")));
-            for (pixel, (low, high)) in low.iter().zip(&high).enumerate() {
-                let sum = u64::from(*low) | u64::from(*high) << 32;
-                assert_eq!(read.film.halves()[half][pixel].0[colour], sum);
-            }
+        for part in
+            [&format!("layout {layout} with samples of version {samples}"), &writer, "render it again"]
+        {
+            assert!(told.contains(part), "{part} is not in {told}");
         }
-    }
-    let directory = tempfile::tempdir().unwrap();
-    let [new, spoilt] = ["new.exr", "spoilt.exr"].map(|name| directory.path().join(name));
-    checkpoint::save(&new, &read.film, &read.description).unwrap();
-    assert_eq!(checkpoint::read_head(&new).unwrap().version, 4);
-    assert!(checkpoint::load(&new).unwrap() == read);
-    // It can be merged, and damage is still noticed.
-    let merged = merge_files(&[old], same_recipe_text).unwrap();
-    assert!(merged.film == read.film);
-    let mut bytes = std::fs::read(old).unwrap();
-    let middle = bytes.len() * 2 / 3;
-    bytes[middle] ^= 4;
-    std::fs::write(&spoilt, bytes).unwrap();
-    for error in [checkpoint::load(&spoilt).map(drop), checkpoint::check(&spoilt).map(drop)] {
-        assert!(matches!(error, Err(CheckpointError::Damaged { .. })), "{error:?}");
+        let (path, writer) = (path.clone(), writer.clone());
+        assert_eq!(error, CheckpointError::Version { path, layout, samples, writer });
     }
 }
 
@@ -242,13 +195,13 @@ fn damage_is_located() {
 }
 
 #[test]
-fn a_missing_channel_is_named() {
+fn other_channels_are_not_those_of_a_film() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
     spoil(&path, b"rest.R.lo", 8, b'p');
     let message = load_error(&path).to_string();
-    assert!(message.contains("rest.R.lo is missing"), "{message}");
+    assert!(message.contains("rest.R.lp"), "{message}");
 }
 
 #[test]
@@ -268,7 +221,7 @@ fn the_head_of_a_film_file_tells_everything_but_the_sums() {
 }
 
 #[test]
-fn sums_that_their_samples_cannot_give_are_refused_with_their_rows() {
+fn sums_that_their_samples_cannot_give_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     let most = u64::from(FIXED_POINT_MAX);
@@ -280,14 +233,9 @@ fn sums_that_their_samples_cannot_give_are_refused_with_their_rows() {
         film.halves_mut()[half][39].0[1] = sum;
         film.record(0..3, 0).unwrap();
         checkpoint::save(&path, &film, &description()).unwrap();
-        let (checked, loaded) = (checkpoint::check(&path), checkpoint::load(&path));
-        if is_possible {
-            assert!(checked.is_ok() && loaded.unwrap().film == film, "{sum} in half {half}");
-        } else {
-            for told in [checked.unwrap_err(), loaded.unwrap_err()].map(|error| error.to_string()) {
-                let part = "the rows 16 to 19: a sum is larger than its samples can give";
-                assert!(told.contains(part), "{sum} in half {half}: {told}");
-            }
+        match checkpoint::load(&path) {
+            Ok(read) => assert!(is_possible && read.film == film, "{sum} in half {half}"),
+            Err(error) => assert!(!is_possible && error.to_string().contains("pixel 39"), "{sum}: {error}"),
         }
     }
 }

@@ -7,5 +7,4 @@ mod error_estimate;
 mod files;
 mod merging;
 mod ranges;
-mod shared_file;
 mod sums;

@@ -14,7 +14,7 @@ pub fn turn(directory: &Path) -> Option<File> {
 }
 
 fn turn_within(directory: &Path, patience: Duration) -> Option<File> {
-    lock_path(&directory.join("session.lock"), patience)
+    lock_path(&directory.join("session.lock"), patience).ok()
 }
 
 #[cfg(test)]

@@ -13,35 +13,27 @@
 //! affect the film: in standard attributes for other programs (the program's name, the window's position, the pixel
 //! aspect ratio), and in white space.
 
-mod apply;
 mod head;
 mod length;
 mod open;
 mod planes;
 mod read;
-mod threads;
 mod write;
 
-pub(super) use apply::{ApplyError, Sign, apply};
-pub use apply::{check, load};
 pub(crate) use length::check_length;
-pub(super) use open::head_of;
 pub(crate) use open::read_description;
 pub use open::{FilmHead, read_head};
-pub use read::read;
+pub use read::{check, load, read};
 pub use write::save;
 pub(crate) use write::write;
 
-use super::{Checksum, Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
+use super::{Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
 use crate::files::{InputError, ShownPath};
 use crate::memory::MemoryError;
 use std::path::PathBuf;
 
 /// The version of the layout of film files.
 pub const VERSION: u32 = 4;
-
-/// The oldest layout that is read. It has the sums of each half, and one checksum for all of them.
-pub const OLDEST_VERSION: u32 = 3;
 
 /// The version of the samples: of the random numbers and of what is made of them. Samples of different versions do not
 /// belong to one film, so films of other versions are neither resumed nor merged.
@@ -65,72 +57,35 @@ pub struct FilmFile {
 /// Why a file cannot be loaded as a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CheckpointError {
-    /// The file cannot be read.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// The file is not an EXR file.
     #[error("{} is not an EXR file: it does not begin like one; films are the .exr files that Weekender saves", path.shown())]
-    NotExr {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file is an EXR picture without a film.
+    NotExr { path: PathBuf },
     #[error(
         "{} is a picture without a film's sums, so no samples can be added to it; only .exr files written by Weekender have them",
         path.shown()
     )]
-    NotFilm {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The samples of the film are of another version.
+    NotFilm { path: PathBuf },
+    /// The layout of the file or the samples of its film are of another version.
     #[error(
-        "{} holds samples of version {version}, traced by {writer}, but this program ({}) traces samples of version {SAMPLE_VERSION}, which cannot be added to them; continue with {writer}, or render it again",
-        path.shown(), SOFTWARE
+        "{} is a film of layout {layout} with samples of version {samples}, written by {writer}, but this program \
+         ({SOFTWARE}) has layout {VERSION} and samples of version {SAMPLE_VERSION}; continue with {writer}, or render it again",
+        path.shown()
     )]
-    SampleVersion {
-        /// The file.
-        path: PathBuf,
-        /// The version found in the file.
-        version: i64,
-        /// The program that wrote it.
-        writer: String,
-    },
-    /// The file has a layout that this program does not know.
-    #[error(
-        "{} is a film file of version {version}, written by {writer}, but this program ({}) reads versions {OLDEST_VERSION} to {VERSION}; continue with {writer}, or render it again",
-        path.shown(), SOFTWARE
-    )]
-    Version {
-        /// The file.
-        path: PathBuf,
-        /// The version found in the file.
-        version: i64,
-        /// The program that wrote it.
-        writer: String,
-    },
+    Version { path: PathBuf, layout: i64, samples: i64, writer: String },
     /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.shown())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        what: String,
-    },
+    Damaged { path: PathBuf, what: String },
     /// Another program wrote to the file meanwhile, as a copy in its place does.
     #[error("{} has changed while it was read; read it again when it is complete", path.shown())]
-    Changed {
-        /// The file.
-        path: PathBuf,
-    },
-    /// There is not enough memory for the film.
+    Changed { path: PathBuf },
     #[error("cannot read {}: {reason}", path.shown())]
-    Memory {
-        /// The file.
-        path: PathBuf,
-        /// How much memory it needs and how much is available.
-        reason: MemoryError,
-    },
+    Memory { path: PathBuf, reason: MemoryError },
+}
+
+/// Threads that read or write a film file. More than eight gain little: they wait for memory and disk.
+fn threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from).min(8)
 }
 
 #[cfg(test)]
@@ -158,7 +113,7 @@ mod tests {
         let film = film();
         let mut head = Head::of(&film, TEXTS).unwrap();
         change(&mut head);
-        head.seal(TEXTS);
+        head.head_checksum = head.checksum(TEXTS);
         let mut file = Cursor::new(Vec::new());
         write_with(&film, TEXTS, &head, &mut file).unwrap();
         file.into_inner()
@@ -180,12 +135,12 @@ mod tests {
         refused(|head| head.samples = vec![[7, 7]], "7..7");
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
-        refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the sums do not match");
+        refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the ");
         refused(|head| head.bands = Vec::new(), "0 checksums for 1 bands");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
         refused(|head| head.halves = 3, "3 halves");
-        refused(|head| head.halves = 1, "a film has no channel");
+        refused(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
         refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
 

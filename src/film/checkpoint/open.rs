@@ -1,30 +1,31 @@
 //! Opening film files: the head, the file's length and its description are checked before any sum is read.
 
-use super::head::{Head, HeadError, Texts};
+use super::head::{Head, Texts, Versions, band_count};
 use super::length::check_length;
-use super::planes::Plane;
-use super::{CheckpointError, Description, FILM_ATTRIBUTE, FilmError, MAGIC, RECIPE_ATTRIBUTE, SampleRanges};
+use super::planes::{self, Plane};
+use super::{
+    CheckpointError, Description, FILM_ATTRIBUTE, MAGIC, RECIPE_ATTRIBUTE, SAMPLE_VERSION, SampleRanges,
+    VERSION,
+};
 use crate::files::{self, InputError};
 use exr::block::reader::Reader;
 use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, MetaData};
+use std::fmt::Display;
 use std::io::{BufReader, Read, Seek};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What a film file says about its film, without the sums.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmHead {
-    /// Pixels across.
     pub width: u32,
-    /// Pixels down.
     pub height: u32,
-    /// Halves, 1 or 2.
+    /// 1 or 2.
     pub halves: usize,
     /// The samples that every pixel holds.
     pub samples: SampleRanges,
     /// Samples that were left out, over all pixels.
     pub rejected: u64,
-    /// Recipe and other entries.
     pub description: Description,
     /// Version of the file's layout.
     pub version: u32,
@@ -40,55 +41,46 @@ pub struct FilmHead {
 /// [`CheckpointError`]; each message says what to do.
 pub fn read_head(path: &Path) -> Result<FilmHead, CheckpointError> {
     let (file, length) = files::open(path)?;
-    Ok(head_of(BufReader::new(file), length, path)?.0)
-}
-
-/// The same from a reader of `length` bytes, with the film's mark: see [`Head::mark`]. Messages name `path`.
-pub(in crate::film) fn head_of(
-    reader: impl Read + Seek,
-    length: u64,
-    path: &Path,
-) -> Result<(FilmHead, String), CheckpointError> {
-    let opened = Opened::new(reader, length, path)?;
-    Ok((opened.about, opened.head.mark()))
+    Ok(Opened::new(BufReader::new(file), length, path)?.0.about)
 }
 
 /// A film file whose head has been read and checked.
-pub(super) struct Opened<'a, R> {
-    pub file: NamedFile<'a>,
-    pub head: Head,
+pub(super) struct Opened<'a> {
+    pub path: &'a Path,
+    pub header: Header,
     pub about: FilmHead,
+    /// The checksum of each band.
+    pub bands: Vec<String>,
     /// What each channel holds.
     pub planes: Vec<Plane>,
-    /// The recipe and the comments as they are stored.
-    pub texts: [Vec<u8>; 2],
-    pub reader: Reader<R>,
 }
 
-impl<'a, R: Read + Seek> Opened<'a, R> {
-    pub fn new(mut reader: R, length: u64, path: &'a Path) -> Result<Self, CheckpointError> {
-        let file = NamedFile { path };
-        file.check_magic(&mut reader)?;
-        let reader = Reader::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
-        let [header] = reader.headers() else { return Err(file.not_film()) };
-        let head = file.head(header)?.ok_or_else(|| file.not_film())?;
-        let planes = Plane::find(header, &head).map_err(|what| file.damaged(what))?;
-        check_length(header, length).map_err(|what| file.damaged(what))?;
-        let description = file.description(header, &head)?;
-        let samples = head.ranges().map_err(|error| file.damaged(error))?;
-        let texts = texts(header).map(|texts| [texts.recipe.to_vec(), texts.comments.to_vec()]);
+impl<'a> Opened<'a> {
+    /// Opens a film of `length` bytes. Messages name `path`.
+    pub fn new<R: Read + Seek>(
+        mut reader: R,
+        length: u64,
+        path: &'a Path,
+    ) -> Result<(Self, Reader<R>), CheckpointError> {
+        check_magic(&mut reader, path)?;
+        let reader = Reader::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
+        let not_film = || CheckpointError::NotFilm { path: path.to_owned() };
+        let [header] = reader.headers() else { return Err(not_film()) };
+        let (head, description) = read_texts(header, path)?.ok_or_else(not_film)?;
+        let planes = planes::find(header, &head).map_err(|what| damaged(path, what))?;
+        check_length(header, length).map_err(|what| damaged(path, what))?;
         let about = FilmHead {
             width: head.width,
             height: head.height,
             halves: head.halves,
-            samples,
+            samples: head.ranges().map_err(|error| damaged(path, error))?,
             rejected: head.rejected,
             description,
             version: head.version,
             sample_version: head.sample_version,
             bytes: length,
         };
-        Ok(Opened { file, head, about, planes, texts: texts.ok_or_else(|| file.not_film())?, reader })
+        Ok((Opened { path, header: header.clone(), about, bands: head.bands, planes }, reader))
     }
 }
 
@@ -100,86 +92,65 @@ pub(crate) fn read_description(
     mut reader: impl Read + Seek,
     path: &Path,
 ) -> Result<Option<Description>, CheckpointError> {
-    let file = NamedFile { path };
-    file.check_magic(&mut reader)?;
-    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
+    check_magic(&mut reader, path)?;
+    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
     let [header] = meta.headers.as_slice() else { return Ok(None) };
-    let Some(head) = file.head(header)? else { return Ok(None) };
-    file.description(header, &head).map(Some)
+    Ok(read_texts(header, path)?.map(|(_, description)| description))
 }
 
-/// A file that is being read, with the path that messages name.
-#[derive(Clone, Copy)]
-pub(super) struct NamedFile<'a> {
-    pub path: &'a Path,
+pub(super) fn damaged(path: &Path, what: impl Display) -> CheckpointError {
+    CheckpointError::Damaged { path: path.to_owned(), what: what.to_string() }
 }
 
-impl NamedFile<'_> {
-    fn path(&self) -> PathBuf {
-        self.path.to_owned()
+fn check_magic(reader: &mut (impl Read + Seek), path: &Path) -> Result<(), CheckpointError> {
+    let unreadable = |error: std::io::Error| InputError::unreadable(path, error);
+    let mut magic = Vec::new();
+    reader.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unreadable)?;
+    if magic != MAGIC {
+        return Err(CheckpointError::NotExr { path: path.to_owned() });
     }
-
-    pub fn damaged(&self, what: impl ToString) -> CheckpointError {
-        CheckpointError::Damaged { path: self.path(), what: what.to_string() }
-    }
-
-    fn not_film(&self) -> CheckpointError {
-        CheckpointError::NotFilm { path: self.path() }
-    }
-
-    pub fn no_film(&self, error: FilmError) -> CheckpointError {
-        match error {
-            FilmError::Memory(reason) => CheckpointError::Memory { path: self.path(), reason },
-            other => self.damaged(other),
-        }
-    }
-
-    fn check_magic(&self, reader: &mut (impl Read + Seek)) -> Result<(), CheckpointError> {
-        let unreadable = |reason: std::io::Error| {
-            CheckpointError::from(InputError::Unreadable { path: self.path(), reason: reason.to_string() })
-        };
-        let mut magic = Vec::new();
-        reader.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(unreadable)?;
-        if magic != MAGIC {
-            return Err(CheckpointError::NotExr { path: self.path() });
-        }
-        reader.rewind().map_err(unreadable)
-    }
-
-    /// The head of the film; `None` if the file has no film.
-    fn head(&self, header: &Header) -> Result<Option<Head>, CheckpointError> {
-        let Some(bytes) = attribute(header, FILM_ATTRIBUTE) else { return Ok(None) };
-        let text = std::str::from_utf8(bytes).map_err(|_| self.damaged("its head is not text"))?;
-        Head::read(text).map(Some).map_err(|error| match error {
-            HeadError::Version(version) => {
-                CheckpointError::Version { path: self.path(), version, writer: writer(header) }
-            }
-            HeadError::SampleVersion(version) => {
-                CheckpointError::SampleVersion { path: self.path(), version, writer: writer(header) }
-            }
-            HeadError::Damaged(what) => self.damaged(what),
-        })
-    }
-
-    /// The description of the picture, checked against its checksum.
-    fn description(&self, header: &Header, head: &Head) -> Result<Description, CheckpointError> {
-        let texts = texts(header).ok_or_else(|| self.damaged("its recipe is missing"))?;
-        if !head.is_whole(texts) {
-            return Err(self.damaged("its head or texts do not match their checksum"));
-        }
-        let no_text = |_| self.damaged("its recipe or description is not text");
-        let mut description = Description::new(std::str::from_utf8(texts.recipe).map_err(no_text)?);
-        for line in std::str::from_utf8(texts.comments).map_err(no_text)?.lines() {
-            description.set_line(line);
-        }
-        Ok(description)
-    }
+    Ok(reader.rewind().map_err(unreadable)?)
 }
 
-/// The program that wrote the file, as far as the file says.
-fn writer(header: &Header) -> String {
-    let name = header.own_attributes.software_name.as_ref();
-    name.map_or_else(|| "another program".to_owned(), |name| name.to_string())
+/// The film's head and the picture's description, which match their checksum; `None` if the file has no film.
+fn read_texts(header: &Header, path: &Path) -> Result<Option<(Head, Description)>, CheckpointError> {
+    let Some(head) = attribute(header, FILM_ATTRIBUTE) else { return Ok(None) };
+    let head = read_head_text(head, header, path)?;
+    let recipe = attribute(header, RECIPE_ATTRIBUTE).ok_or_else(|| damaged(path, "its recipe is missing"))?;
+    let comments = header.own_attributes.comments.as_ref().map_or(&[][..], |text| text.as_slice());
+    if head.checksum(Texts { recipe, comments }) != head.head_checksum {
+        return Err(damaged(path, "its head or texts do not match their checksum"));
+    }
+    let no_text = |_| damaged(path, "its recipe or description is not text");
+    let mut description = Description::new(std::str::from_utf8(recipe).map_err(no_text)?);
+    std::str::from_utf8(comments).map_err(no_text)?.lines().for_each(|line| description.set_line(line));
+    Ok(Some((head, description)))
+}
+
+fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, CheckpointError> {
+    let unreadable =
+        |error: toml::de::Error| damaged(path, format!("its head cannot be read: {}", error.message()));
+    let text = std::str::from_utf8(bytes).map_err(|_| damaged(path, "its head is not text"))?;
+    let Versions { version, sample_version } = toml::from_str(text).map_err(unreadable)?;
+    if (version, sample_version) != (VERSION.into(), Some(SAMPLE_VERSION.into())) {
+        let writer = header.own_attributes.software_name.as_ref();
+        return Err(CheckpointError::Version {
+            path: path.to_owned(),
+            // Before layout 4, both had one number.
+            layout: version,
+            samples: sample_version.unwrap_or(version),
+            writer: writer.map_or_else(|| "another program".to_owned(), ToString::to_string),
+        });
+    }
+    let head: Head = toml::from_str(text).map_err(unreadable)?;
+    if !(1..=2).contains(&head.halves) {
+        return Err(damaged(path, format!("it has {} halves, but a film has 1 or 2", head.halves)));
+    }
+    let (checksums, bands) = (head.bands.len(), band_count(head.height) as usize);
+    if checksums != bands {
+        return Err(damaged(path, format!("it has {checksums} checksums for {bands} bands of rows")));
+    }
+    Ok(head)
 }
 
 fn attribute<'a>(header: &'a Header, name: &str) -> Option<&'a [u8]> {
@@ -188,9 +159,4 @@ fn attribute<'a>(header: &'a Header, name: &str) -> Option<&'a [u8]> {
         AttributeValue::Text(text) => Some(text.as_slice()),
         _ => None,
     }
-}
-
-fn texts(header: &Header) -> Option<Texts<'_>> {
-    let comments = header.own_attributes.comments.as_ref().map_or(&[][..], |text| text.as_slice());
-    Some(Texts { recipe: attribute(header, RECIPE_ATTRIBUTE)?, comments })
 }

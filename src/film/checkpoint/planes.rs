@@ -1,104 +1,90 @@
 //! What the channels of a film file hold, and how sums become words and come back.
 
 use super::head::Head;
-use crate::film::{Film, PixelSum, SIZE_LIMIT};
+use super::{Film, PixelSum};
+use crate::film::SIZE_LIMIT;
+use exr::block::UncompressedBlock;
 use exr::meta::BlockDescription;
+use exr::meta::attribute::ChannelList;
 use exr::meta::header::Header;
-use exr::prelude::{Compression, SampleType};
+use exr::prelude::{ChannelDescription, Compression, SampleType, Text};
 
 /// What a channel contains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(super) enum Plane {
     /// The picture.
     Mean { colour: usize },
-    /// Words of the sums of a half.
-    Sum { half: usize, colour: usize, shift: u32 },
+    /// Words of the sums of the first of two halves. Those of the last half follow from the others.
+    Sum { colour: usize, shift: u32 },
     /// Words of the rest: see [`mean_and_rest`].
     Rest { colour: usize, shift: u32 },
 }
 
-impl Plane {
-    /// All planes of a film with `half_count` halves, with their channel names. In version 3 each half had its sums;
-    /// since version 4 the sums of the last half follow from the picture, the rest and the other half.
-    pub fn all(version: u32, half_count: usize) -> Vec<(String, Plane)> {
-        let mut planes = Vec::new();
-        let has_rest = version > 3;
-        for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
-            planes.push((name.to_owned(), Plane::Mean { colour }));
-            for (shift, word) in [(0, "lo"), (32, "hi")] {
-                let halves = ["a", "b"].into_iter().enumerate().take(half_count - usize::from(has_rest));
-                planes.extend(halves.map(|(half, half_name)| {
-                    (format!("sum.{half_name}.{name}.{word}"), Plane::Sum { half, colour, shift })
-                }));
-                if has_rest {
-                    planes.push((format!("rest.{name}.{word}"), Plane::Rest { colour, shift }));
-                }
+/// The channels of a film with this number of halves, sorted by name as the format requires, and what they hold.
+pub(super) fn channels(half_count: usize) -> Vec<(ChannelDescription, Plane)> {
+    let mut channels = Vec::new();
+    let mut add = |name: &str, sample_type, plane| {
+        let name = Text::from_slice_unchecked(name.as_bytes());
+        channels.push((ChannelDescription::new(name, sample_type, false), plane));
+    };
+    for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
+        add(name, SampleType::F32, Plane::Mean { colour });
+        for (shift, word) in [(0, "lo"), (32, "hi")] {
+            add(&format!("rest.{name}.{word}"), SampleType::U32, Plane::Rest { colour, shift });
+            if half_count == 2 {
+                add(&format!("sum.a.{name}.{word}"), SampleType::U32, Plane::Sum { colour, shift });
             }
         }
-        planes
     }
+    channels.sort_by(|a, b| a.0.name.cmp(&b.0.name));
+    channels
+}
 
-    pub fn sample_type(self) -> SampleType {
-        match self {
-            Plane::Mean { .. } => SampleType::F32,
-            Plane::Sum { .. } | Plane::Rest { .. } => SampleType::U32,
-        }
+/// What each channel of the file holds, if the layout is that of a film.
+pub(super) fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
+    let (columns, rows) = (header.layer_size.x(), header.layer_size.y());
+    if (head.width as usize, head.height as usize) != (columns, rows) {
+        return Err(format!(
+            "it has {columns}x{rows} pixels, but its head says {}x{}",
+            head.width, head.height
+        ));
     }
-
-    /// The plane that each channel of the file holds, if the layout is that of a film.
-    pub fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
-        let (columns, rows) = (header.layer_size.x(), header.layer_size.y());
-        if (head.width as usize, head.height as usize) != (columns, rows) {
-            return Err(format!(
-                "it has {columns}x{rows} pixels, but its head says {}x{}",
-                head.width, head.height
-            ));
-        }
-        if !(1..=SIZE_LIMIT).contains(&head.width) || !(1..=SIZE_LIMIT).contains(&head.height) {
-            return Err(format!(
-                "its size is {columns}x{rows}, but each side must have 1 to {SIZE_LIMIT} pixels"
-            ));
-        }
-        let is_film = header.blocks == BlockDescription::ScanLines && header.compression == Compression::RLE;
-        if header.deep || !is_film {
-            return Err("its pixels are not stored as those of a film".to_owned());
-        }
-        let known = Plane::all(head.version, head.halves);
-        let channels = &header.channels.list;
-        for (name, plane) in &known {
-            let channel = channels.iter().find(|channel| channel.name.as_slice() == name.as_bytes());
-            let channel = channel.ok_or_else(|| format!("the channel {name} is missing"))?;
-            if channel.sample_type != plane.sample_type() || channel.sampling.area() != 1 {
-                return Err(format!("the channel {name} has the wrong type"));
-            }
-        }
-        let found = channels.iter().map(|channel| {
-            let plane = known.iter().find(|(name, _)| channel.name.as_slice() == name.as_bytes());
-            plane.map(|(_, plane)| *plane).ok_or_else(|| format!("a film has no channel {}", channel.name))
-        });
-        let planes = found.collect::<Result<Vec<_>, _>>()?;
-        if planes.len() != known.len() {
-            return Err(format!("it has {} channels, but a film has {}", planes.len(), known.len()));
-        }
-        Ok(planes)
+    if !(1..=SIZE_LIMIT).contains(&head.width) || !(1..=SIZE_LIMIT).contains(&head.height) {
+        return Err(format!(
+            "its size is {columns}x{rows}, but each side must have 1 to {SIZE_LIMIT} pixels"
+        ));
     }
+    let is_film = header.blocks == BlockDescription::ScanLines && header.compression == Compression::RLE;
+    if header.deep || !is_film {
+        return Err("its pixels are not stored as those of a film".to_owned());
+    }
+    let known = channels(head.halves);
+    let is_known = |(found, (known, _)): (&ChannelDescription, &(ChannelDescription, Plane))| {
+        (&found.name, found.sample_type) == (&known.name, known.sample_type)
+    };
+    let list = &header.channels.list;
+    if list.len() != known.len() || !list.iter().zip(&known).all(is_known) {
+        let names: Vec<String> = list.iter().map(|channel| channel.name.to_string()).collect();
+        return Err(format!("its channels are not those of a film: {}", names.join(", ")));
+    }
+    Ok(known.into_iter().map(|(_, plane)| plane).collect())
 }
 
 /// The mean of `sum` as stored in the picture. `unit` is [`Film::fixed_point_of_1`].
-pub(super) fn mean(sum: u64, unit: f64) -> f32 {
+fn mean(sum: u64, unit: f64) -> f32 {
     (sum as f64 / unit) as f32
 }
 
 /// The mean of a sum, and what the mean has lost of it by its rounding: the rest, which is small, so that most of its
 /// bytes are zero and cost nothing in the file. The lowest bit of the rest is its sign.
-pub(super) fn mean_and_rest(sum: u64, unit: f64) -> (f32, u64) {
+fn mean_and_rest(sum: u64, unit: f64) -> (f32, u64) {
     let mean = mean(sum, unit);
     let lost = (sum as i64).wrapping_sub(from_mean(mean, unit));
     (mean, ((lost << 1) ^ (lost >> 63)) as u64)
 }
 
 /// The sum of a mean and its rest: see [`mean_and_rest`].
-pub(super) fn sum_of(mean: f32, rest: u64, unit: f64) -> u64 {
+fn sum_of(mean: f32, rest: u64, unit: f64) -> u64 {
     let lost = (rest >> 1) as i64 ^ -((rest & 1) as i64);
     from_mean(mean, unit).wrapping_add(lost) as u64
 }
@@ -108,67 +94,80 @@ fn from_mean(mean: f32, unit: f64) -> i64 {
     (f64::from(mean) * unit).round_ties_even() as i64
 }
 
+/// A pixel as a film file holds it.
+#[derive(Clone, Copy, Default)]
+struct Stored {
+    means: [u32; 3],
+    rests: [u64; 3],
+    /// The sums of the first of two halves.
+    first: [u64; 3],
+}
+
 /// One row of a film as its file holds it.
 pub(super) struct Row {
-    pub means: Vec<[u32; 3]>,
-    pub rests: Vec<[u64; 3]>,
+    pixels: Vec<Stored>,
+    words: Vec<u32>,
 }
 
 impl Row {
     pub fn new(width: usize) -> Self {
-        Row { means: vec![[0; 3]; width], rests: vec![[0; 3]; width] }
+        Row { pixels: vec![Stored::default(); width], words: vec![0; width] }
     }
 
-    /// Takes the words of a channel. Sums go to the row's part of each half.
-    pub fn take(&mut self, plane: Plane, words: &[u32], halves: &mut [&mut [PixelSum]]) {
-        match plane {
-            Plane::Mean { colour } => {
-                self.means.iter_mut().zip(words).for_each(|(mean, word)| mean[colour] = *word);
-            }
-            Plane::Sum { half, colour, shift } => {
-                for (sum, word) in halves[half].iter_mut().zip(words) {
-                    sum.0[colour] |= u64::from(*word) << shift;
-                }
-            }
-            Plane::Rest { colour, shift } => {
-                for (rest, word) in self.rests.iter_mut().zip(words) {
-                    rest[colour] |= u64::from(*word) << shift;
+    pub fn read(
+        &mut self,
+        block: &UncompressedBlock,
+        channels: &ChannelList,
+        planes: &[Plane],
+    ) -> Result<(), exr::error::Error> {
+        self.pixels.fill(Stored::default());
+        for line in block.lines(channels) {
+            line.read_samples_into_slice(&mut self.words)?;
+            let plane = planes[line.location.channel];
+            for (pixel, word) in self.pixels.iter_mut().zip(&self.words) {
+                match plane {
+                    Plane::Mean { colour } => pixel.means[colour] = *word,
+                    Plane::Sum { colour, shift } => pixel.first[colour] |= u64::from(*word) << shift,
+                    Plane::Rest { colour, shift } => pixel.rests[colour] |= u64::from(*word) << shift,
                 }
             }
         }
+        Ok(())
     }
 
-    /// Completes the sums of the row, if the file has their rest, and tells whether they match the picture.
-    pub fn finish(&mut self, has_rest: bool, unit: f64, halves: &mut [&mut [PixelSum]]) -> bool {
-        let Some((last, others)) = halves.split_last_mut() else { return false };
+    /// Appends the sums of the row to each half, and returns whether they match the picture.
+    pub fn append_sums(&self, unit: f64, halves: &mut [Vec<PixelSum>]) -> bool {
         let mut matches = true;
-        for (pixel, (means, rests)) in self.means.iter().zip(&self.rests).enumerate() {
-            for colour in 0..3 {
-                let other = others.iter().fold(0_u64, |sum, half| sum.wrapping_add(half[pixel].0[colour]));
-                let own = &mut last[pixel].0[colour];
-                let total = if has_rest {
-                    let total = sum_of(f32::from_bits(means[colour]), rests[colour], unit);
-                    *own = total.wrapping_sub(other);
-                    total
-                } else {
-                    other.wrapping_add(*own)
-                };
-                // A half that is larger than both together was made by wrapping.
-                matches &= *own <= total && mean(total, unit).to_bits() == means[colour];
+        for Stored { means, rests, first } in &self.pixels {
+            let totals = [0, 1, 2].map(|colour| sum_of(f32::from_bits(means[colour]), rests[colour], unit));
+            let last = [0, 1, 2].map(|colour| totals[colour].wrapping_sub(first[colour]));
+            // A half that is larger than both together was made by wrapping.
+            matches &= (0..3).all(|colour| {
+                last[colour] <= totals[colour] && mean(totals[colour], unit).to_bits() == means[colour]
+            });
+            if let [a, b] = halves {
+                a.push(PixelSum(*first));
+                b.push(PixelSum(last));
+            } else {
+                halves[0].push(PixelSum(last));
             }
         }
-        self.rests.fill([0; 3]);
         matches
     }
 }
 
 /// Appends a row of `film`: the words of each channel in turn.
-pub(super) fn append_row(film: &Film, planes: &[(String, Plane)], row: usize, data: &mut Vec<u8>) {
+pub(super) fn append_row(
+    film: &Film,
+    channels: &[(ChannelDescription, Plane)],
+    row: usize,
+    data: &mut Vec<u8>,
+) {
     let (width, unit) = (film.width() as usize, film.fixed_point_of_1());
     let pixels = row * width..(row + 1) * width;
     let totals: Vec<[(f32, u64); 3]> =
         pixels.clone().map(|pixel| film.pixel_sum(pixel).0.map(|sum| mean_and_rest(sum, unit))).collect();
-    for (_, plane) in planes {
+    for (_, plane) in channels {
         match *plane {
             Plane::Mean { colour } => {
                 data.extend(totals.iter().flat_map(|total| total[colour].0.to_ne_bytes()));
@@ -178,8 +177,8 @@ pub(super) fn append_row(film: &Film, planes: &[(String, Plane)], row: usize, da
                     totals.iter().flat_map(|total| ((total[colour].1 >> shift) as u32).to_ne_bytes()),
                 );
             }
-            Plane::Sum { half, colour, shift } => {
-                let sums = film.halves()[half][pixels.clone()].iter();
+            Plane::Sum { colour, shift } => {
+                let sums = film.halves()[0][pixels.clone()].iter();
                 data.extend(sums.flat_map(|sum| ((sum.0[colour] >> shift) as u32).to_ne_bytes()));
             }
         }

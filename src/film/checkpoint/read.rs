@@ -1,110 +1,176 @@
-//! Reading the sums of a film file, band by band. The head, the file's length and the memory needed are checked first.
+//! Reading the sums of a film file. The head, the file's length and the memory needed are checked first.
 
-use super::head::{Head, Texts, band_checksum, band_count, band_rows};
-use super::open::Opened;
+use super::head::{BAND_ROWS, band_checksum, band_count, band_rows};
+use super::open::{FilmHead, Opened, damaged};
 use super::planes::Row;
-use super::{CheckpointError, Film, FilmFile, PixelSum};
-use crate::film::FIXED_POINT_MAX;
-use exr::block::UncompressedBlock;
-use exr::block::reader::ChunksReader;
-use std::io::{Read, Seek};
+use super::{CheckpointError, Film, FilmError, FilmFile, PixelSum, threads};
+use crate::files;
+use crate::threads::shared;
+use exr::block::reader::{ChunksReader, Reader};
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
-/// Reads a film from a reader of `length` bytes. The film is identical to the bit to the one that was written.
-/// Messages name `path`.
+/// Bytes that a thread reads at once.
+const BUFFER: usize = 1 << 18;
+
+/// Reads a film file. The film is identical to the bit to the one that was written.
 ///
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
+pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
+    let (file, length) = files::open(path)?;
+    let (opened, _) = Opened::new(At::start(&file), length, path)?;
+    let mut halves = opened.halves()?;
+    opened.read_all(&file, &mut halves)?;
+    opened.film(halves)
+}
+
+/// The same from a reader of `length` bytes, without threads. Messages name `path`.
+///
+/// # Errors
+/// As [`load`].
 pub fn read(reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
-    read_opened(Opened::new(reader, length, path)?)
+    let (opened, reader) = Opened::new(reader, length, path)?;
+    let mut halves = opened.halves()?;
+    let bands = 0..band_count(opened.about.height);
+    opened.read_bands(reader, bands, halves.iter_mut().map(Vec::as_mut_slice).collect())?;
+    opened.film(halves)
 }
 
-/// The film of an opened file.
-pub(super) fn read_opened(opened: Opened<impl Read + Seek>) -> Result<FilmFile, CheckpointError> {
-    let (file, about, texts) = (opened.file, opened.about.clone(), opened.texts.clone());
-    let film = Film::try_new(about.width, about.height, about.halves);
-    let mut halves = film.map_err(|error| file.no_film(error))?.halves;
-    let head = for_each_band(opened, 0..band_count(about.height), |pixels, sums| {
-        for (to, from) in halves.iter_mut().zip(sums) {
-            to[pixels.clone()].copy_from_slice(from);
-        }
-    })?;
-    let [recipe, comments] = &texts;
-    if !head.has_bands() && !head.has_sums(Texts { recipe, comments }, &halves) {
-        return Err(file.damaged("the sums do not match their checksum"));
+/// Reads a whole film file and checks it, with memory for a few rows.
+///
+/// # Errors
+/// [`CheckpointError`]; each message says what to do.
+pub fn check(path: &Path) -> Result<FilmHead, CheckpointError> {
+    let (file, length) = files::open(path)?;
+    let (opened, _) = Opened::new(At::start(&file), length, path)?;
+    opened.read_all(&file, &mut [])?;
+    Ok(opened.about)
+}
+
+impl Opened<'_> {
+    /// Empty sums of the film's shape.
+    fn halves(&self) -> Result<Vec<Vec<PixelSum>>, CheckpointError> {
+        let film = Film::try_new(self.about.width, self.about.height, self.about.halves);
+        film.map(|film| film.halves).map_err(|error| self.no_film(error))
     }
-    let film = Film::from_parts(about.width, about.height, halves, about.samples, about.rejected);
-    Ok(FilmFile { film: film.map_err(|error| file.no_film(error))?, description: about.description })
-}
 
-/// Reads some bands of a film in order, and hands each to `take` with the places of its pixels once it has been
-/// checked. (Films of version 3 have nothing to check a band with.)
-pub(super) fn for_each_band<R: Read + Seek>(
-    opened: Opened<R>,
-    bands: Range<u32>,
-    mut take: impl FnMut(Range<usize>, &[Vec<PixelSum>]),
-) -> Result<Head, CheckpointError> {
-    let Opened { file, head, about, planes, reader, .. } = opened;
-    let (width, has_bands) = (about.width as usize, head.has_bands());
-    let rows = band_rows(bands.start, about.height).start..band_rows(bands.end - 1, about.height).end;
-    let limits: Vec<u64> = (0..about.halves)
-        .map(|half| about.samples.count_in_half(half, about.halves).saturating_mul(FIXED_POINT_MAX.into()))
-        .collect();
-    let unit = Film::fixed_point(about.samples.count());
-    let wanted = |row: usize| (rows.start as usize..rows.end as usize).contains(&row);
-    let chunks = reader.filter_chunks(true, |_, _, block| wanted(block.pixel_position.y()));
-    let mut chunks = chunks.map_err(|error| file.damaged(error))?.sequential_decompressor(true);
-    let (mut row, mut words) = (Row::new(width), vec![0; width]);
-    for band in bands {
-        let rows = band_rows(band, about.height);
-        let named = |what: &dyn std::fmt::Display| {
-            file.damaged(format!("the rows {} to {}: {what}", rows.start, rows.end - 1))
-        };
-        let mut sums = vec![vec![PixelSum::default(); width * rows.len()]; about.halves];
-        for (index, y) in rows.clone().enumerate() {
-            let block = match chunks.decompress_next_block() {
-                Some(Ok(block)) => block,
-                Some(Err(error)) => return Err(named(&error)),
-                None => return Err(named(&"they are missing")),
+    fn film(self, halves: Vec<Vec<PixelSum>>) -> Result<FilmFile, CheckpointError> {
+        let FilmHead { width, height, samples, rejected, .. } = &self.about;
+        let film = Film::from_parts(*width, *height, halves, samples.clone(), *rejected);
+        Ok(FilmFile { film: film.map_err(|error| self.no_film(error))?, description: self.about.description })
+    }
+
+    fn no_film(&self, error: FilmError) -> CheckpointError {
+        match error {
+            FilmError::Memory(reason) => CheckpointError::Memory { path: self.path.to_owned(), reason },
+            other => damaged(self.path, other),
+        }
+    }
+
+    /// Reads all bands with several threads, into `halves` unless that is empty.
+    fn read_all(&self, file: &File, halves: &mut [Vec<PixelSum>]) -> Result<(), CheckpointError> {
+        let bands = band_count(self.about.height);
+        let each = bands.div_ceil(threads() as u32);
+        let mut shares: Vec<(Range<u32>, Vec<&mut [PixelSum]>)> = (0..bands)
+            .step_by(each as usize)
+            .map(|first| (first..bands.min(first + each), Vec::new()))
+            .collect();
+        for half in halves {
+            let parts = half.chunks_mut((each * BAND_ROWS * self.about.width) as usize);
+            shares.iter_mut().zip(parts).for_each(|(share, part)| share.1.push(part));
+        }
+        let outcomes = shared(shares, |(bands, sums)| {
+            let reader = Reader::read_from_buffered(At::start(file), true);
+            let reader = reader.map_err(|error| damaged(self.path, error))?;
+            // Another film may have been copied into the file since it was opened.
+            if reader.headers() != [self.header.clone()] {
+                return Err(CheckpointError::Changed { path: self.path.to_owned() });
+            }
+            self.read_bands(reader, bands, sums)
+        });
+        let panicked = |_| Err(damaged(self.path, "its rows cannot be read"));
+        outcomes.into_iter().try_for_each(|outcome| outcome.unwrap_or_else(panicked))
+    }
+
+    /// Reads some bands in order and checks each. `sums` are their places in each half, if they are to be kept.
+    fn read_bands<R: Read + Seek>(
+        &self,
+        reader: Reader<R>,
+        bands: Range<u32>,
+        mut sums: Vec<&mut [PixelSum]>,
+    ) -> Result<(), CheckpointError> {
+        let FilmHead { width, height, halves, samples, .. } = &self.about;
+        let (width, unit) = (*width as usize, Film::fixed_point(samples.count()));
+        let first_row = band_rows(bands.start, *height).start as usize;
+        let wanted = first_row..band_rows(bands.end - 1, *height).end as usize;
+        let chunks = reader.filter_chunks(true, |_, _, block| wanted.contains(&block.pixel_position.y()));
+        let mut chunks = chunks.map_err(|error| damaged(self.path, error))?.sequential_decompressor(true);
+        let mut row = Row::new(width);
+        for band in bands {
+            let rows = band_rows(band, *height);
+            let named = |what: &str| {
+                damaged(self.path, format!("the rows {} to {}: {what}", rows.start, rows.end - 1))
             };
-            if block.index.pixel_position.y() != y as usize {
-                return Err(named(&"they are not in order"));
+            let mut found = vec![Vec::with_capacity(rows.len() * width); *halves];
+            for y in rows.clone() {
+                let block = match chunks.decompress_next_block() {
+                    Some(Ok(block)) if block.index.pixel_position.y() == y as usize => block,
+                    Some(Ok(_)) => return Err(named("they are not in order")),
+                    Some(Err(error)) => return Err(named(&error.to_string())),
+                    None => return Err(named("they are missing")),
+                };
+                row.read(&block, &chunks.meta_data().headers[0].channels, &self.planes)
+                    .map_err(|error| named(&error.to_string()))?;
+                if !row.append_sums(unit, &mut found) {
+                    return Err(named("the picture does not match the sums"));
+                }
             }
-            let place = index * width..(index + 1) * width;
-            let mut halves: Vec<&mut [PixelSum]> =
-                sums.iter_mut().map(|half| &mut half[place.clone()]).collect();
-            read_row(&block, chunks.meta_data(), &planes, &mut row, &mut words, &mut halves)
-                .map_err(|error| named(&error))?;
-            if !row.finish(has_bands, unit, &mut halves) {
-                return Err(named(&"the picture does not match the sums"));
+            if self.bands.get(band as usize) != Some(&band_checksum(band, found.iter().map(Vec::as_slice))) {
+                return Err(named("the sums do not match their checksum"));
+            }
+            let start = (rows.start as usize - first_row) * width;
+            for (to, from) in sums.iter_mut().zip(&found) {
+                to[start..start + from.len()].copy_from_slice(from);
             }
         }
-        let checksum = band_checksum(band, sums.iter().map(Vec::as_slice));
-        if has_bands && head.bands.get(band as usize) != Some(&checksum) {
-            return Err(named(&"the sums do not match their checksum"));
-        }
-        for (sums, limit) in sums.iter().zip(&limits) {
-            if sums.iter().any(|sum| sum.0.iter().any(|k| k > limit)) {
-                return Err(named(&"a sum is larger than its samples can give"));
-            }
-        }
-        take(rows.start as usize * width..rows.end as usize * width, &sums);
+        Ok(())
     }
-    Ok(head)
 }
 
-fn read_row(
-    block: &UncompressedBlock,
-    meta: &exr::meta::MetaData,
-    planes: &[super::planes::Plane],
-    row: &mut Row,
-    words: &mut [u32],
-    halves: &mut [&mut [PixelSum]],
-) -> Result<(), exr::error::Error> {
-    for line in block.lines(&meta.headers[0].channels) {
-        line.read_samples_into_slice(words)?;
-        row.take(planes[line.location.channel], words, halves);
+/// A reader with a place of its own in a file that others read too.
+struct At<'a> {
+    file: &'a File,
+    place: u64,
+}
+
+impl<'a> At<'a> {
+    fn start(file: &'a File) -> BufReader<Self> {
+        BufReader::with_capacity(BUFFER, At { file, place: 0 })
     }
-    Ok(())
+}
+
+impl Read for At<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        #[cfg(unix)]
+        let count = std::os::unix::fs::FileExt::read_at(self.file, bytes, self.place)?;
+        #[cfg(windows)]
+        let count = std::os::windows::fs::FileExt::seek_read(self.file, bytes, self.place)?;
+        self.place += count as u64;
+        Ok(count)
+    }
+}
+
+impl Seek for At<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let (base, offset) = match to {
+            SeekFrom::Start(place) => (place, 0),
+            SeekFrom::Current(offset) => (self.place, offset),
+            SeekFrom::End(offset) => (self.file.metadata()?.len(), offset),
+        };
+        self.place = base.checked_add_signed(offset).ok_or(ErrorKind::InvalidInput)?;
+        Ok(self.place)
+    }
 }

@@ -354,7 +354,7 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
-            self.status.doubt = self.film.doubt(self.status.error.as_ref(), self.brightest());
+            self.status.doubt = self.status.error.as_ref().and_then(|error| self.film.doubt(error));
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();

@@ -1,0 +1,109 @@
+//! A film file that one run writes again and again, and no other run meanwhile.
+
+use super::{Description, Film, SampleRanges, checkpoint};
+use crate::files::{FileLock, LockedError, ShownPath, WriteError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A film file that is locked until this is dropped.
+#[derive(Debug)]
+pub struct LockedFilm {
+    path: PathBuf,
+    /// The samples in the file that must not be lost.
+    held: SampleRanges,
+    _lock: FileLock,
+}
+
+impl LockedFilm {
+    /// Locks the file, which need not exist. Its present content may be replaced, see [`LockedFilm::holds`].
+    ///
+    /// # Errors
+    /// [`LockedError`] if another run has locked it.
+    pub fn new(path: &Path) -> Result<LockedFilm, LockedError> {
+        let lock = FileLock::take(path)?;
+        Ok(LockedFilm { path: path.to_owned(), held: SampleRanges::default(), _lock: lock })
+    }
+
+    /// Notes that the file holds these samples of the film. None of them is replaced by a film without it, such as one
+    /// that began anew because its device was lost.
+    pub fn holds(&mut self, samples: &SampleRanges) {
+        self.held = samples.clone();
+    }
+
+    /// Replaces the file by `film`. A film whose samples are all in the file, which holds others too, is not written;
+    /// this returns a note for the user then.
+    ///
+    /// # Errors
+    /// [`WriteError`], also if the film and the file each have samples that the other lacks. The file is unchanged.
+    pub fn save(&mut self, film: &Film, description: &Description) -> Result<Option<String>, WriteError> {
+        if film.samples().contains(&self.held) {
+            checkpoint::save(&self.path, film, description)?;
+            self.held = film.samples().clone();
+            return Ok(None);
+        }
+        let words = format!("holds the samples {} of this picture", self.held);
+        if self.held.contains(film.samples()) {
+            let path = self.path.shown();
+            return Ok(Some(format!(
+                "{path} {words}, more than this run has rendered, so it is left unchanged"
+            )));
+        }
+        let reason = format!("it {words}, and this run has only {}", film.samples());
+        Err(WriteError { path: self.path.clone(), reason: io::Error::other(reason) })
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
+mod tests {
+    use super::*;
+    use std::ops::Range;
+
+    fn film(samples: &[Range<u64>]) -> Film {
+        let mut film = Film::new(3, 2, 2);
+        samples.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
+        film
+    }
+
+    #[test]
+    fn one_run_at_a_time_writes_a_film() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        let mut run = LockedFilm::new(&path).unwrap();
+        for samples in [0..2, 0..4] {
+            assert_eq!(run.save(&film(&[samples]), &Description::new("r")).unwrap(), None);
+            let told = LockedFilm::new(&path).unwrap_err().to_string();
+            assert!(told.contains("g.exr is locked") && told.contains("or name another file"), "{told}");
+        }
+        drop(run);
+        let mut next = LockedFilm::new(&path).unwrap();
+        next.save(&film(&[0..2]), &Description::new("r")).unwrap();
+        assert!(checkpoint::load(&path).unwrap().film == film(&[0..2]), "nobody said what must not be lost");
+        drop(next);
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1, "the film alone");
+    }
+
+    #[test]
+    fn a_film_that_began_anew_does_not_replace_what_the_file_has() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        checkpoint::save(&path, &film(&[0..4]), &Description::new("r")).unwrap();
+        let mut run = LockedFilm::new(&path).unwrap();
+        run.holds(film(&[0..4]).samples());
+        let mut save = |samples: &[Range<u64>]| run.save(&film(samples), &Description::new("r"));
+        let held = || checkpoint::load(&path).unwrap().film.samples().to_string();
+        let note = save(&[0..2]).unwrap().unwrap();
+        assert!(note.contains("g.exr holds the samples 0..4") && note.contains("unchanged"), "{note}");
+        assert_eq!(held(), "0..4");
+        let error = save(&[2..6]).unwrap_err().to_string();
+        assert!(error.contains("holds the samples 0..4") && error.contains("only 2..6"), "{error}");
+        assert_eq!(held(), "0..4");
+        assert_eq!(save(&[0..10]).unwrap(), None);
+        assert!(save(&[0..6]).unwrap().is_some());
+        assert_eq!(held(), "0..10");
+        // A file that the user deleted is written again.
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(save(&[0..12]).unwrap(), None);
+        assert_eq!(held(), "0..12");
+    }
+}
