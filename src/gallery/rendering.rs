@@ -221,29 +221,3 @@ fn paths(tasks: &[Task]) -> u64 {
 fn pixels(recipe: &Recipe) -> u64 {
     u64::from(recipe.settings.width) * u64::from(recipe.settings.height)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::render_cpu::CpuOptions;
-
-    #[test]
-    fn a_broken_backend_is_replaced_and_finished_stills_are_kept() {
-        let directory = tempfile::tempdir().unwrap();
-        let broken = CpuOptions { threads: Some(1), panics_after: Some(0), ..CpuOptions::default() };
-        let order = Order {
-            directory: directory.path(),
-            stages: &["ppm-tiny", "aliased"].map(|id| Stage::find(id).unwrap()),
-            quality: Quality::Quick,
-            backend: &BackendChoice::Cpu(broken),
-            progress: ProgressChoice::Off,
-            prints_stills: false,
-        };
-        std::fs::write(directory.path().join(INDEX), "{").unwrap();
-        let outcome = render(&order, &Interrupt::unheard()).unwrap();
-        assert_eq!((outcome.rendered, outcome.kept, outcome.missing), (2, 0, 0));
-        let again = render(&order, &Interrupt::unheard()).unwrap();
-        assert_eq!((again.rendered, again.kept, again.missing), (0, 2, 0));
-        assert_eq!(again.stills, outcome.stills);
-    }
-}
