@@ -1,87 +1,112 @@
-//! Writes the picture and the film with their descriptions.
+//! The films and the picture of a render: locked and looked at before it begins, and written at its end.
 
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::files::{FileIdentity, LockedError, ShownPath};
-use crate::film::{Description, Film, LockedFilm, key};
+use crate::failure::Failure;
+use crate::files::ShownPath;
+use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
 use crate::output::{Forms, OutputFormat, write_image_as};
 use crate::progressive::Status;
+use crate::recipe::file;
 use crate::render::panic_text;
-use crate::saved::rescue;
+use crate::saved::{Replaced, rescue};
 use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// The film files of a render. They are locked from the start, so that no other run writes them.
-pub(super) struct Places {
-    /// The film of `--checkpoint`.
-    pub checkpoint: Option<SharedPlace>,
-    out: Out,
-}
-
-/// What `--out` is.
-enum Out {
-    /// A film of its own.
-    Film(SharedPlace),
-    /// The film of `--checkpoint`.
-    Checkpoint,
-    Picture,
-}
-
-/// A film file that the threads of the render share.
+/// A film file that the render writes, and no other run meanwhile.
 #[derive(Clone)]
-pub(super) struct SharedPlace(Arc<Mutex<LockedFilm>>);
+pub(super) struct FilmPlace {
+    pub path: PathBuf,
+    is_checkpoint: bool,
+    file: Arc<Mutex<LockedFilm>>,
+}
 
-impl SharedPlace {
-    fn new(path: &Path) -> Result<Self, LockedError> {
-        Ok(SharedPlace(Arc::new(Mutex::new(LockedFilm::new(path)?))))
+impl FilmPlace {
+    /// Writes the film. Returns a note for the user if the file already holds more.
+    pub fn save(
+        &self,
+        render: &RenderOptions,
+        film: &Film,
+        status: &Status,
+        seconds_before: Option<f64>,
+    ) -> Result<Option<String>, String> {
+        let description = described(render, film, status, seconds_before);
+        caught(&self.path, || {
+            self.locked(|file| file.save(film, &description)).map_err(|error| error.to_string())
+        })
     }
 
-    /// Locks the place. Its state is valid after every statement, so a panic of another user does not matter.
-    pub fn lock(&self) -> MutexGuard<'_, LockedFilm> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    fn locked<T>(&self, act: impl FnOnce(&mut LockedFilm) -> T) -> T {
+        act(&mut self.file.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-impl Places {
-    /// Locks the places. The film to be resumed must be read after this.
-    ///
-    /// # Errors
-    /// [`LockedError`] if another run is writing one of them.
-    pub fn of(render: &RenderOptions) -> Result<Places, LockedError> {
-        let out = match &render.checkpoint {
-            Some(checkpoint) if *checkpoint == render.out => Out::Checkpoint,
-            _ if is_film(&render.out) => Out::Film(SharedPlace::new(&render.out)?),
-            _ => Out::Picture,
-        };
-        Ok(Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new).transpose()?, out })
-    }
+/// Locks the films of a render. A film to be resumed must be read after this.
+///
+/// # Errors
+/// [`Failure::Input`] if another run writes one of them.
+pub(super) fn lock(render: &RenderOptions) -> Result<Vec<FilmPlace>, Failure> {
+    let out = Some(&render.out).filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
+    let paths = render.checkpoint.iter().map(|path| (path, true)).chain(out.map(|path| (path, false)));
+    let place = |(path, is_checkpoint): (&PathBuf, bool)| {
+        let file = LockedFilm::new(path).map_err(Failure::input)?;
+        Ok(FilmPlace { path: path.clone(), is_checkpoint, file: Arc::new(Mutex::new(file)) })
+    };
+    paths.map(place).collect()
+}
 
-    /// Both films, each with its flag and its path.
-    pub fn films<'a>(
-        &'a self,
-        render: &'a RenderOptions,
-    ) -> impl Iterator<Item = (&'static str, &'a Path, &'a SharedPlace)> {
-        let out = match &self.out {
-            Out::Film(place) => Some(("--out", render.out.as_path(), place)),
-            Out::Checkpoint | Out::Picture => None,
-        };
-        let checkpoint = render.checkpoint.as_deref().zip(self.checkpoint.as_ref());
-        checkpoint.map(|(path, place)| ("--checkpoint", path, place)).into_iter().chain(out)
-    }
-
-    /// Records that the render resumes `film`, if the film was read from one of the places.
-    pub fn go_on(&self, render: &RenderOptions, film: &Film) {
-        let resumed = render.resume.as_deref().and_then(FileIdentity::of);
-        for (_, path, place) in self.films(render) {
-            if let (Some(resumed), Some(identity)) = (&resumed, FileIdentity::of(path))
-                && identity.is_same_as(resumed)
-            {
-                place.lock().holds(film.samples());
+/// Looks at the films that a render would replace. Returns warnings for the user.
+///
+/// # Errors
+/// [`Failure::Input`] if `--checkpoint` is a file that the render does not continue.
+pub(super) fn check(
+    render: &RenderOptions,
+    places: &[FilmPlace],
+    resumed: Option<&Film>,
+) -> Result<Vec<String>, Failure> {
+    let mut warnings: Vec<String> = resumed.and_then(|film| too_many(render, film)).into_iter().collect();
+    for place in places {
+        let is_same = |path: &PathBuf| same_file::is_same_file(path, &place.path).unwrap_or(false);
+        if let Some(film) = resumed.filter(|_| render.resume.as_ref().is_some_and(is_same)) {
+            place.locked(|file| file.holds(film.samples()));
+            continue;
+        }
+        let found = Replaced::at(&place.path, &file::to_picture_toml(&render.recipe));
+        if place.is_checkpoint {
+            if let Some(reason) = found.refusal(&place.path) {
+                return Err(Failure::Input(anyhow!(reason)));
             }
+            continue;
+        }
+        let is_kept = |samples: &SampleRanges| {
+            let planned = render.plan.range();
+            samples.iter().all(|range| planned.start <= range.start && range.end <= planned.end)
+                || resumed.is_some_and(|film| film.samples().contains(samples))
+        };
+        warnings.extend(found.warning(&place.path, is_kept));
+        if let Replaced::Same(samples) = &found
+            && is_kept(samples)
+        {
+            // A render that is stopped early must not replace it either.
+            place.locked(|file| file.holds(samples));
         }
     }
+    Ok(warnings)
+}
+
+/// A warning if the film to continue has samples beyond those that `--samples` asks for.
+fn too_many(render: &RenderOptions, film: &Film) -> Option<String> {
+    let asked = render.asked_samples?;
+    let path = render.resume.as_deref()?.shown();
+    let samples = film.samples();
+    (samples.end() > asked).then(|| {
+        format!(
+            "{path} already holds the samples {samples} of each pixel, and none can be removed, so the result has more \
+             than --samples {asked}"
+        )
+    })
 }
 
 /// The files that were written, and why others were not.
@@ -90,90 +115,72 @@ pub(super) struct Written {
     pub files: Vec<PathBuf>,
     /// Notes on the files, for the user.
     pub notes: Vec<String>,
-    pub failure: Option<anyhow::Error>,
+    pub failures: Vec<String>,
 }
 
-/// Writes the film and the picture, calling `say` before each. If one cannot be written, the other still is. If no
+/// Writes the films and the picture, calling `say` before each. If one cannot be written, the others still are. If no
 /// film could be written, it is saved in some other place, since its samples may have taken hours. `seconds_before`
 /// is the tracing time of the film's earlier samples, if known.
 pub(super) fn write(
     render: &RenderOptions,
-    places: &Places,
+    places: &[FilmPlace],
     film: &Film,
     status: &Status,
     seconds_before: Option<f64>,
     mut say: impl FnMut(&Path),
 ) -> Written {
-    let description = described(render, film, status, seconds_before);
     let mut written = Written::default();
-    let mut failures = Vec::new();
-    let mut is_film_kept = false;
-    for (_, path, place) in places.films(render) {
-        let saved = caught(path, || {
-            say(path);
-            place.lock().save(film, &description).map_err(|error| error.to_string())
-        });
-        match saved {
+    for place in places {
+        say(&place.path);
+        match place.save(render, film, status, seconds_before) {
             Ok(note) => {
-                is_film_kept = true;
-                written.files.push(path.to_owned());
+                written.files.push(place.path.clone());
                 written.notes.extend(note);
             }
-            Err(reason) => failures.push(reason),
+            Err(reason) => written.failures.push(reason),
         }
     }
-    if matches!(places.out, Out::Picture) {
-        let saved = caught(&render.out, || {
-            say(&render.out);
-            let transfer = render.job.rules().transfer;
-            let forms = Forms { ppm: render.ppm, ..Forms::default() };
-            write_image_as(&render.out, film, transfer, &description, forms)
-                .map_err(|error| error.to_string())
-        });
-        match saved {
+    let is_film_kept = !written.files.is_empty();
+    let description = described(render, film, status, seconds_before);
+    if !is_film(&render.out) {
+        say(&render.out);
+        let forms = Forms { ppm: render.ppm, ..Forms::default() };
+        let transfer = render.job.rules().transfer;
+        let write = || write_image_as(&render.out, film, transfer, &description, forms);
+        match caught(&render.out, || write().map_err(|error| error.to_string())) {
             Ok(()) => written.files.push(render.out.clone()),
-            Err(reason) => failures.push(reason),
+            Err(reason) => written.failures.push(reason),
         }
     }
-    if !failures.is_empty() && !is_film_kept {
-        match rescue(&beside(render), &render.recipe.name, film, &description) {
+    if !written.failures.is_empty() && !is_film_kept {
+        match rescue(&directories(render), &render.recipe.name, film, &description) {
             Ok(path) => {
-                failures.push(format!(
-                    "the samples were saved in {}; {}",
-                    path.shown(),
-                    go_on(render, &path)
-                ));
+                let (rescued, out) = (path.shown(), render.out.shown());
+                written.failures.push(match render.checkpoint.as_ref() == Some(&render.out) {
+                    true => format!(
+                        "the samples were saved in {rescued}; once {out} can be written, move the film there and run the \
+                         same command again"
+                    ),
+                    false => format!("the samples were saved in {rescued}; continue with --resume {rescued}"),
+                });
                 written.files.push(path);
             }
-            Err(lost) => failures.push(lost),
+            Err(lost) => written.failures.push(lost),
         }
     }
-    written.failure = (!failures.is_empty()).then(|| anyhow!("{}", failures.join("; ")));
     written
 }
 
 /// Does `write`, which writes `path`. A panic there is a reason like others, because the samples can still be written to
 /// another place or later.
-pub(super) fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
         let reason = panic_text(payload.as_ref());
         Err(format!("cannot write {}: the program failed ({reason})", path.shown()))
     })
 }
 
-/// How to go on with a film that was saved in `rescued`.
-fn go_on(render: &RenderOptions, rescued: &Path) -> String {
-    match render.is_part {
-        true => format!(
-            "once {} can be written, move the film there and run the same command again",
-            render.out.shown()
-        ),
-        false => format!("continue with --resume {}", rescued.shown()),
-    }
-}
-
-/// The description of a render's film.
-pub(super) fn described(
+fn described(
     render: &RenderOptions,
     film: &Film,
     status: &Status,
@@ -185,7 +192,7 @@ pub(super) fn described(
 }
 
 /// The directories of the files that the render writes.
-fn beside(render: &RenderOptions) -> Vec<PathBuf> {
+fn directories(render: &RenderOptions) -> Vec<PathBuf> {
     let files = [Some(&render.out), render.checkpoint.as_ref()];
     let directory = |path: &PathBuf| match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -204,44 +211,34 @@ mod tests {
     use super::*;
     use crate::batch::tests::options;
     use crate::film::checkpoint;
+    use std::ops::Range;
 
-    fn write_two_samples(render: &RenderOptions) -> (Film, Written) {
-        write_two_samples_and_say(render, |_| {})
+    /// Writes a film of `render` with these samples to `path`.
+    fn put(path: &Path, render: &RenderOptions, samples: Range<u64>) -> Film {
+        let mut film = render.job.new_film();
+        film.record(samples, 0).unwrap();
+        checkpoint::save(path, &film, &described(render, &film, &Status::default(), None)).unwrap();
+        film
     }
 
-    fn write_two_samples_and_say(render: &RenderOptions, say: impl FnMut(&Path)) -> (Film, Written) {
+    fn write_two_samples(render: &RenderOptions) -> (Film, Written, String) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = write(render, &Places::of(render).unwrap(), &film, &Status::default(), None, say);
-        (film, written)
+        let written = write(render, &lock(render).unwrap(), &film, &Status::default(), None, |_| {});
+        let failures = written.failures.join("; ");
+        (film, written, failures)
     }
 
     #[test]
-    fn a_panic_in_writing_a_file_does_not_lose_the_film() {
-        let directory = tempfile::tempdir().unwrap();
-        let [out, film] = ["picture.png", "film.exr"].map(|name| directory.path().join(name));
-        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
-        let (film, written) = write_two_samples_and_say(&render, |_| panic!("injected fault"));
-        let [rescued] = written.files.as_slice() else { panic!("{written:?}") };
-        assert_eq!(rescued.parent(), Some(directory.path()));
-        assert!(checkpoint::load(rescued).unwrap().film == film);
-        let told = written.failure.unwrap().to_string();
-        for part in ["film.exr", "picture.png", "injected fault", "--resume"] {
-            assert!(told.contains(part), "{told} should say {part}");
-        }
-    }
-
-    #[test]
-    fn a_film_that_cannot_be_written_is_rescued_and_all_failures_are_told() {
+    fn a_film_that_cannot_be_written_is_rescued_and_all_failures_are_named() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["gone/picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
         let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
-        let (film, written) = write_two_samples(&render);
-        let told = written.failure.unwrap().to_string();
-        let [path] = written.files.as_slice() else { panic!("{told}") };
+        let (film, written, failures) = write_two_samples(&render);
+        let [path] = written.files.as_slice() else { panic!("{failures}") };
         let rescued = format!("in {}", path.display());
         for part in ["gone", "missing", "--resume", &rescued] {
-            assert!(told.contains(part), "{told} should say {part}");
+            assert!(failures.contains(part), "{failures} should say {part}");
         }
         let read = checkpoint::load(path);
         std::fs::remove_file(path).unwrap();
@@ -249,99 +246,102 @@ mod tests {
     }
 
     #[test]
-    fn the_rescue_is_beside_the_output_if_there_is_room() {
+    fn a_rescued_film_is_beside_the_output_if_there_is_room() {
         let directory = tempfile::tempdir().unwrap();
-        let out = directory.path().join("picture.png");
-        let render = options(&["--out", out.to_str().unwrap()]);
-        std::fs::create_dir(&out).unwrap();
-        let (film, written) = write_two_samples(&render);
+        let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
+        std::fs::create_dir(at("picture.png")).unwrap();
+        let (film, written, _) = write_two_samples(&options(&["--out", &at("picture.png")]));
         let [path] = written.files.as_slice() else { panic!("{written:?}") };
         assert_eq!(path.parent(), Some(directory.path()));
         assert!(checkpoint::load(path).unwrap().film == film);
+        // With a film that is written, none is rescued.
+        let flags = ["--out", &at("picture.png"), "--checkpoint", &at("film.exr")];
+        let (_, written, failures) = write_two_samples(&options(&flags));
+        assert_eq!(written.files, [PathBuf::from(at("film.exr"))]);
+        assert!(failures.contains("picture.png") && !failures.contains("--resume"), "{failures}");
     }
 
     #[test]
-    fn a_rescued_film_of_a_part_is_to_go_to_the_part_s_file() {
+    fn the_film_of_a_part_is_to_be_moved_to_its_place() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("missing/part-0.exr");
-        let name = film.to_str().unwrap();
-        let render = options(&["--out", name]);
-        let render = RenderOptions { checkpoint: Some(film.clone()), is_part: true, ..render };
-        let (_, written) = write_two_samples(&render);
-        let [rescued] = written.files.as_slice() else { panic!("{written:?}") };
-        std::fs::remove_file(rescued).unwrap();
-        let told = written.failure.unwrap().to_string();
-        let words = format!("once {name} can be written, move the film there and run the same command again");
-        assert!(told.contains(&words), "{told}");
-        assert!(!told.contains("--resume"), "{told}");
-    }
-
-    #[test]
-    fn a_film_that_is_written_needs_no_rescue() {
-        let directory = tempfile::tempdir().unwrap();
-        let [out, film] = ["gone/picture.png", "film.exr"].map(|name| directory.path().join(name));
-        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
-        let (_, written) = write_two_samples(&render);
-        assert_eq!(written.files, [film]);
-        let told = written.failure.unwrap().to_string();
-        assert!(told.contains("gone") && !told.contains("--resume"), "{told}");
-    }
-
-    #[test]
-    fn a_picture_that_is_written_does_not_save_the_film() {
-        let directory = tempfile::tempdir().unwrap();
-        let [out, film] = ["picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
-        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
-        let (film, written) = write_two_samples(&render);
-        let [picture, rescued] = written.files.as_slice() else { panic!("{written:?}") };
-        assert_eq!((picture, rescued.parent()), (&out, Some(directory.path())));
-        assert!(checkpoint::load(rescued).unwrap().film == film);
+        let render = options(&["--out", film.to_str().unwrap()]);
+        let (_, written, failures) = write_two_samples(&RenderOptions { checkpoint: Some(film), ..render });
+        std::fs::remove_file(&written.files[0]).unwrap();
+        assert!(failures.contains("part-0.exr can be written, move the film there"), "{failures}");
     }
 
     #[test]
     fn a_film_that_another_run_writes_is_locked() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
-        let run = |flags: &[&str]| Places::of(&options(flags));
+        let run = |flags: &[&str]| lock(&options(flags));
         let first = run(&["--checkpoint", &at("g.exr"), "--out", &at("a.png")]).unwrap();
         for flags in
             [["--checkpoint", &at("g.exr"), "--out", &at("b.png")].as_slice(), &["--out", &at("g.exr")]]
         {
-            let told = run(flags).err().unwrap().to_string();
-            assert!(told.contains("g.exr is locked: another run is writing it"), "{told}");
+            let error = run(flags).err().unwrap().to_string();
+            assert!(error.contains("g.exr is locked"), "{error}");
         }
         drop(first);
         assert!(run(&["--out", &at("g.exr")]).is_ok());
     }
 
     #[test]
-    fn a_film_that_the_render_goes_on_with_is_not_replaced_by_a_shorter_one() {
-        for (goes_on, held) in [(true, 4), (false, 2)] {
-            let directory = tempfile::tempdir().unwrap();
-            let [out, path] = ["picture.png", "film.exr"].map(|name| directory.path().join(name));
-            let names = [&path, &out].map(|path| path.to_str().unwrap());
-            let first = options(&["--out", names[0]]);
-            let mut film = first.job.new_film();
-            film.record(0..4, 0).unwrap();
-            let description = described(&first, &film, &Status::default(), None);
-            checkpoint::save(&path, &film, &description).unwrap();
-            let render = options(&["--checkpoint", names[0], "--continue", "--out", names[1]]);
-            let places = Places::of(&render).unwrap();
-            if goes_on {
-                places.go_on(&render, &film);
+    fn a_film_that_the_render_continues_or_covers_is_not_replaced_by_a_shorter_one() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] =
+            ["a.png", "film.exr"].map(|name| directory.path().join(name).to_str().unwrap().to_owned());
+        let path = Path::new(&film);
+        let held = put(path, &options(&[]), 0..32);
+        for flags in
+            [&["--checkpoint", &film, "--continue", "--out", &out][..], &["--out", &film, "--samples", "64"]]
+        {
+            let render = options(flags);
+            let resumed = render.resume.is_some().then_some(&held);
+            let places = lock(&render).unwrap();
+            assert!(check(&render, &places, resumed).unwrap().is_empty());
+            for (end, expected) in [(8, 32), (40, 40)] {
+                let mut film = render.job.new_film();
+                film.record(0..end, 0).unwrap();
+                let written = write(&render, &places, &film, &Status::default(), None, |_| {});
+                assert!(
+                    written.failures.is_empty() && written.notes.is_empty() == (end == 40),
+                    "{written:?}"
+                );
+                assert_eq!(checkpoint::load(path).unwrap().film.sample_count(), expected);
             }
-            // A render that lost its film and began anew.
-            let mut shorter = render.job.new_film();
-            shorter.record(0..2, 0).unwrap();
-            let written = write(&render, &places, &shorter, &Status::default(), None, |_| {});
-            assert!(written.failure.is_none(), "{written:?}");
-            assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), held);
+            drop(places);
+            put(path, &options(&[]), 0..32);
         }
     }
 
     #[test]
-    fn rescued_films_go_to_the_directories_of_the_files() {
-        let render = options(&["--out", "a.png", "--checkpoint", "d/k.exr"]);
-        assert_eq!(beside(&render), [".", "d"].map(PathBuf::from));
+    fn samples_that_would_be_lost_are_warned_of() {
+        let directory = tempfile::tempdir().unwrap();
+        let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
+        let held = put(Path::new(&film), &options(&[]), 0..32);
+        let warned = |flags: &[&str], resumed: Option<&Film>| {
+            let render = options(flags);
+            check(&render, &lock(&render).unwrap(), resumed).unwrap().join("; ")
+        };
+        assert_eq!(warned(&["--out", &film, "--samples", "32"], None), "");
+        assert!(
+            warned(&["--out", &film, "--samples", "8"], None)
+                .contains("32 samples per pixel of this picture")
+        );
+        assert!(warned(&["--out", &film, "--sample-range", "1..64"], None).contains("--out replaces"));
+        let other = warned(&["--out", &film, "--seed", "3"], None);
+        assert!(other.contains("of another picture") && other.contains("seed"), "{other}");
+        for flags in [["--resume", &film].as_slice(), &["--checkpoint", &film, "--continue"]] {
+            let with =
+                |samples| warned(&[flags, &["--samples", samples, "--out", "f.png"]].concat(), Some(&held));
+            assert!(with("8").contains("already holds the samples 0..32"));
+            assert_eq!(with("32"), "");
+        }
+        let render = options(&["--checkpoint", &film, "--samples", "64"]);
+        assert!(
+            check(&render, &lock(&render).unwrap(), None).unwrap_err().to_string().contains("--continue")
+        );
     }
 }

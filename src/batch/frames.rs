@@ -1,11 +1,12 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and one that is there and whole is
 //! kept, so an interrupted run is continued by the same command.
 
-use super::ended;
-use super::frames_summary::{SCHEMA, Summary, files_of_done};
 use super::progress::LINE_INTERVAL;
-use crate::backends;
-use crate::cli::{FramesOptions, JsonTarget};
+use super::studio::{Event, Studio};
+use super::summary::Envelope;
+use super::{create_directory, ended, json_file};
+use crate::cli::FramesOptions;
+use crate::console::printable;
 use crate::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
 use crate::failure::Failure;
 use crate::files::{JsonPath, ShownPath, check_writable};
@@ -13,11 +14,12 @@ use crate::film::{Film, key};
 use crate::interrupt::Interrupt;
 use crate::journal;
 use crate::output::{write_animation, write_image};
-use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
+use crate::progressive::{Phase, Status};
 use crate::recipe::Recipe;
 use crate::saved::FrameState;
 use crate::terminal::{Display, print_beside, write_json};
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -29,7 +31,13 @@ use std::time::{Duration, Instant};
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
 /// [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
-    check_before(&options)?;
+    create_directory(&options.names.directory)?;
+    let animation = options.animation.as_ref().map(|(path, _)| path);
+    let first = options.names.path(options.frames.start);
+    for path in [Some(&first), animation, json_file(options.json.as_ref())].into_iter().flatten() {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    options.job.check_memory(1).map_err(Failure::input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut run = Run::new(&options, &interrupt);
     let failure = match run.render_all() {
@@ -37,31 +45,10 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
         outcome => outcome.err(),
     };
     run.display.clear();
-    let summary = run.summary();
-    let printed = print_beside(options.json.as_ref(), &format!("{summary}\n"));
-    let figures = options.json.as_ref().map_or(Ok(()), |target| write_json(&summary, target));
+    let printed = print_beside(options.json.as_ref(), &format!("{}\n", run.text()));
+    let write = |target| write_json(&Envelope::of(run.json()), target);
+    let figures = options.json.as_ref().map_or(Ok(()), write);
     ended(failure, printed.and(figures), &interrupt)
-}
-
-/// Checks for everything that could otherwise fail after rendering.
-fn check_before(options: &FramesOptions) -> Result<(), Failure> {
-    let directory = &options.names.directory;
-    if !directory.as_os_str().is_empty() {
-        std::fs::create_dir_all(directory)
-            .with_context(|| {
-                format!("cannot create the directory {}; choose another with --out", directory.shown())
-            })
-            .map_err(Failure::Input)?;
-    }
-    let json = match &options.json {
-        Some(JsonTarget::File(path)) => Some(path),
-        _ => None,
-    };
-    let animation = options.animation.as_ref().map(|(path, _)| path);
-    for path in [Some(&options.names.path(options.frames.start)), animation, json].into_iter().flatten() {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    options.job.check_memory(1).map_err(Failure::input)
 }
 
 /// An animation in progress.
@@ -69,7 +56,6 @@ struct Run<'a> {
     options: &'a FramesOptions,
     interrupt: &'a Interrupt,
     display: Display,
-    progressive: Option<Progressive>,
     begin: Instant,
     rendered: u32,
     kept: u32,
@@ -88,7 +74,6 @@ impl<'a> Run<'a> {
             options,
             interrupt,
             display,
-            progressive: None,
             begin: Instant::now(),
             rendered: 0,
             kept: 0,
@@ -98,90 +83,73 @@ impl<'a> Run<'a> {
         }
     }
 
+    fn done(&self) -> u32 {
+        self.rendered + self.kept
+    }
+
     fn render_all(&mut self) -> Result<(), Failure> {
+        let mut studio = None;
         for frame in self.options.frames.clone() {
             if self.interrupt.is_set() {
                 return Ok(());
             }
-            let recipe = self.recipe(frame);
+            let recipe = self.options.recipe.at_frame(&self.options.path, frame);
             let path = self.options.names.path(frame);
             if FrameState::of(&path, &recipe, SOFTWARE) == FrameState::Whole {
                 log::debug!("kept {}", path.display());
                 self.kept += 1;
                 continue;
             }
+            let studio = match &mut studio {
+                Some(studio) => studio,
+                none => none.insert(Studio::open(&self.options.backend, self.interrupt)?),
+            };
             let begin = Instant::now();
-            match self.render(frame, &recipe, &path) {
-                Ok(true) => {
-                    self.rendered += 1;
-                    self.rendering += begin.elapsed();
-                }
-                Ok(false) => return Ok(()),
-                Err(Failure::Run(error)) => return Err(broken_off(error, frame, self.rendered + self.kept)),
-                Err(error) => return Err(error),
+            let rendered = self.render(studio, frame, &recipe, &path);
+            if !rendered.map_err(|error| broken_off(error, frame, self.done()))? {
+                return Ok(());
             }
+            self.rendered += 1;
+            self.rendering += begin.elapsed();
         }
         self.assemble().map_err(Failure::Run)
     }
 
-    /// The picture of a frame.
-    fn recipe(&self, frame: u32) -> Recipe {
-        self.options.recipe.at_frame(&self.options.path, frame)
-    }
-
     /// Renders and writes a frame; `false` after a signal.
-    fn render(&mut self, frame: u32, recipe: &Recipe, path: &Path) -> Result<bool, Failure> {
-        let job = &self.options.job;
+    fn render(
+        &mut self,
+        studio: &mut Studio,
+        frame: u32,
+        recipe: &Recipe,
+        path: &Path,
+    ) -> anyhow::Result<bool> {
         // The scene is shared by all frames, so it is validated and prepared once, as far as the camera allows.
-        let job = job.seen_by(recipe.camera, *job.settings()).map_err(Failure::run)?;
-        let plan =
-            Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(recipe.samples_per_pixel)) };
-        let mut request = RenderRequest::new(job, self.options.backend.clone(), plan);
-        let mut progressive = match self.progressive.take() {
-            Some(progressive) => progressive,
-            None => {
-                request.renderer = Some(backends::create(&self.options.backend).map_err(Failure::input)?);
-                Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?
+        let job = self.options.job.seen_by(recipe.camera, *self.options.job.settings())?;
+        let plan = Studio::plan(recipe.samples_per_pixel);
+        let (status, film) = studio.render(job, plan, None, |event| match event {
+            Event::Warning(warning) if self.warnings.iter().any(|known| known == warning) => {}
+            Event::Warning(warning) => {
+                self.display.say(&format!("warning: {warning}"));
+                self.warnings.push(warning.to_owned());
             }
-        };
-        let status = self.watch(frame, &mut progressive, request);
-        let film = progressive.take_film();
-        self.progressive = Some(progressive);
+            Event::Stopping => {
+                self.display.say(&format!("dropping frame {frame}; the frames before it are whole"));
+            }
+            Event::Status(_, status) => {
+                let (done, count) = (self.done(), self.options.frames.len() as u32);
+                let took = (self.rendering, self.rendered);
+                let words = || so_far(frame, status.samples_per_pixel, [done, count], took);
+                self.display.update(u64::from(done), words);
+            }
+        });
         if let Phase::Failed(reason) = &status.phase {
             journal::write_report();
-            return Err(Failure::Run(anyhow!("{reason}")));
+            return Err(anyhow!("{reason}"));
         }
-        let Some(film) = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel) else {
-            return Ok(false);
-        };
-        self.write(frame, recipe, path, &film, &status).map_err(Failure::run)?;
-        Ok(true)
-    }
-
-    fn watch(&mut self, frame: u32, progressive: &mut Progressive, request: RenderRequest) -> Status {
-        let (mut told, mut is_stopping) = (0, false);
-        progressive.watch(request, |progressive, status| {
-            for message in status.messages.iter().skip(told) {
-                if !self.warnings.contains(message) {
-                    self.display.say(&format!("warning: {message}"));
-                    self.warnings.push(message.clone());
-                }
-            }
-            told = status.messages.len();
-            if self.interrupt.is_set() && !is_stopping && !status.phase.is_over() {
-                is_stopping = true;
-                self.display.say(&format!("dropping frame {frame}; the frames before it are whole"));
-                progressive.stop();
-            }
-            self.show(frame, status);
-        })
-    }
-
-    fn show(&mut self, frame: u32, status: &Status) {
-        let done = self.rendered + self.kept;
-        let count = self.options.frames.len() as u32;
-        let took = (self.rendering, self.rendered);
-        self.display.update(u64::from(done), || so_far(frame, status.samples_per_pixel, [done, count], took));
+        match film.filter(|film| film.sample_count() >= recipe.samples_per_pixel) {
+            Some(film) => self.write(frame, recipe, path, &film, &status).map(|()| true),
+            None => Ok(false),
+        }
     }
 
     fn write(
@@ -203,46 +171,80 @@ impl<'a> Run<'a> {
 
     /// Makes the animated PNG.
     fn assemble(&mut self) -> anyhow::Result<()> {
+        let FramesOptions { recipe, frames, names, command, .. } = self.options;
         let Some((path, rate)) = &self.options.animation else { return Ok(()) };
-        let count = self.options.frames.len();
-        self.display.announce(count as u64, || format!("writing {}", path.shown()));
+        self.display.announce(frames.len() as u64, || format!("writing {}", path.shown()));
         let _writing = self.interrupt.while_writing(path.shown());
-        let recipe = &self.options.recipe;
-        let description = describe_animation(recipe, &self.options.command);
         let size = [recipe.settings.width, recipe.settings.height];
-        let first = self.options.frames.start;
-        let files = (0..count).map(|index| self.options.names.path(first + index as u32));
-        write_animation(path, size, *rate, files, &description)?;
+        let files = frames.clone().map(|frame| names.path(frame));
+        write_animation(path, size, *rate, files, &describe_animation(recipe, command))?;
         log::info!("wrote {}", path.display());
         self.animation = Some(path.clone());
         Ok(())
     }
 
-    fn summary(&self) -> Summary {
+    /// The first and the last file that is done. Frames are done in their order.
+    fn files(&self) -> Option<[PathBuf; 2]> {
+        let FramesOptions { frames, names, .. } = self.options;
+        let last = frames.start + self.done().checked_sub(1)?;
+        Some([frames.start, last].map(|frame| names.path(frame)))
+    }
+
+    fn json(&self) -> Value {
         let FramesOptions { recipe, frames, names, .. } = self.options;
-        let done = self.rendered + self.kept;
-        let [first_file, last_file] = files_of_done(frames.start, done, |frame| names.path(frame));
-        Summary {
-            schema: SCHEMA,
-            version: env!("CARGO_PKG_VERSION"),
-            scene: recipe.name.clone(),
-            width: recipe.settings.width,
-            height: recipe.settings.height,
-            samples_per_pixel: recipe.samples_per_pixel,
-            first_frame: frames.start,
-            last_frame: frames.end - 1,
-            frames: frames.end - frames.start,
-            frames_done: done,
-            rendered: self.rendered,
-            kept: self.kept,
-            rendering_seconds: self.rendering.as_secs_f64(),
-            total_seconds: self.begin.elapsed().as_secs_f64(),
-            directory: names.directory.clone().into(),
-            first_file,
-            last_file,
-            animation: self.animation.clone().map(JsonPath),
-            warnings: self.warnings.clone(),
-        }
+        let [first, last] = self.files().map_or([None, None], |files| files.map(Some));
+        json!({
+            "scene": recipe.name,
+            "width": recipe.settings.width,
+            "height": recipe.settings.height,
+            "samples_per_pixel": recipe.samples_per_pixel,
+            "first_frame": frames.start,
+            "last_frame": frames.end - 1,
+            "frames": frames.len(),
+            "frames_done": self.done(),
+            "rendered": self.rendered,
+            "kept": self.kept,
+            "rendering_seconds": self.rendering.as_secs_f64(),
+            "total_seconds": self.begin.elapsed().as_secs_f64(),
+            "directory": JsonPath(names.directory.clone()),
+            "first_file": first.map(JsonPath),
+            "last_file": last.map(JsonPath),
+            "animation": self.animation.clone().map(JsonPath),
+            "warnings": self.warnings,
+        })
+    }
+
+    fn text(&self) -> String {
+        let FramesOptions { recipe, frames, names, .. } = self.options;
+        let (name, settings) = (printable(&recipe.name), &recipe.settings);
+        let samples = counted(recipe.samples_per_pixel, "sample");
+        let each = self.rendering.as_secs_f64() / f64::from(self.rendered.max(1));
+        let each = if self.rendered == 0 {
+            String::new()
+        } else {
+            format!(" ({each:.3} s for each frame rendered)")
+        };
+        let files = match self.files() {
+            Some([first, last]) if self.done() == frames.len() as u32 => {
+                let animation =
+                    self.animation.as_ref().map_or_else(String::new, |path| format!(", {}", path.shown()));
+                format!("{} to {}{animation}", first.shown(), last.shown())
+            }
+            _ => format!("in {}; run the same command again to continue", names.directory.shown()),
+        };
+        format!(
+            "scene    {name}, {}x{}, {samples} per pixel\n\
+             frames   {} of {} done: {} rendered, {} already there\n\
+             time     {}{each}\n\
+             files    {files}\n",
+            settings.width,
+            settings.height,
+            self.done(),
+            frames.len(),
+            self.rendered,
+            self.kept,
+            seconds(self.begin.elapsed().as_secs_f64()),
+        )
     }
 }
 
@@ -252,7 +254,7 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
         return Failure::Run(error);
     }
     let done = counted(u64::from(done), "frame");
-    let words = format!("frame {frame} failed; {done} before it stay, and the same command goes on");
+    let words = format!("frame {frame} failed; {done} before it stay, and the same command continues");
     Failure::BrokeOff(error.context(words))
 }
 
@@ -264,12 +266,9 @@ fn so_far(
     [done, count]: [u32; 2],
     (rendering, rendered): (Duration, u32),
 ) -> String {
-    let left = if rendered > 0 {
-        let each = rendering.as_secs_f64() / f64::from(rendered);
-        format!(", {} left", seconds(each * f64::from(count.saturating_sub(done))))
-    } else {
-        String::new()
-    };
+    let each = rendering.as_secs_f64() / f64::from(rendered.max(1));
+    let left = format!(", {} left", seconds(each * f64::from(count.saturating_sub(done))));
+    let left = if rendered == 0 { String::new() } else { left };
     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
 }
 
@@ -279,19 +278,16 @@ mod tests {
 
     #[test]
     fn the_time_left_is_that_of_the_frames_that_are_not_done() {
-        let told = |took| so_far(3, 4, [2, 6], took);
-        assert_eq!(told((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
-        assert_eq!(told((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
+        let words = |took| so_far(3, 4, [2, 6], took);
+        assert_eq!(words((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
+        assert_eq!(words((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 
     #[test]
     fn a_run_breaks_off_only_if_there_are_frames_that_stay() {
-        let failure = |done| broken_off(anyhow!("no space"), 7, done);
-        assert!(matches!(failure(0), Failure::Run(error) if format!("{error:#}") == "no space"));
-        for (done, words) in [(1, "1 frame before it stay"), (7, "7 frames before it stay")] {
-            let Failure::BrokeOff(error) = failure(done) else { panic!("{done}") };
-            let told = format!("frame 7 failed; {words}, and the same command goes on: no space");
-            assert_eq!(format!("{error:#}"), told);
-        }
+        assert!(matches!(broken_off(anyhow!("no space"), 7, 0), Failure::Run(_)));
+        let Failure::BrokeOff(error) = broken_off(anyhow!("no space"), 7, 1) else { panic!() };
+        let words = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
+        assert_eq!(format!("{error:#}"), words);
     }
 }

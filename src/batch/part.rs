@@ -1,17 +1,17 @@
-//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it goes on from the part's
+//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the part's
 //! last checkpoint or from the frames that are there, and ends at once if the part is whole.
 
-use super::files::Places;
+use super::picture::Picture;
 use super::summary::Summary;
-use super::{check_before, frames, render_all, write_figures};
-use crate::cli::{BatchOptions, CHECKPOINT_INTERVAL, FramesOptions, PartOptions, RenderOptions};
+use super::{check_before, frames, json_file, render_all, write_figures};
+use crate::cli::{BatchOptions, FramesOptions, PartOptions, Paths, RenderOptions};
 use crate::console;
 use crate::failure::Failure;
 use crate::files::{NAME_LIMIT, ShownPath, free_name};
-use crate::film::{CheckpointError, Film};
+use crate::film::CheckpointError;
 use crate::output::PpmForm;
-use crate::plan::{AnyPlan, Frames, Part, Plan, Samples};
-use crate::progressive::{self, EndReason, Phase, Status, Stop};
+use crate::plan::{Frames, Part, Plan, Samples, Work};
+use crate::progressive::{self, EndReason, Phase, Status};
 use crate::saved::{self, OpenError, SavedFilm};
 use crate::terminal::print_beside;
 use anyhow::{Context, anyhow};
@@ -24,56 +24,57 @@ use std::time::Duration;
 /// # Errors
 /// [`Failure::Input`] if there is no such part, or its file is another film; otherwise those of a render.
 pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
-    match AnyPlan::load(&options.plan).map_err(Failure::input)? {
-        AnyPlan::Samples(plan) => render_samples(&plan, options),
-        AnyPlan::Frames(plan) => render_frames_of(&plan, options),
+    let part = options.part().map_err(Failure::input)?;
+    let plan = Plan::load(&options.plan).map_err(Failure::Input)?;
+    let index = plan.index(part).map_err(Failure::Input)?;
+    if let Some(json) = json_file(options.json.as_ref()) {
+        let files = plan.files();
+        let paths = files.iter().fold(Paths::default(), |paths, file| paths.read("the plan", Some(file)));
+        paths.write("--json", Some(json)).check(&[]).map_err(Failure::input)?;
+    }
+    match &plan.manifest.work {
+        Work::Samples(work) => render_samples(&plan, work, index, options),
+        Work::Frames(work) => frames::render_frames(frames_of(&plan, work, index, options)),
     }
 }
 
-fn render_frames_of(plan: &Plan<Frames>, options: PartOptions) -> Result<ExitCode, Failure> {
-    let part = plan.part(options.part).map_err(Failure::input)?;
-    if options.every.is_some() {
-        return Err(Failure::Input(anyhow!(
-            "--every is for films, but {} divides an animation, whose frames are kept one by one; leave it out",
-            plan.path.shown()
-        )));
-    }
-    frames::render_frames(FramesOptions {
+fn frames_of(plan: &Plan, work: &Frames, index: usize, options: PartOptions) -> FramesOptions {
+    FramesOptions {
         recipe: plan.recipe.clone(),
         job: plan.job.clone(),
         stage: plan.stage(),
-        path: plan.camera_path(),
-        frames: part.range(),
-        names: plan.names(),
+        path: work.camera_path(&plan.recipe),
+        frames: work.parts[index].range(),
+        names: plan.frame_names(),
         animation: None,
         backend: options.backend,
         progress: options.progress,
         json: options.json,
         command: options.command,
         notes: Vec::new(),
-    })
+    }
 }
 
-fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode, Failure> {
-    let part = plan.part(options.part).map_err(Failure::input)?;
-    let path = plan.part_path(part);
+fn render_samples(
+    plan: &Plan,
+    work: &Samples,
+    index: usize,
+    options: PartOptions,
+) -> Result<ExitCode, Failure> {
+    let part = &work.parts[index];
+    let ([start, end], path) = (part.samples, plan.beside(&part.file));
     let render = RenderOptions {
         recipe: plan.recipe.clone(),
         job: plan.job.clone(),
         stage: plan.stage(),
-        plan: progressive::Plan {
-            first_sample: part.samples[0],
-            pass_target: progressive::Plan::BATCH_PASS,
-            ..progressive::Plan::until(Stop::at_samples(part.samples[1]))
-        },
+        plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
         out: path.clone(),
         checkpoint: Some(path.clone()),
-        every: options.every.unwrap_or(CHECKPOINT_INTERVAL),
+        every: options.every,
         resume: Some(path.clone()),
-        is_part: true,
         asked_samples: None,
         ppm: PpmForm::Binary,
-        command: options.command.clone(),
+        command: options.command,
         notes: Vec::new(),
     };
     let batch = BatchOptions {
@@ -86,25 +87,26 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         crashes_at: None,
     };
     check_before(&batch)?;
-    // The places are locked before the film is read: another run may be writing it.
-    let places =
-        batch.renders.iter().map(Places::of).collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+    let mut pictures = batch.renders.iter().map(Picture::lock).collect::<Result<Vec<_>, _>>()?;
     let found = find(&path, plan, part)?;
-    if let Some(found) = &found
-        && part.missing(found.film.samples()) == 0
-    {
-        let [start, end] = part.samples;
-        let words = format!("part {} is whole: samples {start}..{end} in {}\n", options.part, path.shown());
-        print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
-        let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found.film)).collect();
-        write_figures(&batch, summaries).map_err(Failure::Run)?;
-        return Ok(ExitCode::SUCCESS);
+    match found {
+        Some(found) if part.missing(found.film.samples()) == 0 => {
+            let words = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
+            print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
+            let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found).json());
+            write_figures(&batch, summaries.collect()).map_err(Failure::Run)?;
+            Ok(ExitCode::SUCCESS)
+        }
+        found => {
+            pictures[0].resumed = found;
+            render_all(&batch, pictures)
+        }
     }
-    render_all(batch, &places, found, &[])
 }
 
 /// The figures of a part of which nothing was left to render.
-fn summary_of_whole(render: &RenderOptions, film: &Film) -> Summary {
+fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary<'a> {
+    let film = &found.film;
     let status = Status {
         phase: Phase::Done(EndReason::Samples),
         samples_per_pixel: film.sample_count(),
@@ -112,17 +114,19 @@ fn summary_of_whole(render: &RenderOptions, film: &Film) -> Summary {
         error: film.error(),
         ..Status::default()
     };
-    Summary::new(render, &status, Some(film), vec![render.out.clone()], Duration::ZERO)
+    let samples = Some(film.samples().to_string());
+    Summary { render, samples, status, files: vec![render.out.clone()], writing: Duration::ZERO }
 }
 
-/// The film of the part, if there is one to go on with. A damaged one is put aside.
-fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFilm>, Failure> {
+/// The film of the part, if there is one to continue. A damaged one is put aside.
+fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(None);
     }
+    const REMEDY: &str = "move the file away, and run this again";
     match saved::resume(path, &plan.job) {
         Ok(found) if part.is_exceeded_by(found.film.samples()) => Err(Failure::Input(anyhow!(
-            "{} holds the samples {}, but this part has {}..{}; move the file away, and run this again",
+            "{} holds the samples {}, but this part has {}..{}; {REMEDY}",
             path.shown(),
             found.film.samples(),
             part.samples[0],
@@ -133,34 +137,31 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
             damaged @ (CheckpointError::Damaged { .. }
             | CheckpointError::NotExr { .. }
             | CheckpointError::NotFilm { .. }),
-        )) => {
-            let aside = free_name(|number| damaged_name(path, number)).ok_or_else(|| {
-                let last = damaged_name(path, NAME_LIMIT);
-                Failure::Input(anyhow!(
-                    "{damaged}; it cannot be put aside, because the names up to {} are taken; delete some of them",
-                    last.shown()
-                ))
-            })?;
-            std::fs::rename(path, &aside)
-                .with_context(|| format!("cannot rename {} to {}", path.shown(), aside.shown()))
-                .map_err(Failure::Input)?;
-            console::note(&format!(
-                "warning: {damaged}; it is now {}, and the part is rendered again",
-                aside.shown()
-            ));
-            Ok(None)
-        }
+        )) => put_aside(path, &damaged).map(|()| None).map_err(Failure::Input),
         Err(OpenError::OtherPicture { path, difference }) => Err(Failure::Input(anyhow!(
-            "{} is the film of another picture: {difference}; move the file away, and run this again",
+            "{} is the film of another picture: {difference}; {REMEDY}",
             path.shown()
         ))),
         Err(error) => Err(Failure::input(error)),
     }
 }
 
-/// `part-0.exr.damaged`, or `part-0.exr.damaged-2` and so on.
-fn damaged_name(path: &Path, number: u32) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(if number == 1 { ".damaged".to_owned() } else { format!(".damaged-{number}") });
-    PathBuf::from(name)
+/// Renames a damaged film to `part-0.exr.damaged`, or `part-0.exr.damaged-2` and so on.
+fn put_aside(path: &Path, damaged: &CheckpointError) -> anyhow::Result<()> {
+    let name = |number: u32| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(if number == 1 { ".damaged".to_owned() } else { format!(".damaged-{number}") });
+        PathBuf::from(name)
+    };
+    let aside = free_name(name).with_context(|| {
+        let last = name(NAME_LIMIT);
+        format!("{damaged}; the names up to {} are taken; delete some of them", last.shown())
+    })?;
+    std::fs::rename(path, &aside)
+        .with_context(|| format!("cannot rename {} to {}", path.shown(), aside.shown()))?;
+    console::note(&format!(
+        "warning: {damaged}; it is now {}, and the part is rendered again",
+        aside.shown()
+    ));
+    Ok(())
 }

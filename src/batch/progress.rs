@@ -97,7 +97,6 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-    use crate::render::Stats;
 
     #[test]
     fn the_condition_that_is_met_first_tells_the_time_left() {
@@ -128,24 +127,6 @@ mod tests {
         assert_eq!(seconds_left(&plan, &status), Some(0.0));
         (plan.stop.noise, status.elapsed) = (None, Duration::from_secs(61));
         assert_eq!(seconds_left(&plan, &status), Some(0.0));
-    }
-
-    #[test]
-    fn progress_is_told_with_what_is_known() {
-        let mut status = Status {
-            phase: Phase::Tracing,
-            samples_per_pixel: 8,
-            stats: Stats { paths: 3_000_000, ..Stats::default() },
-            trace: Duration::from_secs(2),
-            ..Status::default()
-        };
-        let told = |status: &Status, left| so_far(status, Duration::from_secs(12), left);
-        assert_eq!(told(&status, None), "tracing: 8 spp, 1.5 Mpaths/s, 12.0 s");
-        status.error = Some(ErrorEstimate { rmse: 0.0123, rmse_deviation: 0.5, rel_mse: 0.25 });
-        let expected = "tracing: 8 spp, 1.5 Mpaths/s, 12.0 s, 1 min 30 s left, error 1.23e-2";
-        assert_eq!(told(&status, Some(90.0)), expected);
-        status.phase = Phase::Preparing;
-        assert_eq!(told(&status, Some(90.0)), "preparing the scene");
     }
 
     #[test]

@@ -1,24 +1,51 @@
-//! `--frames`: an animation.
+//! `--frames` and `--turntable`: animations.
 
-use super::Request;
-use super::backend;
 use super::error::CliError;
-use super::paths::{Paths, same_name};
-use super::raw::{self, ProgressChoice, RawAnimation, RawPicture, RawRender};
-use super::sources;
-use super::unused;
-use super::values::JsonTarget;
-use crate::animation::{CameraPath, FrameNames, Turn};
+use super::raw::{ProgressChoice, RawPicture};
+use super::render::RenderFlags;
+use super::values::{JsonTarget, parse_rate, parse_turn, range};
+use super::{Line, Paths, Request, sources};
+use crate::animation::{CameraPath, FRAME_LIMIT, FrameNames, Turn};
 use crate::backends::BackendChoice;
+use crate::files::ShownPath;
 use crate::output::FrameRate;
 use crate::recipe::Recipe;
 use crate::render::RenderJob;
 use crate::stages::Stage;
+use clap::Args;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// The rate of an animated PNG.
-pub(super) const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
+const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Animation")]
+pub(super) struct AnimationFlags {
+    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
+    /// file [default with --turntable: one turn]
+    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), allow_hyphen_values = true)]
+    frames: Option<Range<u32>>,
+    /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
+    /// as 1.5deg or -3deg [without a value: 120 frames]
+    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+          require_equals = true, default_missing_value = "120")]
+    turntable: Option<Turn>,
+    /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
+    fps: Option<FrameRate>,
+}
+
+/// Frames to render, and how the camera moves.
+#[derive(Debug)]
+pub(super) struct Animation {
+    /// Numbers of the frames, whose cameras are valid.
+    pub frames: Range<u32>,
+    pub path: CameraPath,
+    /// How the camera circles, unless it follows keyframes.
+    pub turntable: Option<Turn>,
+    pub rate: FrameRate,
+}
 
 /// Options of `--batch --frames`.
 #[derive(Debug)]
@@ -37,11 +64,8 @@ pub struct FramesOptions {
     pub names: FrameNames,
     /// The animated PNG to make of them, if any.
     pub animation: Option<(PathBuf, FrameRate)>,
-    /// The backend.
     pub backend: BackendChoice,
-    /// Whether progress is shown.
     pub progress: ProgressChoice,
-    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
     /// The command that renders them.
     pub command: String,
@@ -49,169 +73,113 @@ pub struct FramesOptions {
     pub notes: Vec<String>,
 }
 
-/// Validates the flags of an animation; `None` if they ask for none.
-pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>, CliError> {
-    let RawAnimation { frames, turntable, fps } = &raw.animation;
-    if frames.is_none() && turntable.is_none() {
-        return match fps {
-            Some(_) => Err(CliError::Needs {
-                flag: "--fps",
-                other: "--frames",
-                reason: "a single picture has no rate; add --frames A..B or --turntable",
-            }),
-            None => Ok(None),
-        };
+impl AnimationFlags {
+    /// The flag that asks for an animation, if any does.
+    pub fn check(&self) -> Result<Option<&'static str>, CliError> {
+        match self {
+            AnimationFlags { frames: Some(_), .. } => Ok(Some("--frames")),
+            AnimationFlags { turntable: Some(_), .. } => Ok(Some("--turntable")),
+            AnimationFlags { fps: None, .. } => Ok(None),
+            AnimationFlags { fps: Some(_), .. } => {
+                let reason = "a single picture has no rate; add --frames A..B or --turntable";
+                Err(CliError::Needs { flag: "--fps", other: "--frames", reason })
+            }
+        }
     }
-    let flag = if frames.is_some() { "--frames" } else { "--turntable" };
-    if !raw.batch {
+
+    /// The animation of a picture.
+    pub fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<Animation, CliError> {
+        let needs = |flag, other, reason| Err(CliError::Needs { flag, other, reason });
+        let path = match (self.turntable, picture.camera.given().first()) {
+            (Some(turn), _) => CameraPath::Turntable { start: recipe.camera, turn },
+            (None, _) if recipe.keyframes.is_empty() => {
+                let reason = "the scene has no [[keyframes]], so the camera would not move";
+                return needs("--frames", "--turntable", reason);
+            }
+            (None, Some(flag)) => {
+                let reason = "they set the camera; change them, or use --turntable";
+                return Err(CliError::Together { flag, other: "the keyframes of the scene file", reason });
+            }
+            (None, None) => {
+                CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() }
+            }
+        };
+        let frames = match (&self.frames, self.turntable) {
+            (Some(frames), _) => frames.clone(),
+            (None, Some(Turn::FramesPerTurn(count))) => 0..count,
+            (None, _) => {
+                let reason = "it has no whole number of frames a turn; give A..B";
+                return needs("--turntable in degrees", "--frames", reason);
+            }
+        };
+        for frame in frames.clone() {
+            job.seen_by(path.camera(frame), *job.settings())
+                .map_err(|reason| CliError::Refused(format!("frame {frame}: {reason}")))?;
+        }
+        let rate = self.fps.unwrap_or(DEFAULT_RATE);
+        Ok(Animation { frames, path, turntable: self.turntable, rate })
+    }
+}
+
+/// Validates the flags of an animation.
+pub(super) fn request(flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
+    let flag = flags.animation.check()?.unwrap_or("--frames");
+    if !flags.batch {
         let reason = "the window shows one picture; frames are rendered to files";
         return Err(CliError::Needs { flag, other: "--batch", reason });
     }
-    refuse_others(raw, flag)?;
-    let mut chosen = sources::find(&raw.picture, None)?;
-    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
-    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
-    let job = chosen.recipe.job()?;
-    let path = path_of(&raw.animation, &raw.picture, &chosen.recipe)?;
-    let frames = frames_of(&raw.animation, &path, &job)?;
-    let out = raw.out.as_deref().ok_or(CliError::Needs {
+    let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
+    let Animation { frames, path, rate, .. } = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
+    let out = flags.files.out.as_deref().ok_or(CliError::Needs {
         flag,
         other: "--out",
         reason: "it writes many pictures; name a directory, a pattern such as turn-####.png, or an animated turn.png",
     })?;
     let (names, animation) = places(out)?;
-    if fps.is_some() && animation.is_none() {
+    if flags.animation.fps.is_some() && animation.is_none() {
         let reason = "single frames have no rate; give it to the program that makes a film of them";
         return Err(CliError::Needs { flag: "--fps", other: "--out FILE.png", reason });
     }
-    let json = raw.json.clone().map(JsonTarget::from);
-    Paths::default()
-        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+    let paths = Paths::default().read("--scene", sources::scene_file(flags.picture.scene.as_deref()));
+    frames
+        .clone()
+        .fold(paths, |paths, frame| paths.read("a frame of the animation", Some(&names.path(frame))))
         .write("--out", animation.as_deref())
-        .write_json(json.as_ref())
-        .own("a frame of the animation", &names.directory, {
-            let (names, frames) = (names.clone(), frames.clone());
-            move |name| same_name(name, frames.clone().filter_map(|frame| file_name(&names, frame)))
-        })
+        .write_json(flags.files.json.as_ref())
         .check(&[])?;
-    Ok(Some(Request::Frames(Box::new(FramesOptions {
-        notes: unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
+    Ok(Request::Frames(Box::new(FramesOptions {
+        notes: sources::notes(&job, &chosen, &flags.picture, &flags.samples),
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
         path,
         frames,
         names,
-        animation: animation.map(|file| (file, fps.unwrap_or(DEFAULT_RATE))),
-        backend: backend::choice(&raw.backend)?,
-        progress: raw.progress,
-        json,
-        command: command.to_owned(),
-    }))))
-}
-
-/// The name of a frame's file.
-fn file_name(names: &FrameNames, frame: u32) -> Option<String> {
-    names.path(frame).file_name().map(|name| name.to_string_lossy().into_owned())
-}
-
-/// Returns an error if a flag makes no sense for an animation.
-fn refuse_others(raw: &RawRender, flag: &'static str) -> Result<(), CliError> {
-    let same = "every frame must have the same samples, whenever it is rendered; give --samples";
-    let films = "an animation is kept frame by frame, and whole frames are not rendered again";
-    for (other, is_given, reason) in [
-        ("--stage all", raw.picture.is_every_stage(), "an animation shows one scene; choose one stage"),
-        ("--resume", raw.resume.is_some(), films),
-        ("--checkpoint", raw.checkpoint.is_some(), films),
-        ("--every", raw.every.is_some(), films),
-        ("--time-limit", raw.time_limit.is_some(), same),
-        ("--noise-target", raw.noise_target.is_some(), same),
-        ("--sample-range", raw.sample_range.is_some(), same),
-        ("--ppm", raw.ppm.is_some(), "frames are PNG files"),
-        ("--save-scene", raw.save_scene.is_some(), "write the scene file by a command of its own"),
-        ("--simulate-crash", raw.backend.simulate_crash.is_some(), "it is for single pictures"),
-    ] {
-        if is_given {
-            return Err(CliError::Together { flag, other, reason });
-        }
-    }
-    Ok(())
-}
-
-/// Numbers of the frames, whose cameras are valid.
-pub(super) fn frames_of(
-    animation: &RawAnimation,
-    path: &CameraPath,
-    job: &RenderJob,
-) -> Result<Range<u32>, CliError> {
-    let frames = match (&animation.frames, animation.turntable) {
-        (Some(frames), _) => frames.clone(),
-        (None, Some(Turn::FramesPerTurn(count))) => 0..count,
-        (None, _) => {
-            let reason = "it has no whole number of frames a turn; give A..B";
-            return Err(CliError::Needs { flag: "--turntable in degrees", other: "--frames", reason });
-        }
-    };
-    for frame in frames.clone() {
-        job.seen_by(path.camera(frame), *job.settings())
-            .map_err(|reason| CliError::Frame { frame, reason: Box::new(reason) })?;
-    }
-    Ok(frames)
-}
-
-/// How the flags and the scene file move the camera.
-pub(super) fn path_of(
-    animation: &RawAnimation,
-    picture: &RawPicture,
-    recipe: &Recipe,
-) -> Result<CameraPath, CliError> {
-    if let Some(turn) = animation.turntable {
-        return Ok(CameraPath::Turntable { start: recipe.camera, turn });
-    }
-    if recipe.keyframes.is_empty() {
-        return Err(CliError::Needs {
-            flag: "--frames",
-            other: "--turntable",
-            reason: "the scene has no [[keyframes]], so the camera would not move",
-        });
-    }
-    match picture.camera_flags().into_iter().find(|(_, is_given)| *is_given) {
-        Some((flag, _)) => Err(CliError::Together {
-            flag,
-            other: "the keyframes of the scene file",
-            reason: "they set the camera; change them, or use --turntable",
-        }),
-        None => Ok(CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() }),
-    }
+        animation: animation.map(|file| (file, rate)),
+        backend: flags.backend,
+        progress: flags.progress,
+        json: flags.files.json,
+        command: line.command.clone(),
+    })))
 }
 
 /// The files of the frames, and the animated PNG if `out` is one. Its frames are in a directory beside it.
 fn places(out: &Path) -> Result<(FrameNames, Option<PathBuf>), CliError> {
-    let refuse = |reason| Err(CliError::FramesOut { path: out.to_owned(), reason });
     let ending = out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let is_png = ending.as_deref() == Some("png");
-    if out.is_dir() {
-        return Ok((FrameNames::in_directory(out), None));
-    }
-    if out.file_name().is_some_and(|name| name.to_string_lossy().contains('#')) {
-        return match FrameNames::of_pattern(out) {
-            Some(names) if is_png => Ok((names, None)),
-            Some(_) => refuse("but frames are PNG files: let the pattern end in .png"),
-            None => refuse("but a pattern has a single row of #, such as turn-####.png"),
-        };
-    }
-    match ending.as_deref() {
-        None => Ok((FrameNames::in_directory(out), None)),
-        Some("png" | "apng") => {
+    let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
+    match (ending.as_deref(), FrameNames::of_pattern(out)) {
+        _ if out.is_dir() => Ok((FrameNames::in_directory(out), None)),
+        (Some("png"), Some(names)) => Ok((names, None)),
+        (None, _) if !is_pattern => Ok((FrameNames::in_directory(out), None)),
+        (Some("png" | "apng"), _) if !is_pattern => {
             let mut directory = out.file_stem().unwrap_or_default().to_owned();
             directory.push("-frames");
             Ok((FrameNames::in_directory(&out.with_file_name(directory)), Some(out.to_owned())))
         }
-        Some("exr") => {
-            refuse("but an animation has no film: name a directory, or render single pictures as films")
-        }
-        Some(_) => refuse(
-            "but an animation is a directory of PNG files, a pattern such as turn-####.png, or an animated turn.png",
-        ),
+        _ => Err(CliError::Refused(format!(
+            "--out is {}, but an animation is a directory of PNG files, a pattern with a single row of # such as \
+             turn-####.png, or an animated turn.png; it has no film",
+            out.shown()
+        ))),
     }
 }

@@ -3,13 +3,12 @@
 mod backend;
 mod bench;
 mod check;
-mod companion;
 mod compare;
 mod diff;
+mod direct;
 mod error;
 mod frames;
-mod gallery;
-mod merge;
+
 mod paths;
 mod plan;
 mod raw;
@@ -17,79 +16,137 @@ mod render;
 mod report;
 mod sources;
 mod stress;
-mod subcommands;
-mod typed;
-mod unused;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
 pub use check::CheckOptions;
-pub use companion::CompanionOptions;
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice};
+pub use direct::{CompanionOptions, GalleryOptions, InfoOptions, MergeOptions};
 pub use error::CliError;
 pub use frames::FramesOptions;
-pub use gallery::GalleryOptions;
-pub use merge::{InfoOptions, MergeOptions, MergeSource};
-pub use plan::{PartOptions, PlanFormat, PlanOptions, PlannedWork};
+pub use paths::Paths;
+pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
-pub use render::CHECKPOINT_INTERVAL;
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportOptions};
 pub use sources::DEFAULT_SCENE;
 pub use stress::StressOptions;
 pub use values::JsonTarget;
 
-use crate::failure::Failure;
-use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches};
-use paths::Paths;
+use crate::failure::{EXIT_CODES, Failure};
+use crate::shell;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use subcommands::{Raw, RawCommand};
 
 /// What the program is to do.
 #[derive(Debug)]
 pub enum Request {
-    /// Print the version.
+    /// Print the version, and with `is_verbose` also what the build and the machine are like.
     Version {
-        /// Also what the build and the machine are like.
         is_verbose: bool,
     },
-    /// Open the window.
     Window(Box<WindowOptions>),
-    /// Measure the speed.
     Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.
     SaveScene(Box<SaveSceneOptions>),
-    /// Divide a picture into parts.
     Plan(Box<PlanOptions>),
-    /// Render a part.
     Part(Box<PartOptions>),
-    /// Merge films.
     Merge(Box<MergeOptions>),
-    /// Say what a file says about itself.
     Info(InfoOptions),
-    /// Compare a path on two backends.
     Diff(Box<DiffOptions>),
-    /// Compare two pictures.
     Compare(Box<CompareOptions>),
-    /// Measure error against time.
     Report(Box<ReportOptions>),
-    /// Render stiff scenes and check the results.
     Stress(Box<StressOptions>),
-    /// Write the page that accompanies the book.
     Companion(Box<CompanionOptions>),
-    /// Render the figures of the book.
     Gallery(Box<GalleryOptions>),
-    /// Find the mistake in a picture.
     Check(Box<CheckOptions>),
-    /// Render the frames of an animation.
     Frames(Box<FramesOptions>),
-    /// Render to files.
     Batch(Box<BatchOptions>),
+}
+
+/// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
+#[derive(Debug, Parser)]
+#[command(name = "weekender", version, disable_version_flag = true, args_conflicts_with_subcommands = true,
+          after_help = EXIT_CODES)]
+struct Raw {
+    /// Print the version; with --verbose also commit, target, instruction level, adapters and version of film files
+    #[arg(short = 'V', long)]
+    version: bool,
+    /// With --version: print everything that a report of a fault should say
+    #[arg(long, requires = "version")]
+    verbose: bool,
+    /// Write a log of what the program does; RUST_LOG chooses what, such as warn,weekender=trace
+    #[arg(long, value_name = "FILE.log", global = true)]
+    log: Option<PathBuf>,
+    #[command(flatten)]
+    render: render::RenderFlags,
+    #[command(subcommand)]
+    command: Option<RawCommand>,
+}
+
+#[derive(Debug, Subcommand)]
+enum RawCommand {
+    /// Measure the speed of this machine, compared with a plain C program: tables, JSON, a chart
+    ///
+    /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
+    /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
+    Bench(Box<BenchOptions>),
+    /// Divide the samples of a picture, or the frames of an animation, into parts that many machines render, and make the
+    /// commands for them
+    ///
+    /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
+    /// from the part's last checkpoint or from the existing frames, and ends at once if the part is whole.
+    Plan(Box<plan::PlanFlags>),
+    /// Render a part of a plan, or continue it
+    ///
+    /// The part's film is its own checkpoint; frames are kept one by one. The exit code is 0 if the part is whole, 143 after
+    /// SIGTERM (the checkpoint is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
+    RenderPart(Box<PartOptions>),
+    /// Merge films of the same picture that hold different samples, or the parts of a plan
+    ///
+    /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included; frames become an animated PNG
+    /// once all of them exist. The exit code is 0 if nothing is missing, 1 if a part is missing, unfinished or damaged, and
+    /// 2 if nothing could be merged.
+    Merge(Box<MergeOptions>),
+    /// Say what a film, picture, scene file or plan says about itself
+    Info(InfoOptions),
+    /// Show a path as two backends trace it, side by side, and where the paths part
+    ///
+    /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
+    Diff(Box<diff::RawDiff>),
+    /// Tell whether two pictures are equal apart from noise, and where they are not
+    ///
+    /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
+    Compare(Box<compare::RawCompare>),
+    /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
+    ///
+    /// Continues an interrupted report that has the same settings.
+    Report(Box<ReportOptions>),
+    /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
+    ///
+    /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on: by a CPU level that
+    /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
+    /// are right, 1 if one is not and 2 if nothing could be run.
+    Stress(Box<StressOptions>),
+    /// Write the companion: a web page that goes through the book in pictures, in code and live
+    ///
+    /// The page is index.html in the directory --out, with its figures beside it. It needs no server and no network.
+    /// Only figures that changed are rendered again.
+    Companion(Box<CompanionOptions>),
+    /// Render every figure of the book, with a page that shows them
+    ///
+    /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command continues.
+    Gallery(Box<GalleryOptions>),
+    /// Find the mistake in a picture that your own program has rendered
+    ///
+    /// Finds the stage of the book that the picture shows, and the likeliest mistake with what to change. The exit code
+    /// is 0 if the picture is right, 1 if there is a mistake and 2 if it could not be checked.
+    Check(Box<CheckOptions>),
 }
 
 /// All flags and subcommands with their help, from which manual pages and completions are made.
@@ -101,23 +158,11 @@ pub fn command() -> clap::Command {
 /// none; [`parse`] says what is wrong with it.
 ///
 /// # Errors
-/// If its name does not end in `.log`, or is that of another file of the command. Other names are refused so that a log
-/// never replaces a picture.
+/// If its name does not end in `.log`: so a log never replaces a picture.
 pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
-    let Ok(matches) = command().try_get_matches_from(arguments) else { return Ok(None) };
-    let log = Raw::from_arg_matches(&matches).ok().and_then(|raw| raw.log);
+    let log = Raw::try_parse_from(arguments).ok().and_then(|raw| raw.log);
     if let Some(path) = &log {
         sources::check_ending("--log", path, "the log", ".log").map_err(Failure::input)?;
-        let mut values = Vec::new();
-        typed::find_values(&matches, "log", &mut values);
-        values
-            .iter()
-            .fold(Paths::default(), |paths, value| {
-                paths.read("another file of this command", Some(Path::new(value)))
-            })
-            .write("--log", Some(path))
-            .check(&[])
-            .map_err(Failure::input)?;
     }
     Ok(log)
 }
@@ -128,69 +173,84 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let program = called(arguments.first());
-    let matches = command().try_get_matches_from(&arguments).map_err(|error| refused(error, &arguments))?;
-    let typed = typed::without_directories(&arguments, &matches);
+    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-    if raw.version {
-        return Ok(Request::Version { is_verbose: raw.verbose });
-    }
-    match raw.command {
-        Some(RawCommand::Bench(raw)) => {
-            raw.check().map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Plan(raw)) => plan::plan(*raw, &program, typed)
-            .map(|options| Request::Plan(Box::new(options)))
-            .map_err(Failure::input),
-        Some(RawCommand::RenderPart(raw)) => {
-            plan::part(*raw, typed).map(|options| Request::Part(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Merge(raw)) => merge::merge(*raw, &program)
-            .map(|options| Request::Merge(Box::new(options)))
-            .map_err(Failure::input),
-        Some(RawCommand::Info(raw)) => Ok(Request::Info(merge::info(raw))),
-        Some(RawCommand::Diff(raw)) => {
-            diff::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Compare(raw)) => {
-            compare::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Report(raw)) => {
-            raw.check(typed).map(|options| Request::Report(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Stress(raw)) => {
-            raw.check().map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Companion(raw)) => companion::companion(*raw)
-            .map(|options| Request::Companion(Box::new(options)))
-            .map_err(Failure::input),
-        Some(RawCommand::Gallery(raw)) => {
-            gallery::gallery(*raw).map(|options| Request::Gallery(Box::new(options))).map_err(Failure::input)
-        }
-        Some(RawCommand::Check(options)) => {
-            options.checked().map(|options| Request::Check(Box::new(options))).map_err(Failure::input)
-        }
-        None if raw.render.list => Ok(Request::List),
-        None => render::request(raw.render, typed).map_err(Failure::input),
-    }
+    let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
+    let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
+    request(raw, &line).map_err(Failure::input)
 }
 
-/// Why clap does not accept the command line. If it is because of a word that is not UTF-8, clap does not say which.
-fn refused(error: clap::Error, arguments: &[OsString]) -> Failure {
-    let strange = arguments.iter().skip(1).filter(|word| word.to_str().is_none());
-    let words: Vec<String> = strange.map(|word| format!("{word:?}")).collect();
-    if error.kind() == ErrorKind::InvalidUtf8 && !words.is_empty() {
-        return Failure::input(CliError::NotUtf8 { words: words.join(", ") });
+fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
+    Ok(match raw.command {
+        None if raw.version => Request::Version { is_verbose: raw.verbose },
+        None => render::request(raw.render, line)?,
+        Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
+        Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),
+        Some(RawCommand::RenderPart(part)) => {
+            Request::Part(Box::new(PartOptions { command: line.command.clone(), ..*part }))
+        }
+        Some(RawCommand::Merge(merge)) => {
+            Request::Merge(Box::new(MergeOptions { program: line.program.clone(), ..*merge }))
+        }
+        Some(RawCommand::Info(options)) => Request::Info(options),
+        Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
+        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(compare::compare(*raw)?)),
+        Some(RawCommand::Report(raw)) => {
+            Request::Report(Box::new(raw.check(line.command.clone())?))
+        }
+        Some(RawCommand::Stress(raw)) => Request::Stress(Box::new(raw.check()?)),
+        Some(RawCommand::Companion(options)) => Request::Companion(options),
+        Some(RawCommand::Gallery(options)) => Request::Gallery(options),
+        Some(RawCommand::Check(raw)) => Request::Check(Box::new(raw.checked()?)),
+    })
+}
+
+/// The command line as a whole.
+struct Line<'a> {
+    /// How commands call this program.
+    program: String,
+    /// The command as pictures record it.
+    command: String,
+    /// What clap found, of the subcommand if there is one.
+    matches: &'a ArgMatches,
+}
+
+impl Line<'_> {
+    fn is_given(&self, flag: &str) -> bool {
+        self.matches.value_source(flag) == Some(ValueSource::CommandLine)
     }
-    Failure::CommandLine(error)
+
+    /// Those of these flags that are given, as words.
+    fn words(&self, flags: &[&str]) -> Vec<String> {
+        let value = |flag: &str| self.matches.get_raw(flag).into_iter().flatten().next();
+        let given = flags.iter().filter(|flag| self.is_given(flag));
+        given.filter_map(|flag| Some(format!("--{flag}={}", value(flag)?.to_string_lossy()))).collect()
+    }
 }
 
 /// How commands call this program: by its name if the shell has found it, otherwise with its directory.
-fn called(first: Option<&OsString>) -> String {
+fn program(first: Option<&OsString>) -> String {
     const NAME: &str = "weekender";
     let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
     let path = if is_path { std::env::current_exe().ok() } else { None };
     path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
+}
+
+/// The words of the command line, quoted for a shell, with file names instead of paths: pictures are passed on, and their
+/// author's directories are private.
+fn recorded(arguments: &[OsString]) -> String {
+    let shortened = |word: &OsString| {
+        let word = word.to_string_lossy();
+        let (flag, value) = word.split_once('=').filter(|_| word.starts_with("--")).unwrap_or(("", &word));
+        let path = Path::new(value);
+        let is_in_directory = path.parent().is_some_and(|at| !at.as_os_str().is_empty() && at.is_dir());
+        match path.file_name().filter(|_| path.is_absolute() || is_in_directory) {
+            Some(name) if flag.is_empty() => name.to_string_lossy().into_owned(),
+            Some(name) => format!("{flag}={}", name.to_string_lossy()),
+            None => word.into_owned(),
+        }
+    };
+    shell::line(std::iter::once("weekender".to_owned()).chain(arguments.iter().skip(1).map(shortened)))
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
-//! Validates the flags for rendering, in the window or to files.
+//! Rendering, in the window or to files.
 
-use super::Request;
-use super::backend;
 use super::error::CliError;
-use super::frames;
-use super::paths::Paths;
-use super::raw::{self, DrawWith, ProgressChoice, RawPpm, RawRender};
-use super::sources::{self, ChosenRecipe};
-use super::unused;
-use super::values::JsonTarget;
+use super::frames::AnimationFlags;
+use super::raw::{DrawWith, ProgressChoice, RawPicture};
+use super::sources::{self, ChosenRecipe, SampleFlags};
+use super::values::{
+    JsonTarget, check_ending, json_target, parse_duration, parse_noise_target, parse_seconds,
+};
+use super::{Line, Paths, Request, backend, frames};
 use crate::backends::BackendChoice;
 use crate::output::{OutputFormat, PpmForm};
 use crate::progressive::{Plan, Stop};
@@ -16,11 +15,92 @@ use crate::recipe::{Recipe, plain_name};
 use crate::render::RenderJob;
 use crate::saved;
 use crate::stages::Stage;
+use clap::Args;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Interval at which a checkpoint is written by default.
-pub const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+#[derive(Debug, Args)]
+pub(super) struct RenderFlags {
+    /// Render to a file, without a window; with --stage all, every stage of the book, to the directory --out
+    #[arg(long)]
+    pub batch: bool,
+    /// List scenes, stages and devices
+    #[arg(long)]
+    pub list: bool,
+    /// What draws the window; auto: wgpu, or gl if there is no hardware adapter
+    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
+    pub draw_with: DrawWith,
+    /// Open the window with its usual first picture instead of what was shown last
+    #[arg(long, conflicts_with = "batch")]
+    pub fresh: bool,
+    /// After how much tracing the window saves the film by itself, and how often, 0.1s to 30d
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", hide = true)]
+    pub autosave_every: Duration,
+    /// Write the times of the window's frames to a file
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub frame_log: Option<PathBuf>,
+    /// Let the program panic once the film has this many samples per pixel (fault injection)
+    #[arg(long, value_name = "SAMPLES", hide = true, conflicts_with = "AnimationFlags")]
+    pub simulate_crash: Option<u64>,
+    /// Show progress on standard error; auto: if it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+    #[command(flatten)]
+    pub picture: RawPicture,
+    #[command(flatten)]
+    pub samples: SampleFlags,
+    #[command(flatten)]
+    pub stop: StopFlags,
+    #[command(flatten)]
+    pub backend: BackendChoice,
+    #[command(flatten)]
+    pub animation: AnimationFlags,
+    #[command(flatten)]
+    pub files: FileFlags,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "When to stop, besides --samples (the first one met)")]
+pub(super) struct StopFlags {
+    /// Seconds of rendering
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, conflicts_with = "AnimationFlags")]
+    time_limit: Option<f64>,
+    /// Estimated error: root mean square over pixels and channels, linear radiance
+    #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, conflicts_with = "AnimationFlags")]
+    noise_target: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Files")]
+pub(super) struct FileFlags {
+    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory; with
+    /// --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
+    #[arg(long, value_name = "FILE", requires = "batch")]
+    pub out: Option<PathBuf>,
+    /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
+    #[arg(long, value_enum, requires = "batch", conflicts_with = "AnimationFlags")]
+    ppm: Option<PpmForm>,
+    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
+    /// existing file is never replaced, unless the render continues its film (--continue, --resume)
+    #[arg(long, value_name = "FILE.exr", requires = "batch", conflicts_with = "AnimationFlags")]
+    checkpoint: Option<PathBuf>,
+    /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it
+    #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume")]
+    go_on: bool,
+    /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
+    /// 1h
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
+    every: Duration,
+    /// Continue a film; without --scene and --stage, with its own scene
+    #[arg(long, value_name = "FILE.exr", conflicts_with = "AnimationFlags")]
+    resume: Option<PathBuf>,
+    /// Write the scene, with the changes of the other flags, as a scene file
+    #[arg(long, value_name = "FILE.toml", conflicts_with = "AnimationFlags")]
+    save_scene: Option<PathBuf>,
+    /// Write the final figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-", value_parser = json_target(), requires = "batch")]
+    pub json: Option<JsonTarget>,
+}
 
 /// Options of `--batch`.
 #[derive(Debug)]
@@ -31,11 +111,8 @@ pub struct BatchOptions {
     pub directory: Option<PathBuf>,
     /// A scene file to write as well.
     pub save_scene: Option<SaveSceneOptions>,
-    /// The backend.
     pub backend: BackendChoice,
-    /// Whether progress is shown.
     pub progress: ProgressChoice,
-    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
@@ -56,7 +133,6 @@ pub struct WindowOptions {
     pub is_size_given: bool,
     /// Whether flags chose or changed the picture.
     pub is_picture_given: bool,
-    /// The backend.
     pub backend: BackendChoice,
     /// Whether flags chose the backend.
     pub is_device_given: bool,
@@ -74,7 +150,6 @@ pub struct WindowOptions {
     pub settings: Option<PathBuf>,
     /// What kept pictures may take in that directory, bytes, if not the usual limit.
     pub kept_limit: Option<u64>,
-    /// What draws the window.
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
@@ -85,13 +160,12 @@ pub struct WindowOptions {
 /// A picture to render.
 #[derive(Clone, Debug)]
 pub struct RenderOptions {
-    /// What to render.
     pub recipe: Recipe,
     /// The validated job of the recipe.
     pub job: RenderJob,
     /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
-    /// When to stop.
+    /// Which samples, and when to stop.
     pub plan: Plan,
     /// File of the picture.
     pub out: PathBuf,
@@ -101,11 +175,8 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
-    /// Whether it is a part of a plan, which only goes on with a film in the part's own file.
-    pub is_part: bool,
     /// Samples per pixel that `--samples` asks for.
     pub asked_samples: Option<u64>,
-    /// How a PPM holds its numbers.
     pub ppm: PpmForm,
     /// The command that renders it.
     pub command: String,
@@ -118,193 +189,155 @@ pub struct RenderOptions {
 pub struct SaveSceneOptions {
     /// Its content, which has been validated.
     pub recipe: Recipe,
-    /// Path of the file.
     pub path: PathBuf,
 }
 
-/// Validates the flags, except `--list` and the subcommands.
-pub(super) fn request(mut raw: RawRender, command: String) -> Result<Request, CliError> {
-    if let Some(request) = frames::request(&raw, &command)? {
-        return Ok(request);
+/// Validates the flags without a subcommand.
+pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
+    if flags.list {
+        return Ok(Request::List);
     }
-    let backend = backend::choice(&raw.backend)?;
-    check_film_names(&raw)?;
-    if raw.go_on && raw.checkpoint.as_ref().is_some_and(|film| film.exists()) {
-        raw.resume.clone_from(&raw.checkpoint);
+    if flags.animation.check()?.is_some() {
+        return frames::request(flags, line);
     }
-    if !raw.batch && raw.save_scene.is_none() {
-        return Ok(Request::Window(Box::new(window(&raw, backend)?)));
+    let files = &mut flags.files;
+    for (flag, path) in [("--checkpoint", &files.checkpoint), ("--resume", &files.resume)] {
+        path.as_ref().map_or(Ok(()), |path| check_ending(flag, path, "a film file", ".exr"))?;
     }
-    let (renders, directory) = if raw.picture.is_every_stage() {
-        let directory = directory_of_all(&raw)?;
-        let renders = Stage::ALL
-            .iter()
-            .map(|stage| {
-                let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
-                render(chosen, &raw, directory.join(format!("{}.png", stage.id)), &command)
-            })
-            .collect::<Result<_, _>>()?;
-        (renders, Some(directory))
-    } else {
-        let chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
-        let out = raw.out.clone().unwrap_or_else(|| default_name(&chosen));
-        (vec![render(chosen, &raw, out, &command)?], None)
-    };
-    let save_scene = match (&raw.save_scene, renders.as_slice()) {
-        (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
-        _ => None,
-    };
-    let json = raw.json.clone().map(JsonTarget::from);
-    check_paths(&raw, &renders, json.as_ref())?;
-    match save_scene {
-        Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
-        save_scene => Ok(Request::Batch(Box::new(BatchOptions {
-            renders,
-            directory,
-            save_scene,
-            backend,
-            progress: raw.progress,
-            json,
-            crashes_at: raw.backend.simulate_crash,
-        }))),
+    if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {
+        files.resume.clone_from(&files.checkpoint);
+    }
+    match (flags.batch, &flags.files.save_scene) {
+        (false, None) => Ok(Request::Window(Box::new(window(flags, line)?))),
+        (false, Some(path)) => {
+            check_paths(&flags, &[])?;
+            let recipe =
+                sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?.0.recipe;
+            Ok(Request::SaveScene(Box::new(SaveSceneOptions { recipe, path: path.clone() })))
+        }
+        (true, _) => batch(flags, line),
     }
 }
 
-fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliError> {
-    if raw.picture.is_every_stage() {
-        return Err(CliError::Needs {
-            flag: "--stage all",
-            other: "--batch",
-            reason: "the window shows one stage at a time, with buttons for the previous and the next one",
-        });
+fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions, CliError> {
+    let RenderFlags { picture, samples, stop, files, .. } = &flags;
+    if picture.is_every_stage() || samples.sample_range.is_some() {
+        let flag = if picture.is_every_stage() { "--stage all" } else { "--sample-range" };
+        let reason = "the window shows one picture, with buttons for the other stages";
+        return Err(CliError::Needs { flag, other: "--batch", reason });
     }
-    for (flag, is_given) in [
-        ("--out", raw.out.is_some()),
-        ("--checkpoint", raw.checkpoint.is_some()),
-        ("--every", raw.every.is_some()),
-        ("--json", raw.json.is_some()),
-        ("--ppm", raw.ppm.is_some()),
-        ("--sample-range", raw.sample_range.is_some()),
-    ] {
-        if is_given {
-            let reason = "it is for rendering to files; in the window, use the File menu";
-            return Err(CliError::Needs { flag, other: "--batch", reason });
-        }
-    }
-    let mut chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
-    let unchanged = chosen.recipe.clone();
-    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
-    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
-    let job = chosen.recipe.job()?;
-    let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
-    let file = sources::scene_file(raw.picture.scene.as_deref());
+    let file = sources::scene_file(picture.scene.as_deref());
     Paths::default()
         .read("--scene", file)
-        .read("--resume", raw.resume.as_deref())
-        .write("--frame-log", raw.frame_log.as_deref())
+        .read("--resume", files.resume.as_deref())
+        .write("--frame-log", flags.frame_log.as_deref())
         .check(&[])?;
-    if let Some(film) = &raw.resume {
+    let unchanged = sources::find(picture, files.resume.as_deref())?.recipe;
+    let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
+    if let Some(film) = &files.resume {
         saved::check_resume(film, &job)?;
     }
+    let has_end = samples.samples.is_some() || stop.time_limit.is_some() || stop.noise_target.is_some();
     Ok(WindowOptions {
-        stop: ends.then(|| plan(raw, &chosen.recipe).stop),
-        recipe: chosen.recipe,
+        stop: has_end.then(|| plan(&flags, &recipe).stop),
+        recipe,
         unchanged,
-        stage: chosen.stage,
+        stage,
         file: file.map(PathBuf::from),
-        backend,
-        is_size_given: raw.picture.size.is_some(),
-        is_picture_given: raw.picture.is_given() || raw.resume.is_some() || raw.estimate_error.is_some(),
-        is_device_given: backend::is_given(&raw.backend),
-        resume: raw.resume.clone(),
-        is_fresh: raw.fresh,
-        autosave_every: raw.autosave_every.unwrap_or(CHECKPOINT_INTERVAL),
+        is_size_given: picture.size.is_some(),
+        is_picture_given: picture.is_given() || files.resume.is_some() || samples.estimate_error.is_some(),
+        is_device_given: backend::FLAGS.into_iter().any(|flag| line.is_given(flag)),
+        resume: files.resume.clone(),
+        is_fresh: flags.fresh,
+        autosave_every: flags.autosave_every,
         state_directory: None,
         settings: None,
         kept_limit: None,
-        draw_with: raw.draw_with,
-        frame_log: raw.frame_log.clone(),
-        crashes_at: raw.backend.simulate_crash,
+        draw_with: flags.draw_with,
+        frame_log: flags.frame_log,
+        crashes_at: flags.simulate_crash,
+        backend: flags.backend,
     })
 }
 
+fn batch(flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
+    let RenderFlags { picture, samples, files, .. } = &flags;
+    let (renders, directory) = if picture.is_every_stage() {
+        let directory = directory_of_all(files)?;
+        let of_stage = |stage: &'static Stage| {
+            let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
+            let (chosen, job) = sources::changed(chosen, picture, samples)?;
+            // What one stage ignores, another needs, so there are no notes.
+            render(chosen, job, &flags, directory.join(format!("{}.png", stage.id)), line)
+        };
+        (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>, _>>()?, Some(directory))
+    } else {
+        let (chosen, job) = sources::picture(picture, samples, files.resume.as_deref())?;
+        let notes = sources::notes(&job, &chosen, picture, samples);
+        let out = files.out.clone().unwrap_or_else(|| default_name(&chosen));
+        (vec![RenderOptions { notes, ..render(chosen, job, &flags, out, line)? }], None)
+    };
+    check_paths(&flags, &renders)?;
+    let save_scene = files.save_scene.clone().zip(renders.first());
+    Ok(Request::Batch(Box::new(BatchOptions {
+        save_scene: save_scene.map(|(path, only)| SaveSceneOptions { recipe: only.recipe.clone(), path }),
+        renders,
+        directory,
+        backend: flags.backend,
+        progress: flags.progress,
+        json: flags.files.json,
+        crashes_at: flags.simulate_crash,
+    })))
+}
+
 fn render(
-    mut chosen: ChosenRecipe,
-    raw: &RawRender,
+    chosen: ChosenRecipe,
+    job: RenderJob,
+    flags: &RenderFlags,
     out: PathBuf,
-    command: &str,
+    line: &Line,
 ) -> Result<RenderOptions, CliError> {
-    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
-    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
-    let job = chosen.recipe.job()?;
-    if raw.noise_target.is_some() && !chosen.recipe.settings.estimate_error {
-        return Err(CliError::Needs {
-            flag: "--noise-target",
-            other: "--estimate-error on",
-            reason: "the error is estimated from the film's two halves",
-        });
-    }
-    let format = OutputFormat::from_path(&out)?;
-    if raw.ppm.is_some() && format != OutputFormat::P6 {
+    let (files, format) = (&flags.files, OutputFormat::from_path(&out)?);
+    if files.ppm.is_some() && format != OutputFormat::P6 {
         let reason = "it is about how a PPM holds its numbers";
         return Err(CliError::Needs { flag: "--ppm", other: "--out FILE.ppm", reason });
     }
-    if raw.every.is_some() && raw.checkpoint.is_none() {
-        let reason = "it is the interval at which that film is written";
-        return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
+    if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
+        let reason = "the error is estimated from the film's two halves";
+        return Err(CliError::Needs { flag: "--noise-target", other: "--estimate-error on", reason });
     }
-    // What one stage ignores, another needs.
-    let notes = match raw.picture.is_every_stage() {
-        true => Vec::new(),
-        false => unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
-    };
     Ok(RenderOptions {
-        plan: plan(raw, &chosen.recipe),
+        plan: plan(flags, &chosen.recipe),
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
         out,
-        checkpoint: raw.checkpoint.clone(),
-        every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
-        resume: raw.resume.clone(),
-        is_part: false,
-        asked_samples: raw.samples,
-        ppm: raw.ppm.map_or(PpmForm::Binary, RawPpm::form),
-        command: command.to_owned(),
-        notes,
+        checkpoint: files.checkpoint.clone(),
+        every: files.every,
+        resume: files.resume.clone(),
+        asked_samples: flags.samples.samples,
+        ppm: files.ppm.unwrap_or_default(),
+        command: line.command.clone(),
+        notes: Vec::new(),
     })
 }
 
-fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
-    for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
-        if let Some(path) = path {
-            sources::check_ending(flag, path, "a film file", ".exr")?;
-        }
-    }
-    Ok(())
-}
-
-/// Returns an error if outputs would replace each other or an input. A resumed film may be replaced by its
-/// continuation.
-fn check_paths(
-    raw: &RawRender,
-    renders: &[RenderOptions],
-    json: Option<&JsonTarget>,
-) -> Result<(), CliError> {
+/// Refuses outputs that would replace each other or an input. A resumed film may be replaced by its continuation.
+fn check_paths(flags: &RenderFlags, renders: &[RenderOptions]) -> Result<(), CliError> {
+    let files = &flags.files;
     let paths = Paths::default()
-        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
-        .read("--resume", raw.resume.as_deref());
-    let outs = renders.iter().filter(|_| raw.batch).map(|render| render.out.as_path());
-    outs.fold(paths, |paths, out| paths.write("--out", Some(out)))
-        .write("--checkpoint", raw.checkpoint.as_deref())
-        .write("--save-scene", raw.save_scene.as_deref())
-        .write_json(json)
-        .check(&[("--out", "--resume"), ("--checkpoint", "--resume")])
+        .read("--scene", sources::scene_file(flags.picture.scene.as_deref()))
+        .read("--resume", files.resume.as_deref())
+        .write("--checkpoint", files.checkpoint.as_deref())
+        .write("--save-scene", files.save_scene.as_deref())
+        .write_json(files.json.as_ref());
+    let paths = renders.iter().fold(paths, |paths, render| paths.write("--out", Some(&render.out)));
+    paths.check(&[("--out", "--resume"), ("--checkpoint", "--resume")])
 }
 
-fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
-    let (seconds, noise) = (raw.time_limit, raw.noise_target);
-    let (first_sample, samples) = match (&raw.sample_range, raw.samples) {
+fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
+    let StopFlags { time_limit: seconds, noise_target: noise } = flags.stop;
+    let (first_sample, samples) = match (&flags.samples.sample_range, flags.samples.samples) {
         (Some(range), _) => (range.start, Some(range.end)),
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
@@ -313,22 +346,17 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 
-/// The directory of `--stage all`, which excludes many other flags.
-fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
-    let single = [
-        ("--checkpoint", raw.checkpoint.is_some()),
-        ("--resume", raw.resume.is_some()),
-        ("--save-scene", raw.save_scene.is_some()),
-    ];
-    if let Some((flag, _)) = single.into_iter().find(|(_, is_given)| *is_given) {
-        let reason = "it applies to a single picture; choose one stage";
-        return Err(CliError::Together { flag, other: "--stage all", reason });
+/// The directory of `--stage all`, which excludes the flags of a single film or scene.
+fn directory_of_all(files: &FileFlags) -> Result<PathBuf, CliError> {
+    if files.checkpoint.is_some() || files.resume.is_some() || files.save_scene.is_some() {
+        return Err(CliError::Together {
+            flag: "--stage all",
+            other: "--checkpoint, --resume or --save-scene",
+            reason: "these are for a single picture; choose one stage",
+        });
     }
-    raw.out.clone().ok_or(CliError::Needs {
-        flag: "--stage all",
-        other: "--out DIR",
-        reason: "it writes one picture for each stage",
-    })
+    let reason = "it writes one picture for each stage";
+    files.out.clone().ok_or(CliError::Needs { flag: "--stage all", other: "--out DIR", reason })
 }
 
 /// `SCENE.png` in the current directory.
@@ -339,42 +367,38 @@ fn default_name(chosen: &ChosenRecipe) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::cli::parse;
+    use crate::cli::{Request, parse};
+    use std::path::Path;
+    use std::time::Duration;
 
-    fn window(flags: &str) -> WindowOptions {
-        let line = format!("weekender --device cpu {flags}");
-        match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Window(options) => *options,
+    fn renders(line: &str) -> Vec<super::RenderOptions> {
+        match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
+            Request::Batch(options) => options.renders,
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
-    fn a_picture_is_given_by_the_flags_that_choose_or_change_it() {
-        for (flags, is_given) in [
-            ("--fresh", false),
-            ("--samples 7", false),
-            ("--time-limit 3", false),
-            ("--draw-with gl", false),
-            ("--estimate-error on", true),
-            ("--scene three-spheres", true),
-            ("--size 8x4", true),
-            ("--seed 0", true),
-            ("--focus-distance 3", true),
+    fn what_ends_a_render_is_what_was_asked_for() {
+        for (flags, range, seconds, noise) in [
+            ("--stage metal", Some(0..100), None, None),
+            ("--samples 7 --noise-target 0.01", Some(0..7), None, Some(0.01)),
+            ("--time-limit 5", None, Some(5.0), None),
+            ("--sample-range 4..9 --time-limit 5", Some(4..9), Some(5.0), None),
+            ("--sample-range 4294967295..4294967296", Some(4_294_967_295..4_294_967_296), None, None),
         ] {
-            assert_eq!(window(flags).is_picture_given, is_given, "{flags}");
+            let plan = &renders(flags)[0].plan;
+            let found = plan.stop.samples.map(|end| plan.first_sample..end);
+            assert_eq!((found, plan.stop.seconds, plan.stop.noise), (range, seconds, noise), "{flags}");
         }
     }
 
     #[test]
-    fn the_window_knows_its_picture_without_the_changes_of_flags() {
-        let options = window("--stage metal --vfov 30 --samples 7 --estimate-error off");
-        let own = Stage::find("metal").unwrap().recipe();
-        assert_eq!((&options.unchanged, options.stage), (&own, Some(Stage::find("metal").unwrap())));
-        let mut changed = own;
-        (changed.camera.vfov_degrees, changed.samples_per_pixel) = (30.0, 7);
-        changed.settings.estimate_error = false;
-        assert_eq!(options.recipe, changed);
+    fn files_and_intervals_have_defaults() {
+        let render = &renders("--stage metal --checkpoint no-such.exr")[0];
+        assert_eq!((render.out.as_path(), render.every), (Path::new("metal.png"), Duration::from_secs(60)));
+        let render = &renders("--scene field:9 --checkpoint no-such.exr --every 5m")[0];
+        assert_eq!(render.every, Duration::from_secs(300));
+        assert_eq!(renders("--stage all --out no-such").len(), crate::stages::Stage::ALL.len());
     }
 }

@@ -1,7 +1,7 @@
 //! The flags of `weekender report`.
 
 use super::error::CliError;
-use super::paths::{Paths, same_name};
+use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSwitch};
 use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size, whole};
@@ -230,15 +230,13 @@ impl ReportOptions {
 
     fn check_paths(&self, scenes: &[Recipe]) -> Result<(), CliError> {
         let made: &[Recipe] = if self.reference.is_some() { &[] } else { scenes };
-        let references: Vec<String> = made.iter().map(reference_name).collect();
+        let names = REPORT_FILES.iter().map(|name| (*name).to_owned()).chain(made.iter().map(reference_name));
         let files = self.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
         let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
-        REPORT_FILES
-            .iter()
+        names
             .fold(paths.read("--reference", self.reference.as_deref()), |paths, name| {
                 paths.write("a file of --out,", Some(&self.out.join(name)))
             })
-            .own("a file of --out,", &self.out, move |name| same_name(name, references.iter().cloned()))
             .check(&[])
     }
 

@@ -1,20 +1,65 @@
 //! Where a picture comes from (a built-in scene, a stage, a scene file or a film), with the changes of the flags.
 
 use super::error::CliError;
-use super::raw::RawPicture;
+use super::raw::{self, RawPicture, RawSwitch};
+use super::values::{range, whole};
 use crate::recipe::{Recipe, file};
+use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::saved::Saved;
 use crate::stages::Stage;
+use clap::Args;
+use std::ops::Range;
 use std::path::Path;
+
+pub(super) use super::values::check_ending;
 
 /// The scene that is rendered if none is named.
 pub const DEFAULT_SCENE: &str = "three-spheres";
+
+/// The samples of a picture or of a plan.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Samples")]
+pub(super) struct SampleFlags {
+    /// Samples per pixel, 1 to 4294967296 [default: the scene's; unlimited with --time-limit or --noise-target]
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100))]
+    pub samples: Option<u64>,
+    /// Only samples A to B - 1, for `weekender merge` or to add them to a picture that has the others
+    #[arg(long, value_name = "A..B", value_parser = range(SAMPLE_LIMIT, "0..64"),
+          conflicts_with_all = ["samples", "AnimationFlags"])]
+    pub sample_range: Option<Range<u64>>,
+    /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
+    /// [default: on, or the scene's]
+    #[arg(long, value_enum)]
+    pub estimate_error: Option<RawSwitch>,
+}
 
 /// A recipe and, if it comes from one, its stage.
 #[derive(Clone, Debug)]
 pub(super) struct ChosenRecipe {
     pub recipe: Recipe,
     pub stage: Option<&'static Stage>,
+}
+
+/// The picture that the flags describe, and its validated job. Without --scene and --stage it comes from the film to
+/// `resume`.
+pub(super) fn picture(
+    raw: &RawPicture,
+    samples: &SampleFlags,
+    resume: Option<&Path>,
+) -> Result<(ChosenRecipe, RenderJob), CliError> {
+    changed(find(raw, resume)?, raw, samples)
+}
+
+/// The picture with the changes of the flags, and its validated job.
+pub(super) fn changed(
+    mut chosen: ChosenRecipe,
+    raw: &RawPicture,
+    samples: &SampleFlags,
+) -> Result<(ChosenRecipe, RenderJob), CliError> {
+    raw::change(&mut chosen.recipe, raw, samples.estimate_error);
+    chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
+    let job = chosen.recipe.job()?;
+    Ok((chosen, job))
 }
 
 /// The source that the flags name, before the changes of other flags.
@@ -25,14 +70,20 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenReci
             Ok(ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) })
         }
         (None, Some(name), _) => Ok(ChosenRecipe { recipe: scene(name)?, stage: None }),
-        (None, None, Some(film)) => of_film(film),
+        (None, None, Some(film)) => {
+            let saved = Saved::describe(film)?;
+            Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
+        }
         (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
     }
 }
 
 /// The scene with this name or in this file.
 pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
-    if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
+    match scene_file(Some(name)) {
+        Some(path) => Ok(file::load(path)?),
+        None => Ok(Recipe::find(name)?),
+    }
 }
 
 /// The example scene `near-glass`, which is part of the program for use in reports.
@@ -47,26 +98,10 @@ pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
     Ok(Recipe { name: name.to_owned(), ..recipe })
 }
 
-/// Whether `--scene` names a file: the name has an extension or a directory.
-pub(super) fn is_file(scene: &str) -> bool {
-    let path = Path::new(scene);
-    path.extension().is_some() || path.components().count() > 1
-}
-
-/// The scene file that `--scene` names, if it is a file.
+/// The scene file that `--scene` names, if it is one: the name has an extension or a directory.
 pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
-    scene.filter(|scene| is_file(scene)).map(Path::new)
-}
-
-/// Returns an error unless the file name ends in `ending`, with the dot, in upper or lower case.
-pub(super) fn check_ending(
-    flag: &'static str,
-    path: &Path,
-    what: &'static str,
-    ending: &'static str,
-) -> Result<(), CliError> {
-    let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
-    if is_so { Ok(()) } else { Err(CliError::Ending { flag, path: path.to_owned(), what, ending }) }
+    let path = Path::new(scene?);
+    (path.extension().is_some() || path.components().count() > 1).then_some(path)
 }
 
 /// Reduces the picture to at most `width` pixels across, keeping its shape, unless its size was given.
@@ -78,59 +113,68 @@ pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
     }
 }
 
-fn of_film(path: &Path) -> Result<ChosenRecipe, CliError> {
-    let saved = Saved::describe(path)?;
-    Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
+/// Warnings that name the flags without effect on the picture, each with the reason.
+pub(super) fn notes(
+    job: &RenderJob,
+    chosen: &ChosenRecipe,
+    raw: &RawPicture,
+    samples: &SampleFlags,
+) -> Vec<String> {
+    let (rules, what) = (job.rules(), chosen.stage.map_or("scene", |stage| stage.id));
+    let has_rays = rules.has_rays();
+    let has_bounces = has_rays && rules.has_bounces() && !job.scene().spheres.is_empty();
+    let has_lens = has_rays && job.camera().defocus_angle_degrees > 0.0;
+    let is_random =
+        has_rays && (rules.antialiasing || has_lens || has_bounces && job.settings().max_depth > 1);
+    let mut table: Vec<(&str, bool, &str)> =
+        raw.camera.given().into_iter().map(|flag| (flag, has_rays, "it traces no rays")).collect();
+    let lens = "its lens is a pinhole; add --defocus-angle";
+    let same = "all samples of a pixel are the same";
+    for (flag, is_given, has_effect, reason) in [
+        ("--focus-distance", raw.camera.focus_distance.is_some(), !has_rays || has_lens, lens),
+        ("--depth", raw.depth.is_some(), has_bounces, "its rays end where they first hit"),
+        ("--samples above 1", samples.samples.is_some_and(|samples| samples > 1), is_random, same),
+        ("--sampler", raw.sampler.is_some(), is_random, same),
+        ("--seed", raw.seed.is_some(), is_random, same),
+    ] {
+        table.extend(is_given.then_some((flag, has_effect, reason)));
+    }
+    let without = table.into_iter().filter(|(_, has_effect, _)| !has_effect);
+    without.map(|(flag, _, reason)| format!("{flag} has no effect on {what}: {reason}")).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::cli::{Request, parse};
 
     #[test]
-    fn a_wide_picture_is_narrowed_unless_its_size_was_given() {
-        let narrowed = |size, raw_size| {
-            let mut recipe = Recipe::builtin(DEFAULT_SCENE).unwrap();
-            (recipe.settings.width, recipe.settings.height) = size;
-            narrow(&mut recipe, &RawPicture { size: raw_size, ..RawPicture::default() }, 100);
-            (recipe.settings.width, recipe.settings.height)
+    fn flags_without_effect_are_named_with_the_reason() {
+        let notes = |line: &str| match parse(format!("weekender --batch {line}").split(' ').map(Into::into)) {
+            Ok(Request::Batch(options)) => {
+                options.renders.into_iter().flat_map(|render| render.notes).collect()
+            }
+            Ok(Request::Frames(options)) => options.notes,
+            other => panic!("{other:?}"),
         };
-        for (size, expected) in [
-            ((99, 50), (99, 50)),
-            ((100, 50), (100, 50)),
-            ((101, 50), (100, 50)),
-            ((400, 222), (100, 56)),
-            ((400, 221), (100, 55)),
-            ((1000, 1), (100, 1)),
+        for (line, flags) in [
+            (
+                "--stage ppm-tiny --size 9x9 --samples 7 --depth 3 --look-from 1,2,3",
+                &["--look-from", "--depth", "--samples above 1"][..],
+            ),
+            ("--stage ppm-gradient --turntable=2 --vfov 30 --out d", &["--vfov"]),
+            ("--stage normals --samples 8 --depth 3 --seed 4", &["--depth", "--samples above 1", "--seed"]),
+            ("--stage sky --depth 9", &["--depth"]),
+            ("--scene three-spheres --focus-distance 2", &["--focus-distance"]),
+            ("--stage ppm-tiny --samples 1", &[]),
+            ("--stage sky --look-from 1,2,3 --defocus-angle 2 --focus-distance 3 --samples 9", &[]),
+            ("--stage antialiased --samples 9 --seed 3 --sampler independent", &[]),
+            ("--stage all --depth 3 --samples 9 --out d", &[]),
         ] {
-            assert_eq!(narrowed(size, None), expected, "{size:?}");
-            assert_eq!(narrowed(size, Some(size)), size);
+            let notes: Vec<String> = notes(line);
+            assert_eq!(notes.len(), flags.len(), "{line}: {notes:?}");
+            for (note, flag) in notes.iter().zip(flags) {
+                assert!(note.starts_with(flag) && note.contains(" has no effect on "), "{line}: {note}");
+            }
         }
-    }
-
-    #[test]
-    fn a_name_has_its_ending_in_any_case() {
-        let check = |name: &str| check_ending("--log", Path::new(name), "the log", ".log");
-        assert!(check("a.log").is_ok() && check("b/a.b.LOG").is_ok());
-        for name in ["a", "log", ".log", "a.logs", "a.log.txt", "a.log/b"] {
-            assert!(check(name).is_err(), "{name}");
-        }
-    }
-
-    #[test]
-    fn a_scene_with_an_ending_or_a_directory_is_a_file() {
-        for (scene, expected) in [
-            ("three-spheres", false),
-            ("field:20", false),
-            ("s.toml", true),
-            ("s.TOML", true),
-            ("./metals", true),
-            ("scenes/metals", true),
-            (".toml", false),
-        ] {
-            assert_eq!(is_file(scene), expected, "{scene}");
-            assert_eq!(scene_file(Some(scene)), expected.then_some(Path::new(scene)));
-        }
-        assert_eq!(scene_file(None), None);
     }
 }

@@ -36,23 +36,15 @@ pub struct StressOptions {
     pub progress: ProgressChoice,
 }
 
-/// The name, if a picture of a case may have it.
-fn picture_name(name: &str) -> Option<String> {
-    let folded = name.to_lowercase();
-    (folded.ends_with("-ours.png") || folded.ends_with("-book.png")).then(|| name.to_owned())
-}
-
 impl StressOptions {
     /// Returns an error if the files conflict.
     pub(super) fn check(self) -> Result<Self, CliError> {
         self.levels()?;
         let pages = self.out.iter().flat_map(|out| ["table.md", "index.html"].map(|name| out.join(name)));
-        let paths = pages.fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)));
-        let paths = paths.write_json(self.json().as_ref());
-        match &self.out {
-            Some(out) => paths.own("a file of --out,", out, picture_name).check(&[])?,
-            None => paths.check(&[])?,
-        }
+        pages
+            .fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)))
+            .write_json(self.json().as_ref())
+            .check(&[])?;
         Ok(self)
     }
 

@@ -3,13 +3,13 @@
 use super::error::CliError;
 use crate::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use crate::backends::BackendError;
+use crate::files::ShownPath;
 use crate::film::ROUNDING_LIMIT;
-use crate::number::Number;
 use crate::output::FrameRate;
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
-use crate::scene::{DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, VFOV_LIMITS_DEGREES};
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
@@ -32,6 +32,23 @@ impl From<PathBuf> for JsonTarget {
     }
 }
 
+/// A parser of [`JsonTarget`].
+pub(super) fn json_target() -> impl TypedValueParser<Value = JsonTarget> {
+    PathBufValueParser::new().map(JsonTarget::from)
+}
+
+/// Returns an error unless the file name ends in `ending`, with the dot, in upper or lower case.
+pub(super) fn check_ending(
+    flag: &'static str,
+    path: &Path,
+    what: &'static str,
+    ending: &'static str,
+) -> Result<(), CliError> {
+    let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
+    let words = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
+    if is_so { Ok(()) } else { Err(CliError::Refused(words())) }
+}
+
 /// Number of lanes; `None` leaves the choice to the backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Simd(pub Option<usize>);
@@ -40,7 +57,7 @@ pub(super) fn parse_simd(text: &str) -> Result<Simd, String> {
     match text {
         "auto" => Ok(Simd(None)),
         "off" | "1" => Ok(Simd(Some(1))),
-        "4" | "8" | "16" => text.parse().map(|lanes| Simd(Some(lanes))).map_err(|_| String::new()),
+        "4" | "8" | "16" => Ok(Simd(text.parse().ok())),
         _ => Err("must be auto, off, 4, 8 or 16 lanes".to_owned()),
     }
 }
@@ -152,37 +169,22 @@ where
     }
 }
 
-/// A number, unless it is too large for one.
+/// A parser of numbers. Those out of range are refused with the scene, which gives the same reason for files.
+pub(super) fn finite_number(
+    example: &'static str,
+) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text: &str| finite(text).ok_or_else(|| format!("must be a number, such as {example}"))
+}
+
 fn finite(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
     let parts: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>().unwrap_or_default();
-    <[f64; 3]>::try_from(parts).map(DVec3::from).map_err(|_| {
-        let limit = Number(LENGTH_LIMIT);
-        format!("must be three numbers separated by commas, each within -{limit} and {limit}, such as 13,2,3")
-    })
-}
-
-// Numbers that are finite but out of range are refused with the scene, which gives the same reason for files.
-
-pub(super) fn parse_vfov(text: &str) -> Result<f64, String> {
-    let [narrowest, widest] = VFOV_LIMITS_DEGREES;
-    finite(text)
-        .ok_or_else(|| format!("must be a number of degrees within {narrowest} and {widest}, such as 20"))
-}
-
-pub(super) fn parse_defocus_angle(text: &str) -> Result<f64, String> {
-    finite(text).ok_or_else(|| {
-        format!("must be a number of degrees from 0 to below {DEFOCUS_LIMIT_DEGREES}, such as 0.6")
-    })
-}
-
-pub(super) fn parse_focus_distance(text: &str) -> Result<f64, String> {
-    let (nearest, farthest) = (Number(*FOCUS_LIMITS.start()), Number(*FOCUS_LIMITS.end()));
-    finite(text)
-        .ok_or_else(|| format!("must be a number within {nearest} and {farthest} scene units, such as 10"))
+    <[f64; 3]>::try_from(parts)
+        .map(DVec3::from)
+        .map_err(|_| "must be three numbers separated by commas, such as 13,2,3".to_owned())
 }
 
 pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
@@ -220,14 +222,20 @@ fn positive(text: &str, limit: f64) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| *value > 0.0 && *value <= limit)
 }
 
-pub(super) fn parse_sample_range(text: &str) -> Result<Range<u64>, String> {
-    let parse = || {
-        let (start, end) = text.split_once("..")?;
-        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
-    };
-    parse()
-        .filter(|range: &Range<u64>| range.start < range.end && range.end <= SAMPLE_LIMIT)
-        .ok_or_else(|| format!("must be A..B with A below B and B at most {SAMPLE_LIMIT}, such as 0..64"))
+/// A parser of ranges that end at `limit` at most, of which `example` is one.
+pub(super) fn range<T>(
+    limit: T,
+    example: &'static str,
+) -> impl Fn(&str) -> Result<Range<T>, String> + Clone + Send + Sync
+where
+    T: Copy + Display + FromStr + PartialOrd + Send + Sync,
+{
+    move |text: &str| {
+        let ends =
+            text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
+        ends.filter(|range: &Range<T>| range.start < range.end && range.end <= limit)
+            .ok_or_else(|| format!("must be A..B with A below B and B at most {limit}, such as {example}"))
+    }
 }
 
 /// A backend that traces a path.
@@ -267,16 +275,6 @@ pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|share: &f64| (0.0..=1.0).contains(share))
         .ok_or_else(|| "must be from 0 to 1, such as 1e-4".to_owned())
-}
-
-pub(super) fn parse_frames(text: &str) -> Result<Range<u32>, String> {
-    let parse = || {
-        let (start, end) = text.split_once("..")?;
-        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
-    };
-    parse().filter(|range: &Range<u32>| range.start < range.end && range.end <= FRAME_LIMIT).ok_or_else(
-        || format!("must be A..B with A below B and B at most {FRAME_LIMIT}, such as 0..{FRAMES_PER_TURN}"),
-    )
 }
 
 pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {

@@ -256,15 +256,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_next_ray_tells_whether_glass_refracted() {
-        let rules = laws(DielectricLaws::Schlick);
-        for (next, expected) in [(DVec3::NEG_Y, true), (DVec3::Y, false)] {
-            let lobe = lobe_of(&GLASS, &rules, &top(true), DVec3::NEG_Y, Some(next), 0.5);
-            assert!(matches!(lobe, Lobe::Glass { refracts, .. } if refracts == expected), "{lobe:?}");
-        }
-    }
-
     fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
         let job = Stage::find(stage).unwrap().recipe().job().unwrap();
         let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);

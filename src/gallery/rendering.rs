@@ -2,7 +2,8 @@
 
 use super::quality::Quality;
 use super::still::{self, INDEX, Still, Stills, fingerprint};
-use crate::backends::{self, BackendChoice};
+use crate::backends::BackendChoice;
+use crate::batch::{Event, Studio};
 use crate::cli::ProgressChoice;
 use crate::console;
 use crate::describe::{counted, describe};
@@ -11,9 +12,8 @@ use crate::files::check_writable;
 use crate::film::key;
 use crate::interrupt::Interrupt;
 use crate::output::{Forms, PngForm, write_image_as};
-use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
+use crate::progressive::{Phase, Status};
 use crate::recipe::Recipe;
-use crate::render::Renderer;
 use crate::stages::Stage;
 use crate::terminal::{Display, print};
 use anyhow::{Context, Result, bail};
@@ -101,9 +101,11 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
     let kept = order.stages.len() - tasks.len();
     let mut rendered = 0;
     if !tasks.is_empty() {
-        let mut studio = Studio::open(order, interrupt, &tasks)?;
-        let outcome = studio.render_all(&mut stills, &mut rendered);
-        studio.display.clear();
+        let studio = Studio::open(order.backend, interrupt)?;
+        let display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
+        let mut work = Work { order, interrupt, tasks: &tasks, studio, display };
+        let outcome = work.render_all(&mut stills, &mut rendered);
+        work.display.clear();
         outcome.map_err(|error| match rendered {
             0 => Failure::Run(error),
             _ => {
@@ -131,30 +133,16 @@ fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
     Ok(tasks)
 }
 
-/// Renders one still after the other.
-struct Studio<'a> {
+/// The work on an order.
+struct Work<'a> {
     order: &'a Order<'a>,
     interrupt: &'a Interrupt,
     tasks: &'a [Task],
-    renderer: Option<Box<dyn Renderer>>,
-    progressive: Progressive,
+    studio: Studio<'a>,
     display: Display,
 }
 
-impl<'a> Studio<'a> {
-    fn open(order: &'a Order<'a>, interrupt: &'a Interrupt, tasks: &'a [Task]) -> Result<Self, Failure> {
-        Ok(Studio {
-            order,
-            interrupt,
-            tasks,
-            renderer: Some(backends::create(order.backend).map_err(Failure::input)?),
-            progressive: Progressive::spawn()
-                .context("cannot start the render thread")
-                .map_err(Failure::Run)?,
-            display: Display::new(order.progress, paths(tasks), TEMPLATE, "", LINE_INTERVAL),
-        })
-    }
-
+impl Work<'_> {
     /// Counts the finished stills in `rendered`. Ends early after a signal.
     fn render_all(&mut self, stills: &mut Stills, rendered: &mut usize) -> Result<()> {
         for (number, task) in self.tasks.iter().enumerate() {
@@ -173,24 +161,16 @@ impl<'a> Studio<'a> {
     /// Renders and writes a still; `None` after a signal.
     fn render(&mut self, number: usize, task: &Task) -> Result<Option<Still>> {
         let recipe = &task.recipe;
-        let stop = Stop::at_samples(recipe.samples_per_pixel);
-        let plan = Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
-        let request = RenderRequest {
-            renderer: self.renderer.take(),
-            ..RenderRequest::new(recipe.job()?, self.order.backend.clone(), plan)
-        };
-        let (display, interrupt) = (&mut self.display, self.interrupt);
-        let status = self.progressive.watch(request, |progressive, status| {
-            let (words, done) = progress(self.tasks, number, status);
-            display.update(done, || words);
-            if interrupt.is_set() && !status.phase.is_over() {
-                progressive.stop();
+        let plan = Studio::plan(recipe.samples_per_pixel);
+        let (display, tasks) = (&mut self.display, self.tasks);
+        let (status, film) = self.studio.render(recipe.job()?, plan, None, |event| match event {
+            Event::Warning(words) => display.say(&format!("warning: {words}")),
+            Event::Stopping => {}
+            Event::Status(_, status) => {
+                let (words, done) = progress(tasks, number, status);
+                display.update(done, || words);
             }
         });
-        for message in &status.messages {
-            display.say(&format!("warning: {message}"));
-        }
-        let film = self.progressive.take_film();
         if let Phase::Failed(reason) = &status.phase {
             bail!("{}: {reason}", task.stage.id);
         }
@@ -198,7 +178,7 @@ impl<'a> Studio<'a> {
         let Some(film) = film else { return Ok(None) };
 
         let path = self.order.directory.join(Still::file_name(task.stage));
-        let _writing = interrupt.while_writing(path.display().to_string());
+        let _writing = self.interrupt.while_writing(path.display().to_string());
         let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
         let forms = Forms { png: PngForm::Small, ..Forms::default() };
         write_image_as(&path, &film, recipe.rules.transfer, &description, forms)?;
@@ -240,30 +220,4 @@ fn paths(tasks: &[Task]) -> u64 {
 
 fn pixels(recipe: &Recipe) -> u64 {
     u64::from(recipe.settings.width) * u64::from(recipe.settings.height)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::render_cpu::CpuOptions;
-
-    #[test]
-    fn a_broken_backend_is_replaced_and_finished_stills_are_kept() {
-        let directory = tempfile::tempdir().unwrap();
-        let broken = CpuOptions { threads: Some(1), panics_after: Some(0), ..CpuOptions::default() };
-        let order = Order {
-            directory: directory.path(),
-            stages: &["ppm-tiny", "aliased"].map(|id| Stage::find(id).unwrap()),
-            quality: Quality::Quick,
-            backend: &BackendChoice::Cpu(broken),
-            progress: ProgressChoice::Off,
-            prints_stills: false,
-        };
-        std::fs::write(directory.path().join(INDEX), "{").unwrap();
-        let outcome = render(&order, &Interrupt::unheard()).unwrap();
-        assert_eq!((outcome.rendered, outcome.kept, outcome.missing), (2, 0, 0));
-        let again = render(&order, &Interrupt::unheard()).unwrap();
-        assert_eq!((again.rendered, again.kept, again.missing), (0, 2, 0));
-        assert_eq!(again.stills, outcome.stills);
-    }
 }

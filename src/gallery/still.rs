@@ -263,22 +263,6 @@ mod tests {
     }
 
     #[test]
-    fn a_still_is_fresh_if_fingerprint_and_file_are_the_same() {
-        let directory = tempfile::tempdir().unwrap();
-        let stage = Stage::find("sky").unwrap();
-        let path = directory.path().join("sky.png");
-        std::fs::write(&path, "picture").unwrap();
-        let mut stills = Stills::read(directory.path());
-        stills.set(Still { checksum: checksum(&path).unwrap(), ..Still::of("sky") });
-        let is_fresh = |fingerprint: &str| stills.is_fresh(stage, &["other", fingerprint]);
-        assert!(is_fresh("of sky") && !is_fresh("of it"));
-        std::fs::write(&path, "Picture").unwrap();
-        assert!(!is_fresh("of sky"), "damaged");
-        std::fs::remove_file(&path).unwrap();
-        assert!(!is_fresh("of sky"), "gone");
-    }
-
-    #[test]
     fn a_still_describes_itself() {
         let metal = Still {
             trace_seconds: 8.26,

@@ -246,4 +246,23 @@ mod tests {
         let nothing = View::Occupancy.resolve(&Film::new(1, 1, 1), Transfer::Linear, None);
         assert_eq!(nothing, HeatScale::OCCUPANCY.colour(0.0));
     }
+
+    #[test]
+    fn a_reference_is_compared_by_its_address_and_has_values_only_within_its_picture() {
+        let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
+        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
+        assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);
+        assert_eq!([[3, 0], [0, 2]].map(|at| reference.mean(at)), [None; 2]);
+        let copy = View::Difference(Arc::new(ReferenceMeans::clone(&reference)));
+        let view = View::Difference(Arc::clone(&reference));
+        assert!(
+            view.is_same(&View::Difference(reference))
+                && !view.is_same(&copy)
+                && !view.is_same(&View::Picture)
+        );
+        assert!(
+            View::Exposed(1.0).is_same(&View::Exposed(1.0))
+                && !View::Exposed(1.0).is_same(&View::Exposed(2.0))
+        );
+    }
 }

@@ -7,9 +7,7 @@ use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{EndReason, Phase, Picture, Plan, Progressive, RenderRequest, Status};
-use weekender::render::{
-    BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats, TileOccupancy,
-};
+use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
@@ -34,7 +32,6 @@ pub struct Fake {
     pub trial: Option<[Duration; 2]>,
     /// Whether passes after the first last until they are stopped, and are given up.
     pub waits_for_stop: bool,
-    pub tiles: Option<TileOccupancy>,
 }
 
 impl Fake {
@@ -50,7 +47,6 @@ impl Fake {
             message: None,
             trial: None,
             waits_for_stop: false,
-            tiles: None,
         }
     }
 }
@@ -71,10 +67,6 @@ impl Renderer for Fake {
 
     fn take_messages(&mut self) -> Vec<String> {
         self.message.into_iter().map(str::to_owned).collect()
-    }
-
-    fn tile_occupancy(&self) -> Option<TileOccupancy> {
-        self.tiles.clone()
     }
 
     fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
@@ -130,9 +122,9 @@ impl Renderer for Fake {
 }
 
 /// A fake renderer whose passes are made by a closure.
-pub struct Scripted<A> {
-    pub fake: Fake,
-    pub pass: A,
+struct Scripted<A> {
+    fake: Fake,
+    pass: A,
 }
 
 impl<A> Renderer for Scripted<A>
@@ -141,10 +133,6 @@ where
 {
     fn info(&self) -> BackendInfo {
         self.fake.info()
-    }
-
-    fn tile_occupancy(&self) -> Option<TileOccupancy> {
-        self.fake.tile_occupancy()
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

@@ -11,7 +11,7 @@ use std::time::Duration;
 use weekender::backends::BackendError;
 use weekender::film::Film;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Stop, View};
-use weekender::render::{Renderer, Stats, TileOccupancy};
+use weekender::render::Renderer;
 use weekender::render_gpu::GpuError;
 use weekender::stages::Transfer;
 
@@ -284,24 +284,4 @@ fn the_status_describes_the_backend_at_work() {
     });
     let status = progressive.wait_until_over();
     assert!(status.backend.is_some_and(|backend| backend.threads > 1));
-}
-
-#[test]
-fn rejected_samples_and_the_occupancy_of_tiles_are_reported() {
-    let tiles = TileOccupancy { side: 1, columns: 2, tiles: vec![[1, 4], [2, 4], [3, 4], [4, 4]] };
-    let own = tiles.clone();
-    let progressive = started_with(CPU, Plan::samples(8), move |_| {
-        let pass = |_: &mut Fake, range: Range<u64>, film: &mut Film, _: &_| {
-            let rejected = range.end - range.start;
-            film.record(range, rejected)?;
-            Ok(Stats { rejected, ..Stats::default() })
-        };
-        let fake = Fake { tiles: Some(own.clone()), ..Fake::new("cpu") };
-        Box::new(super::common::Scripted { fake, pass })
-    });
-    progressive.set_view(View::Occupancy);
-    let status = progressive.wait_until_over();
-    assert_eq!((status.rejected_samples, status.stats.rejected), (8, 8));
-    let shown = View::Occupancy.resolve(&job(2).new_film(), Transfer::Gamma2, Some(&tiles));
-    assert_eq!(picture(&progressive, 8).rgb8, shown);
 }

@@ -176,7 +176,6 @@ fn a_picture_without_light_meets_no_noise_target() {
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
     assert_eq!((status.error, film.error()), (None, None));
     assert!(status.history.is_empty(), "{:?}", status.history);
-    assert!(status.messages.iter().any(|message| message.contains("cannot be estimated")));
     let (status, _) = ended(|index| u64::from(index >= 64) << 24, false);
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert!(status.samples_per_pixel > 64 && status.history[0].samples_per_pixel > 64, "{status:?}");

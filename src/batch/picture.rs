@@ -1,0 +1,223 @@
+//! One picture: rendered, kept at intervals, and written with its film.
+
+use super::files::{self, FilmPlace};
+use super::keeping::Keeper;
+use super::progress::Progress;
+use super::studio::{Event, Studio};
+use super::summary::Summary;
+use crate::cli::{BatchOptions, RenderOptions};
+use crate::failure::Failure;
+use crate::files::ShownPath;
+use crate::film::Film;
+use crate::interrupt::Interrupt;
+use crate::journal;
+use crate::progressive::{Phase, Status};
+use crate::saved::SavedFilm;
+use anyhow::anyhow;
+use files::Written;
+use std::time::Instant;
+
+/// A picture to render, whose films are locked.
+pub(super) struct Picture<'a> {
+    pub render: &'a RenderOptions,
+    /// The film to continue.
+    pub resumed: Option<SavedFilm>,
+    places: Vec<FilmPlace>,
+    /// What the user must know before it begins.
+    warnings: Vec<String>,
+}
+
+impl<'a> Picture<'a> {
+    /// Locks the films. A film to be resumed must be read after this.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if another run writes one of them.
+    pub fn lock(render: &'a RenderOptions) -> Result<Self, Failure> {
+        let (places, warnings) = (files::lock(render)?, render.notes.clone());
+        Ok(Picture { render, resumed: None, places, warnings })
+    }
+
+    /// Looks at the files that the render would replace.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if one must not be replaced.
+    pub fn check(&mut self) -> Result<(), Failure> {
+        let film = self.resumed.as_ref().map(|resumed| &resumed.film);
+        self.warnings.extend(files::check(self.render, &self.places, film)?);
+        Ok(())
+    }
+
+    /// Renders the picture and writes its files. On any failure, the samples rendered so far are kept.
+    pub fn render(
+        self,
+        options: &BatchOptions,
+        studio: &mut Studio,
+        interrupt: &Interrupt,
+    ) -> (Summary<'a>, Result<(), Failure>) {
+        let Picture { render, resumed, places, warnings } = self;
+        let (film, seconds_before) =
+            resumed.map_or((None, Some(0.0)), |SavedFilm { film, seconds, .. }| (Some(film), seconds));
+        let held_before = film.as_ref().map_or(0, Film::sample_count);
+        let checkpoint = places.first().filter(|_| render.checkpoint.is_some());
+        let mut keeper =
+            checkpoint.map(|place| Keeper::new(render, place.clone(), held_before, seconds_before));
+        let mut progress = Progress::new(options.progress, render);
+        warnings.iter().for_each(|warning| progress.say(&format!("warning: {warning}")));
+        let (mut status, film) =
+            studio.render(render.job.clone(), render.plan.clone(), film, |event| match event {
+                Event::Warning(warning) => progress.say(&format!("warning: {warning}")),
+                Event::Stopping => {
+                    let hint = "; press Ctrl-C again to exit at once without writing";
+                    let hint = if interrupt.is_by_hand() { hint } else { "" };
+                    progress.say(&format!("finishing the current samples and writing the files{hint}"));
+                }
+                Event::Status(_, status) if status.phase.is_over() => {}
+                Event::Status(progressive, status) => {
+                    assert!(
+                        options.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
+                        "injected fault"
+                    );
+                    if let Some(warning) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status))
+                    {
+                        progress.say(&format!("warning: {warning}"));
+                    }
+                    progress.update(status);
+                }
+            });
+        let mut names = vec![render.out.shown()];
+        names.extend(render.checkpoint.as_ref().filter(|path| **path != render.out).map(ShownPath::shown));
+        let writing = interrupt.while_writing(names.join(" and "));
+        let begin = Instant::now();
+        let kept = keeper.and_then(Keeper::finish);
+        let written = match film.as_ref().filter(|film| film.sample_count() > 0) {
+            Some(film) => {
+                files::write(render, &places, film, &status, seconds_before, |path| progress.writing(path))
+            }
+            None => Written::default(),
+        };
+        drop(writing);
+        written.files.iter().for_each(|path| log::info!("wrote {}", path.display()));
+        written.notes.iter().for_each(|note| progress.say(&format!("warning: {note}")));
+        status.messages = [&warnings[..], &status.messages, &written.notes].concat();
+        progress.finish();
+        if matches!(status.phase, Phase::Failed(_)) {
+            journal::write_report();
+        }
+        let outcome = outcome(render, &status, film.as_ref(), &written, kept);
+        let (files, writing) = (written.files, begin.elapsed());
+        (
+            Summary { render, samples: film.map(|film| film.samples().to_string()), status, files, writing },
+            outcome,
+        )
+    }
+}
+
+/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
+fn outcome(
+    render: &RenderOptions,
+    status: &Status,
+    film: Option<&Film>,
+    written: &Written,
+    kept: Option<u64>,
+) -> Result<(), Failure> {
+    let failures = written.failures.join("; ");
+    let Phase::Failed(reason) = &status.phase else {
+        return if failures.is_empty() { Ok(()) } else { Err(Failure::Run(anyhow!(failures))) };
+    };
+    let held = film.map_or(0, Film::sample_count);
+    Err(match (kept, &render.checkpoint) {
+        _ if !failures.is_empty() => Failure::Run(anyhow!("{reason}; {failures}")),
+        _ if held > 0 => {
+            let files = written.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
+            Failure::BrokeOff(anyhow!(
+                "{reason}; the {held} samples per pixel rendered before are in {files}"
+            ))
+        }
+        (Some(kept), Some(path)) => {
+            Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {}", path.shown()))
+        }
+        _ => Failure::Run(anyhow!("{reason}")),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::tests::{batch, options};
+    use crate::film::checkpoint;
+    use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use std::ops::Range;
+    use std::sync::atomic::AtomicBool;
+
+    /// A renderer that fails after four samples.
+    struct Failing;
+
+    impl Renderer for Failing {
+        fn info(&self) -> BackendInfo {
+            BackendInfo { name: "failing", device: String::new(), lanes: 1, threads: 1 }
+        }
+
+        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            Ok(())
+        }
+
+        fn accumulate(
+            &mut self,
+            _: &RenderJob,
+            samples: Range<u64>,
+            film: &mut Film,
+            _: &AtomicBool,
+        ) -> Result<Stats, RenderError> {
+            if samples.end > 4 {
+                return Err(RenderError::Backend { backend: "failing", reason: "it broke".to_owned() });
+            }
+            film.record(samples, 0)?;
+            Ok(Stats::default())
+        }
+    }
+
+    #[test]
+    fn a_render_that_fails_has_an_exit_code_of_its_own_and_its_files() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
+        let files = ["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()];
+        let options = batch(&[&["--samples", "64", "--device", "cpu"], &files[..]].concat());
+        let interrupt = Interrupt::unheard();
+        let mut studio =
+            Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
+        let picture = Picture::lock(&options.renders[0]).unwrap();
+        let (_, outcome) = picture.render(&options, &mut studio, &interrupt);
+        let failure = outcome.unwrap_err();
+        let told = failure.to_string();
+        assert!(matches!(failure, Failure::BrokeOff(_)), "{told}");
+        assert!(told.contains("it broke") && told.contains("4 samples") && told.contains("a.exr"), "{told}");
+        assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
+        assert!(out.exists());
+    }
+
+    #[test]
+    fn a_failure_says_why_and_where_the_samples_are() {
+        let options = options(&["--checkpoint", "k.exr"]);
+        let mut film = options.job.new_film();
+        film.record(0..6, 0).unwrap();
+        let phase = Phase::Failed("it broke".to_owned());
+        let failed = Status { phase, ..Status::default() };
+        let ended = |status: &Status, film: Option<&Film>, failures: &[&str]| {
+            let failures = failures.iter().map(|words| (*words).to_owned()).collect();
+            let written =
+                Written { files: vec!["a.png".into(), "k.exr".into()], failures, ..Written::default() };
+            match outcome(&options, status, film, &written, Some(4)) {
+                Ok(()) => "success".to_owned(),
+                Err(Failure::BrokeOff(error)) => format!("broke off: {error}"),
+                Err(error) => format!("{error}"),
+            }
+        };
+        let held = "broke off: it broke; the 6 samples per pixel rendered before are in a.png, k.exr";
+        assert_eq!(ended(&failed, Some(&film), &[]), held);
+        let kept = "broke off: it broke; 4 samples per pixel are in k.exr";
+        assert_eq!(ended(&failed, Some(&options.job.new_film()), &[]), kept);
+        assert_eq!(ended(&failed, Some(&film), &["no space"]), "error: it broke; no space");
+        assert_eq!(ended(&Status::default(), Some(&film), &["no space"]), "error: no space");
+        assert_eq!(ended(&Status::default(), Some(&film), &[]), "success");
+    }
+}

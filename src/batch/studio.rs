@@ -1,0 +1,95 @@
+//! The one loop in which the command line watches a render: pictures, frames of animations, and figures.
+
+use crate::backends::{self, BackendChoice};
+use crate::failure::Failure;
+use crate::film::Film;
+use crate::interrupt::Interrupt;
+use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
+use crate::render::{RenderJob, Renderer, panic_text};
+use anyhow::Context;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Renders one picture after the other with one backend.
+pub struct Studio<'a> {
+    backend: &'a BackendChoice,
+    renderer: Option<Box<dyn Renderer>>,
+    progressive: Progressive,
+    interrupt: &'a Interrupt,
+}
+
+/// What happens during a render.
+pub enum Event<'a> {
+    /// Something that the user should know.
+    Warning(&'a str),
+    /// After a signal, the render is told to stop.
+    Stopping,
+    /// The state of the render, which comes every [`Progressive::LOOK`] at least.
+    Status(&'a Progressive, &'a Status),
+}
+
+impl<'a> Studio<'a> {
+    /// Makes the renderer and starts the render thread.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if the backend is not available.
+    pub fn open(backend: &'a BackendChoice, interrupt: &'a Interrupt) -> Result<Self, Failure> {
+        let renderer = Some(backends::create(backend).map_err(Failure::input)?);
+        let progressive =
+            Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?;
+        Ok(Studio { backend, renderer, progressive, interrupt })
+    }
+
+    /// A plan for this many samples per pixel, in the passes of a render that nobody looks at.
+    pub fn plan(samples: u64) -> Plan {
+        Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(samples)) }
+    }
+
+    /// Renders a picture, or continues its `film`, until the plan's end or a signal. Returns the last status and the film
+    /// as far as it got. A panic in `look` ends the render as a failure.
+    pub fn render(
+        &mut self,
+        job: RenderJob,
+        plan: Plan,
+        film: Option<Film>,
+        mut look: impl FnMut(Event),
+    ) -> (Status, Option<Film>) {
+        let Studio { backend, renderer, progressive, interrupt } = self;
+        let backend = (*backend).clone();
+        let request = RenderRequest { job, backend, renderer: renderer.take(), plan, film };
+        let (mut warned, mut is_stopping) = (0, false);
+        let watched = catch_unwind(AssertUnwindSafe(|| {
+            progressive.watch(request, |progressive, status| {
+                status.messages.iter().skip(warned).for_each(|message| look(Event::Warning(message)));
+                warned = status.messages.len();
+                if interrupt.is_set() && !is_stopping && !status.phase.is_over() {
+                    is_stopping = true;
+                    look(Event::Stopping);
+                    progressive.stop();
+                }
+                look(Event::Status(progressive, status));
+            })
+        }));
+        let status = watched.unwrap_or_else(|payload| {
+            progressive.stop();
+            while progressive.status().phase.is_working() {
+                progressive.wait(Progressive::LOOK);
+            }
+            let phase = Phase::Failed(format!("the program failed ({})", panic_text(payload.as_ref())));
+            Status { phase, ..progressive.status() }
+        });
+        (status, progressive.take_film())
+    }
+}
+
+#[cfg(test)]
+impl<'a> Studio<'a> {
+    /// A studio whose renderers `factory` makes.
+    pub(crate) fn with_factory(
+        factory: crate::progressive::Factory,
+        backend: &'a BackendChoice,
+        interrupt: &'a Interrupt,
+    ) -> Self {
+        let progressive = Progressive::with_factory(factory).unwrap();
+        Studio { backend, renderer: None, progressive, interrupt }
+    }
+}
