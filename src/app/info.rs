@@ -8,8 +8,8 @@ use super::model::show::Show;
 use super::model::view::With;
 use super::tips::{self, Side};
 use super::widgets::{About, control};
-use crate::stages::Stage;
 use crate::measure::stress::Case;
+use crate::stages::Stage;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.
@@ -202,8 +202,8 @@ mod tests {
     use crate::app::model::origin::{Origin, Source};
     use crate::app::model::view::{Mode, ViewState};
     use crate::app::tests::{Case, Drawings, dressed, facts_of, leave};
-    use crate::recipe::Recipe;
     use crate::measure::stress::shown_cases;
+    use crate::recipe::Recipe;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;

@@ -258,7 +258,8 @@ mod tests {
 
     #[test]
     fn tables_of_extreme_scenes_are_valid() {
-        let cases = crate::measure::stress::cases().iter().filter(|case| case.recipe.scene.spheres.len() < 5000);
+        let cases =
+            crate::measure::stress::cases().iter().filter(|case| case.recipe.scene.spheres.len() < 5000);
         for (case, form) in cases.flat_map(|case| case.forms().iter().map(move |form| (case, *form))) {
             let job = case.recipe_in(form).job().expect("valid");
             assert_eq!(PreparedScene::<f32>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);

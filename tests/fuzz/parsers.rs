@@ -5,9 +5,9 @@ use std::ffi::OsString;
 use std::io::Cursor;
 use std::path::Path;
 use weekender::film::{Checksum, FilmFile, checkpoint};
+use weekender::measure::report;
 use weekender::output::{Encoding, decode_description, decode_picture};
 use weekender::recipe::file;
-use weekender::measure::report;
 use weekender::stages::Transfer;
 
 /// The result of parsing an input.

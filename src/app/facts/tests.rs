@@ -14,11 +14,11 @@ use crate::app::model::view::{ViewState, With};
 use crate::app::tests::Case;
 use crate::film::Film;
 use crate::kept;
+use crate::measure::stress::shown_cases;
 use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
 use crate::recipe::Recipe;
 use crate::scene::Camera;
 use crate::stages::{Rules, SurfaceRule};
-use crate::measure::stress::shown_cases;
 
 /// A window with this view in which nothing has been traced yet.
 fn early(document: Document, view: ViewState) -> Facts {

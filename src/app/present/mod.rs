@@ -198,8 +198,8 @@ mod tests {
     use crate::app::model::origin::Origin;
     use crate::app::model::presentation::Presentation;
     use crate::app::tests::{Case, Drawings, dressed, facts_of, part};
-    use crate::progressive::{EndReason, Phase, Status, Stop};
     use crate::measure::stress::shown_cases;
+    use crate::progressive::{EndReason, Phase, Status, Stop};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;

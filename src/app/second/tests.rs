@@ -8,11 +8,11 @@ use crate::app::tests::{until, window};
 use crate::app::window::Window;
 use crate::backends::BackendChoice;
 use crate::film::{Film, PixelSum};
+use crate::measure::stress::shown_cases;
 use crate::progressive::{Phase, Stop, View};
 use crate::render::RenderSettings;
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
-use crate::measure::stress::shown_cases;
 use std::time::{Duration, Instant};
 
 #[test]
