@@ -86,24 +86,6 @@ fn rows_have_sane_figures() {
 }
 
 #[test]
-fn every_level_is_measured_when_all_are_asked_for() {
-    let directory = tempfile::tempdir().unwrap();
-    let output = tiny(directory.path(), &["--scene", "metals", "--isa", "all", "--json", "-"]);
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let names: Vec<&str> = report["scenes"][0]["rows"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|row| row["name"].as_str().unwrap())
-        .collect();
-    for level in report["machine"]["levels"].as_array().unwrap() {
-        let start = format!("{}, 1 lane, 1 thread", level.as_str().unwrap());
-        assert!(names.contains(&start.as_str()), "{names:?}");
-    }
-    assert!(text(&output.stderr).contains("metals"), "the table goes to standard error");
-}
-
-#[test]
 fn without_a_compiler_the_baseline_is_left_out() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));

@@ -42,12 +42,8 @@ fn direction() -> impl Strategy<Value = DVec3> + Clone {
 fn material() -> impl Strategy<Value = Material> + Clone {
     let grey = prop::sample::select(vec![1.0, 0.5, 0.9, 0.2]).prop_map(DVec3::splat);
     let fuzz = prop_oneof![Just(0.0), 0.0..1.0_f64];
-    let index = prop_oneof![
-        Just(1.5),
-        Just(1.0 / 1.5),
-        log(1e-6, 1.0).prop_map(|more| 1.0 + more),
-        log(1e-2, 1e2)
-    ];
+    let index =
+        prop_oneof![Just(1.5), Just(1.0 / 1.5), log(1e-6, 1.0).prop_map(|more| 1.0 + more), log(1e-2, 1e2)];
     prop_oneof![
         3 => grey.clone().prop_map(|albedo| Material::Lambertian { albedo }),
         1 => (grey, fuzz).prop_map(|(albedo, fuzz)| Material::Metal { albedo, fuzz }),
@@ -87,8 +83,12 @@ fn ball((relation, direction, material, other): Described, others: &[Ball]) -> B
         Relation::Copy => (center, radius, own),
         Relation::AlmostACopy(shift) => (center + radius * shift * direction, radius, own),
         Relation::Shell(thickness) => (center, radius * (1.0 - thickness), material),
-        Relation::TouchingOutside(factor) => (center + (1.0 + factor) * radius * direction, factor * radius, material),
-        Relation::TouchingInside(factor) => (center + (1.0 - factor) * radius * direction, factor * radius, material),
+        Relation::TouchingOutside(factor) => {
+            (center + (1.0 + factor) * radius * direction, factor * radius, material)
+        }
+        Relation::TouchingInside(factor) => {
+            (center + (1.0 - factor) * radius * direction, factor * radius, material)
+        }
         Relation::Free { distance, radius } => (distance * direction, radius, material),
     }
 }
@@ -99,7 +99,8 @@ fn distance_of_eye() -> impl Strategy<Value = f64> {
 }
 
 fn recipe() -> impl Strategy<Value = Recipe> {
-    let balls = prop::collection::vec((relation(), direction(), material(), any::<prop::sample::Index>()), 1..15);
+    let balls =
+        prop::collection::vec((relation(), direction(), material(), any::<prop::sample::Index>()), 1..15);
     let ground = prop::option::weighted(0.3, log(1e2, 1e7));
     let sky = prop::sample::select(vec![
         Sky::default(),
@@ -198,14 +199,16 @@ impl Checker {
         }
         for index in 0..self.single.len() {
             let name = self.single[index].name.clone();
-            let precise = |recipe: &Recipe, checker: &mut Checker| {
+            let precise = |recipe: &Recipe, checker: &mut Checker| -> Result<[Traced; 2], String> {
                 let exact = traced(&mut checker.double, recipe)?;
                 Ok([traced(&mut checker.single[index], recipe)?, Traced { warnings: Vec::new(), ..exact }])
             };
             self.compare(recipe, &precise).map_err(|reason| format!("{name}, f32 and f64: {reason}"))?;
             for (change, pair) in changes(recipe) {
-                let Some([one, other]) = pair.filter(|pair| pair.iter().all(|one| one.job().is_ok())) else { continue };
-                let changed = |one: &Recipe, checker: &mut Checker| {
+                let Some([one, other]) = pair.filter(|pair| pair.iter().all(|one| one.job().is_ok())) else {
+                    continue;
+                };
+                let changed = |one: &Recipe, checker: &mut Checker| -> Result<[Traced; 2], String> {
                     let other = Recipe {
                         samples_per_pixel: one.samples_per_pixel,
                         settings: one.settings,
@@ -266,12 +269,14 @@ fn same([one, other]: &[Traced; 2], share: f64, floor: f64) -> Result<(), String
 
 #[test]
 fn random_scenes_are_the_same_in_single_precision_and_after_changes_that_must_not_matter() {
-    let seconds = std::env::var("WEEKENDER_SEARCH_SECONDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2.0);
+    let seconds =
+        std::env::var("WEEKENDER_SEARCH_SECONDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2.0);
     let (begin, limit) = (Instant::now(), Duration::from_secs_f64(seconds));
     let checker = std::cell::RefCell::new(Checker::new());
     let is_long = seconds > 10.0;
     while begin.elapsed() < limit {
-        let config = Config { cases: if is_long { 100 } else { 5 }, max_shrink_iters: 2000, ..Config::default() };
+        let config =
+            Config { cases: if is_long { 100 } else { 5 }, max_shrink_iters: 2000, ..Config::default() };
         // A short search always tries the same scenes.
         let mut runner = if is_long {
             TestRunner::new(config)

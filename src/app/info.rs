@@ -8,8 +8,8 @@ use super::model::show::Show;
 use super::model::view::With;
 use super::tips::{self, Side};
 use super::widgets::{About, control};
-use crate::stages::Stage;
 use crate::measure::stress::Case;
+use crate::stages::Stage;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.

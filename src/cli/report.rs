@@ -212,7 +212,9 @@ impl ReportOptions {
     /// If one is unknown, too large or named twice, or if the report would replace an input.
     pub fn scenes(&self) -> Result<Vec<Recipe>, CliError> {
         let mut scenes: Vec<Recipe> = match self.scenes.as_slice() {
-            [] => self.defaults().scenes.iter().map(|name| sources::carried(name)).collect::<Result<_, _>>()?,
+            [] => {
+                self.defaults().scenes.iter().map(|name| sources::carried(name)).collect::<Result<_, _>>()?
+            }
             named => named.iter().map(|name| sources::scene(name)).collect::<Result<_, _>>()?,
         };
         for index in 0..scenes.len() {
@@ -339,13 +341,5 @@ mod tests {
             let found = parsed(&format!("--backends portable {words}")).unwrap().reference().unwrap();
             assert!(matches!(found, ReferenceChoice::Make { samples, .. } if samples == expected), "{words}");
         }
-    }
-
-    #[test]
-    fn the_own_target_comes_first_and_only_once() {
-        let targets = |words: &str| parsed(&format!("--backends portable {words}")).unwrap().targets();
-        assert_eq!(targets("--seeds 3"), [0.01, 0.001]);
-        assert_eq!(targets("--target .02"), [0.02, 0.01, 0.001]);
-        assert_eq!(targets("--target .001"), [0.001, 0.01]);
     }
 }

@@ -60,7 +60,8 @@ impl Baseline {
                 anyhow!("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")
             })?;
         if !output.status.success() {
-            let message = String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
+            let message =
+                String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
             bail!("{} cannot compile the C program: {message}", baseline.compiler);
         }
         Ok(baseline)
@@ -117,7 +118,9 @@ impl Baseline {
         match stats {
             _ if cancel.load(Ordering::Relaxed) => Err(RenderError::Cancelled),
             Some(stats) if output.status.success() => Ok(stats),
-            _ => Err(failed(format!("{}, {}", output.status, String::from_utf8_lossy(&output.stderr).trim()))),
+            _ => {
+                Err(failed(format!("{}, {}", output.status, String::from_utf8_lossy(&output.stderr).trim())))
+            }
         }
     }
 }

@@ -145,7 +145,9 @@ impl Candidate {
         let warnings = self.start()?.take_messages();
         if film.sample_count() != samples {
             let held = film.sample_count();
-            return Err(Stop::Failed(format!("the film holds {held} samples per pixel instead of {samples}")));
+            return Err(Stop::Failed(format!(
+                "the film holds {held} samples per pixel instead of {samples}"
+            )));
         }
         Ok(Traced { film, stats, seconds, warnings })
     }

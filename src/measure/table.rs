@@ -22,7 +22,8 @@ pub(super) fn markdown_table<H: AsRef<str>, C: AsRef<str>>(
     texts: usize,
     rows: impl IntoIterator<Item = Vec<C>>,
 ) -> String {
-    let rule: Vec<&str> = (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }).collect();
+    let rule: Vec<&str> =
+        (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }).collect();
     let rows = rows.into_iter().map(|cells| markdown_row(&cells)).collect::<String>();
     markdown_row(heads) + &markdown_row(&rule) + &rows
 }

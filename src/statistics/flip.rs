@@ -269,17 +269,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_fine_to_be_seen_counts_for_less() {
-        let chequers = |side: usize| -> Vec<[f64; 3]> {
-            let sign = |x: usize, y: usize| if (x / side + y / side).is_multiple_of(2) { 1.0 } else { -1.0 };
-            (0..48 * 36).map(|i| [0.5 + 0.1 * sign(i % 48, i / 48); 3]).collect()
-        };
-        let flat = Appearance::of(48, &vec![[0.5; 3]; 48 * 36]);
-        let [fine, coarse] = [1, 12].map(|side| flat.difference(&Appearance::of(48, &chequers(side))));
-        assert!(fine < 0.5 * coarse, "{fine} {coarse}");
-    }
-
-    #[test]
     fn colours_survive_the_way_to_opponents_and_back() {
         let rgb = [0.2, 0.7, 0.4];
         let back = linear_from_xyz(xyz_from_opponent(opponent_from_xyz(xyz_from_linear(rgb))));

@@ -10,7 +10,10 @@
 
 use glam::DVec3;
 use std::ops::{Add, Mul, Sub};
-use weekender::measure::stress::{cases, families::build::{moved, one_ball}};
+use weekender::measure::stress::{
+    cases,
+    families::build::{moved, one_ball},
+};
 use weekender::recipe::Recipe;
 use weekender::render_cpu::{Isa, PathRecorder};
 use weekender::scene::{Material, Scene, Sphere};
@@ -210,18 +213,6 @@ fn an_eye_on_a_surface_is_moved_out_by_a_few_units_in_the_last_place() {
     assert!((16_000.0..17_000.0).contains(&places), "{places}");
 }
 
-#[test]
-fn numbers_keep_what_f64_drops() {
-    let small = 1e-25;
-    let sum = Double::from(1.0) + Double::from(small);
-    assert_eq!((sum - Double::from(1.0)).to_f64(), small);
-    let third = Double::from(1.0).over(Double::from(3.0));
-    assert!((third * Double::from(3.0) - Double::from(1.0)).to_f64().abs() < 1e-31);
-    let root = Double::from(2.0).sqrt();
-    assert!((root * root - Double::from(2.0)).to_f64().abs() < 1e-31);
-    assert_eq!(Double::from(0.0).sqrt().to_f64(), 0.0);
-}
-
 fn scene(balls: &[(DVec3, f64)]) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material("matte", Material::Lambertian { albedo: DVec3::ONE });
@@ -249,13 +240,6 @@ fn a_ray_leaves_the_surface_that_it_starts_on() {
     assert_eq!(first_hit(&ball, 3.0 * DVec3::Y, DVec3::Y), None);
     // Along the surface, both roots are 0.
     assert_eq!(first_hit(&ball, DVec3::Y, DVec3::X), None);
-}
-
-#[test]
-fn the_nearer_of_two_hits_in_front_counts() {
-    let ball = scene(&[(0.375 * DVec3::Z, 0.125)]);
-    assert_eq!(first_hit(&ball, DVec3::ZERO, DVec3::Z), Some((0, 0.25)));
-    assert_eq!(first_hit(&ball, DVec3::ZERO, 0.25 * DVec3::Z), Some((0, 1.0)));
 }
 
 #[test]

@@ -6,9 +6,9 @@ mod exact;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
 use weekender::backends::BackendChoice;
-use weekender::render_cpu::{CpuOptions, Isa};
 use weekender::measure::Candidate;
 use weekender::measure::stress::{Case, Expected, Suite, cases};
+use weekender::render_cpu::{CpuOptions, Isa};
 
 fn suite() -> Suite {
     let available = Isa::available();

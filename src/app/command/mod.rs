@@ -15,9 +15,9 @@ use super::model::remembered::Theme;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::viewpoint::Viewpoint;
+use crate::measure::stress::{Case, shown_cases};
 use crate::output::OutputFormat;
 use crate::stages::Stage;
-use crate::measure::stress::{Case, shown_cases};
 
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,12 +2,12 @@
 
 use super::checked::CheckedScene;
 use super::origin::{Origin, Source};
+use crate::measure::stress::Case;
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::{Rules, Shading, Stage};
-use crate::measure::stress::Case;
 use std::sync::Arc;
 
 /// What the names of files of changed scenes end in.

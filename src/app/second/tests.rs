@@ -6,7 +6,6 @@ use crate::backends::BackendChoice;
 use crate::progressive::{Phase, Stop, View};
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
-use crate::measure::stress::shown_cases;
 use std::time::{Duration, Instant};
 
 #[test]

@@ -33,9 +33,10 @@ pub struct SceneFigures {
 }
 
 /// What kind of candidate a row is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
+    #[default]
     Baseline,
     /// One ray at a time.
     Scalar,
@@ -47,7 +48,7 @@ pub enum Kind {
 }
 
 /// A candidate and its runs.
-#[derive(Clone, Serialize)]
+#[derive(Default, Serialize)]
 pub struct Row {
     pub name: String,
     pub kind: Kind,
@@ -188,20 +189,7 @@ impl Row {
     pub fn new(kind: Kind, candidate: &mut Candidate) -> Self {
         let skipped = candidate.start().err().map(|error| format!("{error:#}"));
         let (lanes, threads) = candidate.info().map_or((0, 0), |info| (info.lanes, info.threads));
-        Row {
-            name: candidate.name.clone(),
-            kind,
-            lanes,
-            threads,
-            samples_per_pixel: 0,
-            runs: Vec::new(),
-            paths_per_second: None,
-            rays_per_second: None,
-            lanes_in_use: None,
-            ratio_to_baseline: None,
-            efficiency: None,
-            skipped,
-        }
+        Row { name: candidate.name.clone(), kind, lanes, threads, skipped, ..Row::default() }
     }
 
     /// Computes the row's figures from its runs.
@@ -254,14 +242,6 @@ mod tests {
     use super::*;
     use crate::backends::BackendChoice;
     use crate::recipe::Recipe;
-
-    #[test]
-    fn a_spread_has_the_middle_and_both_ends() {
-        let of = |values: &[f64]| Spread::of(values.iter().copied());
-        assert_eq!(of(&[3.0, 1.0, 2.0]), Some(Spread { median: 2.0, min: 1.0, max: 3.0 }));
-        assert_eq!(of(&[4.0, 1.0, 2.0, 3.0]), Some(Spread { median: 2.5, min: 1.0, max: 4.0 }));
-        assert_eq!(of(&[]), None);
-    }
 
     fn row(kind: Kind, runs: Vec<Run>) -> Row {
         let choice = BackendChoice::Reference { threads: Some(1) };

@@ -169,7 +169,9 @@ impl Bench<'_> {
                 if row.skipped.is_none() {
                     self.progress.at(&format!("{scene}: {}", row.name), 0.0);
                     let outcome = match turn {
-                        0 => self.affordable_samples(candidate, job, samples).map(|n| row.samples_per_pixel = n),
+                        0 => self
+                            .affordable_samples(candidate, job, samples)
+                            .map(|n| row.samples_per_pixel = n),
                         _ => self.run(candidate, job, row),
                     };
                     match outcome {
@@ -297,7 +299,10 @@ mod tests {
         let figures = BenchFigures { features, ..BenchFigures::default() };
         let found = warnings(&figures, Some(LOAD_LIMIT));
         assert_eq!(found.len(), 1);
-        assert!(found[0].contains("in 2 of 3 rows") && found[0].contains("25 % in second, avx2"), "{found:?}");
+        assert!(
+            found[0].contains("in 2 of 3 rows") && found[0].contains("25 % in second, avx2"),
+            "{found:?}"
+        );
         assert!(warnings(&figures, Some(0.75))[0].contains("load 0.75"));
         assert_eq!(warnings(&BenchFigures::default(), None), [""; 0]);
     }

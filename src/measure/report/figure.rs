@@ -108,7 +108,8 @@ mod tests {
 
     fn data(floor: Option<f64>) -> Data {
         let (scene, backend) = ("book".to_owned(), "cpu".to_owned());
-        let rounding = Rounding { scene, backend, samples: 64, bias: 0.0, rms: 0.125, floor, floor_limit: 0.5 };
+        let rounding =
+            Rounding { scene, backend, samples: 64, bias: 0.0, rms: 0.125, floor, floor_limit: 0.5 };
         Data { rounding: vec![rounding], ..no_data() }
     }
 
@@ -139,17 +140,6 @@ mod tests {
     }
 
     #[test]
-    fn scenes_have_charts_of_their_own_in_two_columns() {
-        let found = figure(&data(None), &[curve("a"), curve("b"), curve("a"), curve("c")], 0.5);
-        assert_eq!((found.size, found.columns), ([1120, 1030], 2));
-        let count = |panel: &Panel| {
-            let Panel::Lines(chart) = panel else { panic!("{panel:?}") };
-            chart.series.iter().filter(|series| series.look == Look::Measured).count()
-        };
-        assert_eq!(found.panels.iter().map(count).collect::<Vec<_>>(), [2, 1, 1]);
-    }
-
-    #[test]
     fn a_target_or_floor_outside_the_chart_is_not_drawn() {
         let names = |floor: Option<f64>, curves: &[CurveSummary], target: f64| -> Vec<String> {
             let chart = chart("book", &data(floor), curves, target);
@@ -167,13 +157,5 @@ mod tests {
         let mut expected = curve("book");
         expected.times[0] = Some(Crossing { time: 9.0, is_extrapolated: true });
         assert_eq!(names(None, &[expected], 0.5), [all[0], all[1], all[4]]);
-    }
-
-    #[test]
-    fn a_chart_without_errors_has_no_limits() {
-        let mut curve = curve("book");
-        curve.points.iter_mut().for_each(|point| point.rmse = 0.0);
-        let chart = chart("book", &data(None), &[curve], 0.5);
-        assert_eq!((chart.x.limits, chart.y.limits), (None, None));
     }
 }

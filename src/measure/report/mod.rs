@@ -180,8 +180,7 @@ impl<'a> Report<'a> {
         progress.at(&format!("rounding of {}", recipe.name), 0.0);
         let job = job(recipe, SamplerKind::Sobol, 0, true)?;
         let samples = options.max_samples().min(ROUNDING_SAMPLES);
-        let mut exact =
-            Candidate::backend("reference", backends::BackendChoice::Reference { threads: None });
+        let mut exact = Candidate::backend("reference", backends::BackendChoice::Reference { threads: None });
         let exact = exact.trace(&job, samples, interrupt.flag())?.film;
         for candidate in missing {
             let film = candidate.trace(&job, samples, interrupt.flag())?.film;

@@ -217,10 +217,8 @@ mod tests {
     use super::*;
     use crate::backends::{self, BackendChoice};
     use crate::film::fixed_point;
-    use crate::render::{BackendInfo, Stats};
     use crate::stages::Diffuse;
     use glam::DVec3;
-    use std::ops::Range;
     use std::path::PathBuf;
     use tempfile::TempDir;
 
@@ -325,41 +323,6 @@ mod tests {
         let error = made(&path, &cpu(Some(0)), 8).err().unwrap();
         assert!(error.to_string().contains("panicked"), "{error}");
         assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), 2);
-    }
-
-    /// A renderer of black pictures whose film is spoiled by the second pass.
-    struct Spoiling;
-
-    impl Renderer for Spoiling {
-        fn info(&self) -> BackendInfo {
-            BackendInfo { name: "spoiling", device: String::new(), lanes: 1, threads: 1 }
-        }
-
-        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-            Ok(())
-        }
-
-        fn accumulate(
-            &mut self,
-            _: &RenderJob,
-            samples: Range<u64>,
-            film: &mut Film,
-            _: &AtomicBool,
-        ) -> Result<Stats, RenderError> {
-            if film.sample_count() > 0 {
-                return Err(RenderError::FilmLost { backend: "spoiling", reason: "a slip".to_owned() });
-            }
-            film.record(samples, 0)?;
-            Ok(Stats::default())
-        }
-    }
-
-    #[test]
-    fn a_film_that_was_spoiled_is_not_kept() {
-        let (_directory, path) = place();
-        let error = make(&mut Spoiling, &path, &small(), 64, |_| true).err().unwrap();
-        assert!(error.to_string().contains("spoiled the film"), "{error}");
-        assert!(!path.exists());
     }
 
     #[test]

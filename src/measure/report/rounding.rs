@@ -45,45 +45,7 @@ pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Roundi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{PixelSum, fixed_point};
-    use crate::sampling::pcg4d;
-
-    /// A film of two samples per pixel: `base` plus the value of `of` for each half.
-    fn film(of: impl Fn(u32, u32) -> f64) -> Film {
-        let mut film = Film::new(64, 64, 2);
-        for half in 0..2 {
-            for pixel in 0..64 * 64 {
-                let value = [0.5 + of(pixel, half); 3];
-                let sum: PixelSum = fixed_point(value).unwrap();
-                film.halves_mut()[half as usize][pixel as usize] = sum;
-            }
-        }
-        film.record(0..2, 0).unwrap();
-        film
-    }
-
-    /// Rare large differences, as from paths that took another way.
-    fn chance(pixel: u32, half: u32) -> f64 {
-        let [a, b, ..] = pcg4d([pixel, half, 3, 9]);
-        if !a.is_multiple_of(50) { 0.0 } else { f64::from(b) / 4_294_967_296.0 - 0.5 }
-    }
-
-    #[test]
-    fn a_systematic_difference_is_told_from_one_of_chance() {
-        let exact = film(|_, _| 0.0);
-        let found = rounding("s", "b", &film(|_, _| 1e-3), &exact);
-        assert!((found.floor.unwrap() - 1e-3).abs() < 1e-6 && (found.bias - 1e-3).abs() < 1e-6, "{found:?}");
-        let found = rounding("s", "b", &film(chance), &exact);
-        assert!(found.floor.is_none() && found.floor_limit < found.rms, "{found:?}");
-        let found = rounding("s", "b", &film(|p, h| chance(p, h) + 1e-2), &exact);
-        assert!((found.floor.unwrap() - 1e-2).abs() < 4e-3, "{found:?}");
-        // Halves that differ in opposite directions have nothing in common; the limit is a number all the same.
-        let found = rounding("s", "b", &film(|_, half| if half == 0 { 1e-3 } else { -1e-3 }), &exact);
-        assert!(found.floor.is_none() && found.floor_limit > 0.0, "{found:?}");
-        // Films that are equal to the bit have no floor.
-        let found = rounding("s", "b", &exact, &exact);
-        assert_eq!((found.bias, found.rms, found.floor, found.floor_limit), (0.0, 0.0, None, 0.0));
-    }
+    use crate::film::fixed_point;
 
     /// Three samples per pixel, two in the first half and one in the second. In sixteenths, the mean of a half is 8 and
     /// what `more` says of it.

@@ -308,22 +308,6 @@ mod tests {
     }
 
     #[test]
-    fn samplers_are_compared_on_the_same_backend() {
-        let all = [
-            runs("cpu", "independent", 0.16, 0.015),
-            runs("gpu", "sobol", 0.01, 0.01),
-            runs("cpu", "sobol", 0.04, 0.01),
-        ];
-        let found = sampler_ratios(&curves(&Data { runs: all.concat(), ..data() }, &[]));
-        assert_eq!(found.len(), 9);
-        for (power, ratio) in found.iter().enumerate() {
-            assert_eq!((ratio.backend.as_str(), ratio.samples), ("cpu", 1 << power));
-            assert!((ratio.at_equal_samples - 4.0).abs() < 1e-9, "{ratio:?}");
-            assert!((ratio.at_equal_time - 6.0).abs() < 1e-9, "{ratio:?}");
-        }
-    }
-
-    #[test]
     fn estimates_are_checked_from_16_samples_on() {
         let found = calibration(&Data { runs: runs("cpu", "sobol", 0.04, 0.01), ..data() });
         assert_eq!(found.iter().map(|row| row.samples).collect::<Vec<_>>(), [16, 32, 64, 128, 256]);

@@ -86,7 +86,15 @@ fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
 /// The points of a curve, with one row per number of samples.
 fn points(curve: &CurveSummary) -> String {
     let heads = [
-        "samples", "trace s", "wall s", "device s", "RMSE", "min to max", "relMSE", "FLIP", "estimate / actual",
+        "samples",
+        "trace s",
+        "wall s",
+        "device s",
+        "RMSE",
+        "min to max",
+        "relMSE",
+        "FLIP",
+        "estimate / actual",
     ];
     let rows = curve.points.iter().map(|point| {
         let [low, high] = point.range;
@@ -133,9 +141,8 @@ fn calibration(rows: &[Calibration]) -> String {
         return String::new();
     }
     let deviations = || rows.iter().map(|row| (row.ratio - 1.0).abs());
-    let heads = [
-        "scene", "backend", "sampler", "samples", "pictures", "predicted", "actual", "predicted / actual",
-    ];
+    let heads =
+        ["scene", "backend", "sampler", "samples", "pictures", "predicted", "actual", "predicted / actual"];
     let cells = rows.iter().map(|row| {
         vec![
             row.curve.scene.clone(),
@@ -181,7 +188,13 @@ fn rounding(data: &Data, curves: &[CurveSummary]) -> String {
         ]
     });
     let heads = [
-        "scene", "backend", "samples", "mean difference", "RMS difference", "floor", "samples until noise is as low",
+        "scene",
+        "backend",
+        "samples",
+        "mean difference",
+        "RMS difference",
+        "floor",
+        "samples until noise is as low",
     ];
     format!(
         "\n## The effect of rounding\n\nThe same samples in double precision and on each backend. The *difference* is that of \
@@ -228,12 +241,6 @@ mod tests {
     use super::super::summary::CurvePoint;
     use super::super::tests::{curve as key, data};
     use super::*;
-
-    #[test]
-    fn numbers_have_three_digits() {
-        let found = [1234.5, 12.34, 1.234, 0.1234, 0.001_234, 1.234e-5, 1.234e7].map(number);
-        assert_eq!(found, ["1234", "12.3", "1.23", "0.123", "0.00123", "1.23e-5", "1.23e7"]);
-    }
 
     fn curve(backend: &str, sampler: &str, seconds: f64) -> CurveSummary {
         let point = |samples, rmse| CurvePoint {

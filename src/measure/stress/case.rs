@@ -244,16 +244,6 @@ mod tests {
     const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
 
     #[test]
-    fn what_the_window_shows_is_larger_and_has_the_name_of_a_file() {
-        let case = Case::new(&FAMILY, "one", "nothing", one_ball());
-        let shown = case.shown();
-        assert_eq!([shown.settings.width, shown.settings.height], [600, 400]);
-        assert_eq!((shown.samples_per_pixel, shown.name.as_str()), (256, "balls-one"));
-        assert_eq!(case.title(), "balls/one");
-        assert_eq!(case.watched("A ball", "It is round.").title(), "A ball");
-    }
-
-    #[test]
     fn scenes_without_a_hierarchy_are_also_rendered_with_one() {
         for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
             let mut recipe = one_ball();

@@ -119,26 +119,3 @@ fn about(case: &CaseReport) -> Markup {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::families::build::one_ball;
-    use super::*;
-    use crate::stages::SurfaceRule;
-    use std::sync::Arc;
-
-    #[test]
-    fn the_page_shows_both_arithmetics_unless_the_book_would_take_too_long() {
-        let mut recipe = one_ball();
-        for (size, expected) in [([24, 16], SIZE), ([8, 8], [80, 80])] {
-            let [ours, book] = recipes(&sized(recipe.clone(), size, 4)).map(Option::unwrap);
-            assert_eq!(([ours.settings.width, ours.settings.height], ours.samples_per_pixel), (expected, 32));
-            assert_eq!((ours.rules, book.rules.surface), (recipe.rules, SurfaceRule::Book));
-        }
-        for (count, has_book) in [(5000, true), (5001, false)] {
-            let scene = Arc::make_mut(&mut recipe.scene);
-            scene.spheres = vec![scene.spheres[0]; count];
-            assert_eq!(recipes(&recipe).map(|recipe| recipe.is_some()), [true, has_book], "{count}");
-        }
-    }
-}

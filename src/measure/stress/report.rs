@@ -148,9 +148,9 @@ impl CaseReport {
     }
 
     fn markdown(&self) -> String {
-        let wrong = self.complaints().map(|m| {
-            format!("{} {}: **{}**", m.backend, m.form, m.verdict.name().to_lowercase())
-        });
+        let wrong = self
+            .complaints()
+            .map(|m| format!("{} {}: **{}**", m.backend, m.form, m.verdict.name().to_lowercase()));
         let wrong: Vec<String> = wrong.collect();
         let verdict = if wrong.is_empty() { "right".to_owned() } else { wrong.join(", ") };
         let [expected, off, rounding, time, book] = self.cells();
@@ -210,8 +210,12 @@ impl StressReport {
             "book's f32, f64",
         ];
         let sections = families().filter_map(|family| {
-            let rows: String =
-                self.cases.iter().filter(|case| case.family == family.title).map(CaseReport::markdown).collect();
+            let rows: String = self
+                .cases
+                .iter()
+                .filter(|case| case.family == family.title)
+                .map(CaseReport::markdown)
+                .collect();
             let head = markdown_table(&heads, heads.len(), [] as [Vec<&str>; 0]);
             (!rows.is_empty()).then(|| format!("\n### {}\n\n{}\n\n{head}{rows}", family.title, family.lesson))
         });

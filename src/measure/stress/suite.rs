@@ -285,19 +285,6 @@ mod tests {
     }
 
     #[test]
-    fn a_twin_is_timed_for_the_plain_form_and_a_shared_scene_is_rendered_once() {
-        let (mut suite, go_on) = (real(), AtomicBool::new(false));
-        let small = sized(tame(), [12, 8], 4);
-        let case = Case::new(families().next().unwrap(), "tame", "nothing", small.clone());
-        let case = case.expect(Expected::Same(Box::new(small)), "it is", 2e-6);
-        let report = suite.run(&case.beside(sized(one_ball(), [4, 4], 1)), &go_on);
-        assert_eq!((report.is_right(), report.measured[0].offset), (true, Some(0.0)), "{report:#?}");
-        let timed: Vec<bool> = report.measured.iter().map(|m| m.tame_seconds.is_some()).collect();
-        assert_eq!(timed, [true, true, false, false]);
-        assert_eq!(suite.shared.len(), 2);
-    }
-
-    #[test]
     fn a_backend_that_does_not_start_or_refuses_has_no_picture_and_is_not_right() {
         let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
         let go_on = AtomicBool::new(false);

@@ -1,9 +1,9 @@
 //! Closed rooms, which no light may leave or enter, and the eye on a surface or next to it.
 
 use super::build::{Ball, deep, eye, glass, matte, metal, moved, picture, sized};
+use crate::measure::stress::case::{Case, Expected, Family};
 use crate::recipe::Recipe;
 use crate::scene::Material;
-use crate::measure::stress::case::{Case, Expected, Family};
 use glam::DVec3;
 
 /// The eye in a closed room.

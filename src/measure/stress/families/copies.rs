@@ -3,9 +3,9 @@
 use super::build::{
     Ball, around, grouped, in_front, matte, named, of_scene, one_ball, picture, scene, sized,
 };
+use crate::measure::stress::case::{Case, Expected, Family};
 use crate::recipe::Recipe;
 use crate::scene::{Material, Scene, Sky};
-use crate::measure::stress::case::{Case, Expected, Family};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -1,9 +1,9 @@
 //! The whole scene moved or scaled, and extreme cameras.
 
 use super::build::{eye, glass, matte, moved, of_scene, scene, sized, tame};
+use crate::measure::stress::case::{Case, Expected, Family};
 use crate::recipe::Recipe;
 use crate::scene::{Camera, Material, Sky};
-use crate::measure::stress::case::{Case, Expected, Family};
 use glam::DVec3;
 
 /// Translations.
