@@ -28,8 +28,6 @@ pub struct Picture {
     pub film: Option<Arc<Film>>,
     /// The film's job.
     pub job: Option<RenderJob>,
-    /// The recipe that the file contains.
-    pub recipe: Option<Recipe>,
 }
 
 impl Picture {
@@ -53,7 +51,7 @@ impl Picture {
             check_memory(film.width(), film.height(), 0)?;
             let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
             let about = format!("film, {}", about_film(&film, recipe.as_ref()));
-            return Ok(Picture { recipe, job, ..Picture::of_film(name, about, film) });
+            return Ok(Picture { job, ..Picture::of_film(name, about, film) });
         }
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let read = read_picture(path, encoding)?;
@@ -68,7 +66,6 @@ impl Picture {
             limit: read.limit,
             film: None,
             job: None,
-            recipe,
         })
     }
 
@@ -77,7 +74,7 @@ impl Picture {
         let (width, height) = (film.width(), film.height());
         let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
         let (limit, film) = (f64::INFINITY, Some(film));
-        Picture { name, about, width, height, pixels, steps: None, limit, film, job: None, recipe: None }
+        Picture { name, about, width, height, pixels, steps: None, limit, film, job: None }
     }
 
     /// The picture of a film that the program itself has rendered from `recipe`.
@@ -87,7 +84,7 @@ impl Picture {
     pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
         check_memory(film.width(), film.height(), 0)?;
         let about = format!("film, {}", about_film(&film, Some(&recipe)));
-        Ok(Picture { job: recipe.job().ok(), recipe: Some(recipe), ..Picture::of_film(name, about, film) })
+        Ok(Picture { job: recipe.job().ok(), ..Picture::of_film(name, about, film) })
     }
 
     /// A channel's value; `None` is the largest value of an integer format.

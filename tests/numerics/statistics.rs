@@ -109,7 +109,7 @@ fn case_30_samplers_agree() {
     let mut of = |sampler, seed| render(&mut renderer, &three(160, 96, sampler, seed), 0..256);
     let side = |film| Picture::of_film(String::new(), String::new(), film);
     let (sobol, independent) = (side(of(SamplerKind::Sobol, 5)), side(of(SamplerKind::Independent, 5)));
-    let found = compare(&sobol, &independent, None);
+    let found = compare(&sobol, &independent);
     println!(
         "case 30: {:.3} x noise, excess {:.2}, largest {:.2}",
         found.times_noise(),
@@ -121,5 +121,5 @@ fn case_30_samplers_agree() {
     // Three thousandths more light are found.
     let mut brighter = independent;
     brighter.pixels.iter_mut().flatten().for_each(|x| *x *= 1.003);
-    assert!(!compare(&sobol, &brighter, None).is_equal());
+    assert!(!compare(&sobol, &brighter).is_equal());
 }

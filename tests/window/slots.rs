@@ -211,7 +211,7 @@ fn the_verdict_is_that_of_compare() {
         let (headline, text) = verdict(&mut harness);
         assert_eq!(headline, expected, "{text}");
         let sides = [&first, &second].map(|path| Picture::read(path, Encoding::Srgb).unwrap());
-        let by_compare = text(&sides, &compare_sides(&sides, None).unwrap());
+        let by_compare = text(&sides, &compare_sides(&sides).unwrap());
         let after_names = |text: &str| text.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(after_names(&text), after_names(&by_compare));
     }

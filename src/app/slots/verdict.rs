@@ -168,7 +168,7 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
         pictures::Picture::of_rendered(name, recipe, film).map_err(|error| error.to_string())
     });
     let sides = [first?, second?];
-    let comparison = compare::compare_sides(&sides, None).map_err(|error| error.to_string())?;
+    let comparison = compare::compare_sides(&sides).map_err(|error| error.to_string())?;
     let headline = match (comparison.is_equal(), comparison.is_same) {
         (true, true) => "Identical to the bit",
         (true, false) => "Only noise",

@@ -1,14 +1,15 @@
-//! Pictures as they should be if a certain mistake was made, or none, and how near mine comes to them.
+//! Mistakes, pictures as they should be if one was made, or none, and how near mine comes to them.
 
 use super::Mine;
-use super::mistakes::Mistake;
 use super::tracer::{Steps, Tracer};
 use crate::recipe::Recipe;
 use crate::render::{RenderSettings, Renderer, SamplerKind};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::stages::Transfer;
+use crate::scene::{Camera, Material, Scene};
+use crate::stages::{Rules, Transfer};
 use crate::statistics::blocks::{BlockTest, Differences, Noise};
 use anyhow::Result;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// By how many deviations the sum of squares of a right picture may differ. Noise alone stays below 4; the rest is for
@@ -17,6 +18,84 @@ const EXCESS_LIMIT: f64 = 10.0;
 
 /// By what factor a block of a right picture may exceed the limit for normal noise.
 const LARGEST_FACTOR: f64 = 1.6;
+
+/// A mistake that readers of the book make.
+#[derive(Debug)]
+pub struct Mistake {
+    /// The identifier in JSON.
+    pub id: &'static str,
+    /// The section of the book to read again.
+    pub section: &'static str,
+    /// The mistake in a few words.
+    pub title: &'static str,
+    /// What to change.
+    pub remedy: &'static str,
+    /// Whether it can show in a picture of a recipe.
+    pub applies: fn(&Recipe) -> bool,
+    pub change: Change,
+}
+
+/// What a mistake changes, so that its picture can be rendered.
+#[derive(Debug)]
+pub enum Change {
+    /// How the linear picture becomes bytes.
+    Written(fn(&mut Written)),
+    /// The recipe that the program's own tracer renders.
+    Recipe(fn(&mut Recipe)),
+    Rules(fn(&mut Rules)),
+    Camera(fn(&mut Camera)),
+    Scene(fn(&mut Scene)),
+    Materials(fn(&mut Material)),
+    /// A step of the book's program, as the plain tracer follows it.
+    Steps(fn(&mut Steps)),
+    /// One of several things.
+    Several(fn(&Recipe) -> Vec<Hypothesis>),
+    /// As inside, but the mean of a block hardly shows it: it is looked for at edges, pixel by pixel.
+    AtEdges(&'static Change),
+    /// As inside, but the bytes show it next to the right picture, even where blocks differ only by noise.
+    InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
+}
+
+impl Mistake {
+    /// Its pictures; several if it has variants.
+    pub fn pictures(&'static self, recipe: &Recipe) -> Vec<Hypothesis> {
+        let blame = |picture| Hypothesis { mistake: Some(self), ..picture };
+        self.change.pictures(recipe).into_iter().map(blame).collect()
+    }
+
+    pub fn is_at_edges(&self) -> bool {
+        matches!(self.change, Change::AtEdges(_))
+    }
+}
+
+impl Change {
+    fn pictures(&self, recipe: &Recipe) -> Vec<Hypothesis> {
+        let mut picture = Hypothesis::right(recipe);
+        let mut changed = recipe.clone();
+        match self {
+            Change::Several(pictures) => return pictures(recipe),
+            Change::AtEdges(change) | Change::InBytes(_, change) => return change.pictures(recipe),
+            Change::Written(change) => {
+                change(&mut picture.written);
+                return vec![picture];
+            }
+            Change::Steps(change) => {
+                let mut steps = Steps::OF_THE_BOOK;
+                change(&mut steps);
+                return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
+            }
+            Change::Recipe(change) => change(&mut changed),
+            Change::Rules(change) => change(&mut changed.rules),
+            Change::Camera(change) => change(&mut changed.camera),
+            Change::Scene(change) => change(Arc::make_mut(&mut changed.scene)),
+            Change::Materials(change) => {
+                let materials = &mut Arc::make_mut(&mut changed.scene).materials;
+                materials.iter_mut().for_each(|named| change(&mut named.material));
+            }
+        }
+        vec![Hypothesis { making: Making::Fast(Box::new(changed)), ..picture }]
+    }
+}
 
 /// A picture that could be mine: how its linear values are made, and how they become bytes.
 #[derive(Clone, Debug)]

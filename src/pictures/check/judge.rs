@@ -1,9 +1,8 @@
 //! Decides which stage a picture shows, and whether it is right or which mistake explains it best.
 
 use super::Mine;
-use super::details::at_edges;
-use super::hypothesis::{Compared, Hypothesis, Making, Studio, compare};
-use super::mistakes::{Change, MISTAKES, Mistake};
+use super::hypothesis::{Change, Compared, Hypothesis, Making, Mistake, Studio, compare};
+use super::mistakes::{MISTAKES, applying_to};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
 use anyhow::Result;
@@ -31,6 +30,12 @@ const SMALL_WIDTH: u32 = 64;
 
 /// A root mean square difference below which a stage is taken for found, display values.
 const FOUND: f64 = 0.03;
+
+/// Least difference of a pixel's neighbours at an edge, linear radiance.
+const EDGE: f64 = 0.1;
+
+/// A mistake must leave less than this part of the squared error at edges.
+const BETTER: f64 = 0.8;
 
 /// The finding about a picture.
 #[derive(Clone, Debug)]
@@ -165,8 +170,52 @@ impl<'a> Trial<'a> {
     }
 }
 
+/// Decides pixel by pixel among the right picture and those that differ from it at edges only.
+pub(super) fn at_edges(
+    mine: &Mine,
+    studio: &mut Studio,
+    right: &Compared,
+    samples: u64,
+) -> Result<Option<Compared>> {
+    let recipe = studio.recipe().clone();
+    let mistakes = applying_to(&recipe).filter(|mistake| mistake.is_at_edges());
+    let edges = edges(&right.expected, [mine.width as usize, mine.height as usize]);
+    let error = |expected: &[[f64; 3]]| -> f64 {
+        let square = |(index, channel): &(usize, usize)| {
+            let row = index / mine.width as usize;
+            let byte = mine.bytes[*index][*channel];
+            let [linear, _] = right.hypothesis.written.linear(byte, row, mine.height as usize);
+            (linear - expected[*index][*channel]).powi(2)
+        };
+        edges.iter().map(square).sum()
+    };
+    let mut best = (BETTER * error(&right.expected), None);
+    for hypothesis in mistakes.flat_map(|mistake| mistake.pictures(&recipe)) {
+        let expected = studio.render(&hypothesis, samples)?;
+        let error = error(&expected);
+        if error < best.0 {
+            best = (error, Some((hypothesis, expected)));
+        }
+    }
+    Ok(best.1.map(|(hypothesis, expected)| compare(mine, hypothesis, expected)))
+}
+
+/// Pixels and channels with an edge.
+fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<(usize, usize)> {
+    let inside = |index: &usize| {
+        let (column, row) = (index % width, index / width);
+        column > 0 && row > 0 && column + 1 < width && row + 1 < height
+    };
+    let is_edge = |(index, channel): &(usize, usize)| {
+        let step = |by: usize| (expected[index + by][*channel] - expected[index - by][*channel]).abs();
+        step(1).max(step(width)) >= EDGE
+    };
+    let places = (0..expected.len()).filter(inside).flat_map(|index| (0..3).map(move |c| (index, c)));
+    places.filter(is_edge).collect()
+}
+
 fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
-    Mistake::applying_to(recipe).flat_map(|mistake| mistake.pictures(recipe)).collect()
+    applying_to(recipe).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
 /// The stages that can be checked. The small balls of the final picture are placed at random, so every program's picture

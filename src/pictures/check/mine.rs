@@ -1,7 +1,7 @@
 //! Reads 8-bit pictures that readers' programs wrote, also those with damages that can be repaired.
 
 use crate::files;
-use crate::output::{Encoding, decode_picture};
+use crate::output::{Encoding, ReadPicture, decode_picture};
 use crate::stages::Transfer;
 use anyhow::{Result, anyhow};
 use std::borrow::Cow;
@@ -67,10 +67,9 @@ impl Mine {
     /// What is wrong, and what to do.
     pub fn decode(bytes: &[u8]) -> Result<Mine, String> {
         let (file, format, damages) = repaired(bytes)?;
-        // Bytes are wanted, so their curve does not matter.
-        let picture =
-            decode_picture(Cursor::new(&*file), file.len() as u64, Encoding::Book(Transfer::Linear))
-                .map_err(|reason| format!("{reason}; write it again"))?;
+        let picture = decoded(&file).map_err(|reason| {
+            format!("{reason}; write all rows, in binary mode, and not through PowerShell's >, which changes bytes")
+        })?;
         check_size(picture.width.into(), picture.height.into())?;
         let steps = picture.steps.ok_or("it holds floating-point numbers; write 8 bits per channel")?;
         let byte =
@@ -96,6 +95,11 @@ impl Mine {
         );
         Some(format!("all its pixels are {r} {g} {b}, so there is nothing to compare; {remedy}"))
     }
+}
+
+fn decoded(file: &[u8]) -> std::io::Result<ReadPicture> {
+    // Bytes are wanted, so their curve does not matter.
+    decode_picture(Cursor::new(file), file.len() as u64, Encoding::Book(Transfer::Linear))
 }
 
 /// A well-formed file with the same picture, its original format, and what was wrong.
@@ -130,7 +134,16 @@ fn repaired(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, &'static str, Vec<Damage>), 
             }
             (bytes, "PNG")
         }
-        [b'P', b'6', ..] => (Cow::Owned(repaired_binary(&bytes, damaged)?), "P6"),
+        [b'P', b'6', ..] => {
+            let repaired = without_added_bytes(&bytes).filter(|file| decoded(file).is_ok());
+            if repaired.is_some() {
+                damaged(
+                    "the file was written as text: every byte 10 has become 13 and 10".to_owned(),
+                    "open the file in binary mode: std::ofstream(name, std::ios::binary), or fopen(name, \"wb\")",
+                );
+            }
+            (repaired.map_or(bytes, Cow::Owned), "P6")
+        }
         _ => (Cow::Owned(repaired_text(&bytes, damaged)?), "P3"),
     };
     Ok((bytes, format, damages))
@@ -164,59 +177,17 @@ fn check_size(width: u64, height: u64) -> Result<(), String> {
 
 /// How many pixels of a PNG are not opaque. 0 if it cannot be read, which is reported when the picture is.
 fn transparent_pixels(bytes: &[u8]) -> usize {
-    let mut reader = image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png);
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(16 * PIXEL_LIMIT);
-    reader.limits(limits);
-    reader.decode().map_or(0, |image| image.to_rgba8().pixels().filter(|pixel| pixel.0[3] < 255).count())
+    image::load_from_memory_with_format(bytes, image::ImageFormat::Png)
+        .map_or(0, |image| image.to_rgba8().pixels().filter(|pixel| pixel.0[3] < 255).count())
 }
 
 const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
 
-/// Reads width, height and largest value of a PPM and returns them with the rest of the file.
-fn header(mut rest: &[u8]) -> Option<([u64; 3], &[u8])> {
-    let mut numbers = [0; 3];
-    for number in &mut numbers {
-        loop {
-            match rest {
-                [first, after @ ..] if first.is_ascii_whitespace() => rest = after,
-                [b'#', ..] => rest = &rest[rest.iter().position(|byte| *byte == b'\n')?..],
-                _ => break,
-            }
-        }
-        let digits = rest.iter().position(|byte| !byte.is_ascii_digit()).unwrap_or(rest.len());
-        *number = std::str::from_utf8(&rest[..digits]).ok()?.parse().ok()?;
-        rest = &rest[digits..];
-    }
-    Some((numbers, rest))
-}
-
-/// A P6 without the bytes that were added because it was written as text.
-fn repaired_binary(file: &[u8], mut damaged: impl FnMut(String, &'static str)) -> Result<Vec<u8>, String> {
-    let ([width, height, most], rest) =
-        header(&file[2..]).ok_or_else(|| format!("its header is not complete; {HEADER}"))?;
-    check_size(width, height)?;
-    let needed = if most > 255 { 6 } else { 3 } * (width * height) as usize;
-    let is_cr_lf = rest.starts_with(b"\r\n");
-    let data = rest.get(if is_cr_lf { 2 } else { 1 }..).unwrap_or_default();
-    let mut pixels = Cow::Borrowed(data);
-    if data.len() > needed && is_cr_lf {
-        damaged(
-            "the file was written as text: every byte 10 has become 13 and 10".to_owned(),
-            "open the file in binary mode: std::ofstream(name, std::ios::binary), or fopen(name, \"wb\")",
-        );
-        let is_added = |index: &usize| data[*index] == b'\r' && data.get(index + 1) == Some(&b'\n');
-        pixels = (0..data.len()).filter(|index| !is_added(index)).map(|index| data[index]).collect();
-    }
-    if pixels.len() < needed {
-        return Err(format!(
-            "{width} x {height} pixels need {needed} bytes, but there are {}; write all rows, in binary mode, and not \
-             through PowerShell's >, which changes bytes",
-            pixels.len()
-        ));
-    }
-    let header = format!("P6 {width} {height} {most}\n");
-    Ok([header.as_bytes(), &pixels[..needed]].concat())
+/// The bytes before a program on Windows wrote them as text, if it did: the lines of the header then end in 13 and 10.
+fn without_added_bytes(bytes: &[u8]) -> Option<Vec<u8>> {
+    let is_added = |index: usize| bytes[index] == b'\r' && bytes.get(index + 1) == Some(&b'\n');
+    let kept = || (0..bytes.len()).filter(|index| !is_added(*index)).map(|index| bytes[index]);
+    bytes.starts_with(b"P6\r\n").then(|| kept().collect())
 }
 
 /// A P3 as P6, without what does not belong to it.

@@ -1,52 +1,13 @@
 //! The mistakes that readers of the book are known to make: what is said about each, when it can show, and how to render
 //! it. A mistake is one entry of the table.
 
-use super::Mine;
-use super::details::{is_times_255, is_truncated};
-use super::hypothesis::{Compared, Curve, Hypothesis, Making, Written};
-use super::tracer::{Random, Steps};
+use super::bytes::{is_times_255, is_truncated};
+use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
+use super::tracer::Random;
 use crate::recipe::Recipe;
 use crate::render::RenderSettings;
-use crate::scene::{Camera, Material, Scene};
-use crate::stages::{DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
-use std::sync::Arc;
-
-/// A mistake that readers of the book make.
-#[derive(Debug)]
-pub struct Mistake {
-    /// The identifier in JSON.
-    pub id: &'static str,
-    /// The section of the book to read again.
-    pub section: &'static str,
-    /// The mistake in a few words.
-    pub title: &'static str,
-    /// What to change.
-    pub remedy: &'static str,
-    /// Whether it can show in a picture of a recipe.
-    pub applies: fn(&Recipe) -> bool,
-    pub change: Change,
-}
-
-/// What a mistake changes, so that its picture can be rendered.
-#[derive(Debug)]
-pub enum Change {
-    /// How the linear picture becomes bytes.
-    Written(fn(&mut Written)),
-    /// The recipe that the program's own tracer renders.
-    Recipe(fn(&mut Recipe)),
-    Rules(fn(&mut Rules)),
-    Camera(fn(&mut Camera)),
-    Scene(fn(&mut Scene)),
-    Materials(fn(&mut Material)),
-    /// A step of the book's program, as the plain tracer follows it.
-    Steps(fn(&mut Steps)),
-    /// One of several things.
-    Several(fn(&Recipe) -> Vec<Hypothesis>),
-    /// As inside, but the mean of a block hardly shows it: it is looked for at edges, pixel by pixel.
-    AtEdges(&'static Change),
-    /// As inside, but the bytes show it next to the right picture, even where blocks differ only by noise.
-    InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
-}
+use crate::scene::{Material, Scene};
+use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule, Transfer};
 
 /// All mistakes, those of the file and the camera first.
 pub static MISTAKES: [Mistake; 34] = [
@@ -345,50 +306,9 @@ pub static MISTAKES: [Mistake; 34] = [
     },
 ];
 
-impl Mistake {
-    /// Its pictures; several if it has variants.
-    pub fn pictures(&'static self, recipe: &Recipe) -> Vec<Hypothesis> {
-        let blame = |picture| Hypothesis { mistake: Some(self), ..picture };
-        self.change.pictures(recipe).into_iter().map(blame).collect()
-    }
-
-    pub fn is_at_edges(&self) -> bool {
-        matches!(self.change, Change::AtEdges(_))
-    }
-
-    /// The mistakes that can show in `recipe`.
-    pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
-        MISTAKES.iter().filter(|mistake| (mistake.applies)(recipe))
-    }
-}
-
-impl Change {
-    fn pictures(&self, recipe: &Recipe) -> Vec<Hypothesis> {
-        let mut picture = Hypothesis::right(recipe);
-        let mut changed = recipe.clone();
-        match self {
-            Change::Several(pictures) => return pictures(recipe),
-            Change::AtEdges(change) | Change::InBytes(_, change) => return change.pictures(recipe),
-            Change::Written(change) => {
-                change(&mut picture.written);
-                return vec![picture];
-            }
-            Change::Steps(change) => {
-                let mut steps = Steps::OF_THE_BOOK;
-                change(&mut steps);
-                return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
-            }
-            Change::Recipe(change) => change(&mut changed),
-            Change::Rules(change) => change(&mut changed.rules),
-            Change::Camera(change) => change(&mut changed.camera),
-            Change::Scene(change) => change(Arc::make_mut(&mut changed.scene)),
-            Change::Materials(change) => {
-                let materials = &mut Arc::make_mut(&mut changed.scene).materials;
-                materials.iter_mut().for_each(|named| change(&mut named.material));
-            }
-        }
-        vec![Hypothesis { making: Making::Fast(Box::new(changed)), ..picture }]
-    }
+/// The mistakes that can show in `recipe`.
+pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
+    MISTAKES.iter().filter(|mistake| (mistake.applies)(recipe))
 }
 
 fn swapped(recipe: &Recipe, order: [usize; 3]) -> Hypothesis {

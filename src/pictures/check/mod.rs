@@ -4,17 +4,17 @@
 //! camera can express it, otherwise by a plain tracer that follows the book. A picture is right if it differs from ours
 //! by noise only; otherwise the mistake whose picture comes nearest is named.
 
-mod details;
+mod bytes;
 mod hypothesis;
 mod judge;
 mod mine;
 mod mistakes;
 mod tracer;
 
-pub use hypothesis::Compared;
+pub use hypothesis::{Compared, Mistake};
 pub use judge::{Finding, judge, stages};
 pub use mine::{Damage, Mine};
-pub use mistakes::{MISTAKES, Mistake};
+pub use mistakes::MISTAKES;
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use crate::cli::CheckOptions;

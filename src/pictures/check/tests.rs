@@ -1,8 +1,9 @@
 //! Mistakes, their pictures, what blocks cannot show, and what is said.
 
-use super::details::{at_edges, is_times_255, is_truncated};
-use super::hypothesis::{Compared, Curve, Hypothesis, Making, Studio, compare};
-use super::mistakes::{MISTAKES, Mistake, bubble};
+use super::bytes::{is_times_255, is_truncated};
+use super::hypothesis::{Compared, Curve, Hypothesis, Making, Mistake, Studio, compare};
+use super::judge::at_edges;
+use super::mistakes::{MISTAKES, bubble};
 use super::tracer::Steps;
 use super::*;
 use crate::recipe::Recipe;

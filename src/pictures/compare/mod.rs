@@ -1,11 +1,9 @@
 //! `weekender compare`: whether two pictures are the same except for noise.
 
 mod heat_map;
-mod paired;
 mod verdict;
 
-pub use paired::{PairedSamples, PairedSums};
-pub use verdict::{Comparison, Evidence, NonFinite, ROUNDING_BIAS, compare};
+pub use verdict::{Comparison, NonFinite, ROUNDING_BIAS, compare};
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use super::picture::{Picture, about_film, check_memory};
@@ -14,11 +12,9 @@ use crate::cli::{CompareOptions, CompareSide};
 use crate::failure::Failure;
 use crate::files::replace_file;
 use crate::film::Film;
-use crate::recipe::Recipe;
-use crate::render::{RenderJob, RenderSettings, Renderer};
+use crate::render::{RenderSettings, Renderer};
 use crate::statistics::blocks::{Block, SUM_DEVIATIONS};
 use anyhow::{Context, Result, bail};
-use paired::PARTED;
 use serde_json::json;
 use std::ops::Range;
 use std::process::ExitCode;
@@ -39,8 +35,8 @@ pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
 fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let json = options.json.as_ref();
     check_outputs(json, options.heat_map.as_deref())?;
-    let (sides, paired) = sides(options)?;
-    let comparison = compare_sides(&sides, paired)?;
+    let sides = sides(options)?;
+    let comparison = compare_sides(&sides)?;
     if let Some(path) = &options.heat_map {
         let [a, b] = &sides;
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
@@ -53,20 +49,13 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
 ///
 /// # Errors
 /// If their sizes differ.
-pub fn compare_sides(sides: &[Picture; 2], paired: Option<PairedSamples>) -> Result<Comparison> {
+pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
     let [a, b] = sides;
     if (a.width, a.height) != (b.width, b.height) {
-        bail!(
-            "{} has {}x{} pixels and {} has {}x{}; render both at the same size",
-            a.name,
-            a.width,
-            a.height,
-            b.name,
-            b.width,
-            b.height
-        );
+        let [a, b] = [a, b].map(|side| format!("{} has {}x{} pixels", side.name, side.width, side.height));
+        bail!("{a} and {b}; render both at the same size");
     }
-    let mut comparison = compare(a, b, paired);
+    let mut comparison = compare(a, b);
     comparison.notes.extend(note_on_jobs(a, b).map(str::to_owned));
     Ok(comparison)
 }
@@ -91,85 +80,27 @@ enum Opened {
     Backend(Rendering),
 }
 
-/// Both sides. If backends render both, also their comparison sample by sample.
-fn sides(options: &CompareOptions) -> Result<([Picture; 2], Option<PairedSamples>)> {
+fn sides(options: &CompareOptions) -> Result<[Picture; 2]> {
     let open = |side: &CompareSide| match side {
         CompareSide::File(path) => Ok(Opened::Read(Box::new(Picture::read(path, options.encoding)?))),
         CompareSide::Backend { name, choice } => Rendering::start(choice, name).map(Opened::Backend),
     };
     let [first, second] = &options.sides;
     Ok(match (open(first)?, open(second)?) {
-        (Opened::Read(a), Opened::Read(b)) => ([*a, *b], None),
+        (Opened::Read(a), Opened::Read(b)) => [*a, *b],
         (Opened::Read(a), Opened::Backend(mut b)) => {
-            let b = beside(options, &a, &mut b)?;
-            ([*a, b], None)
+            let b = b.beside(Some(&a), options)?;
+            [*a, b]
         }
-        (Opened::Backend(mut a), Opened::Read(b)) => {
-            let a = beside(options, &b, &mut a)?;
-            ([a, *b], None)
-        }
+        (Opened::Backend(mut a), Opened::Read(b)) => [a.beside(Some(&b), options)?, *b],
         (Opened::Backend(mut a), Opened::Backend(mut b)) => {
-            let samples = options.samples.unwrap_or(options.recipe.samples_per_pixel);
-            let (sides, paired) = both(&options.recipe, samples, [&mut a, &mut b])?;
-            (sides, Some(paired))
+            if a.name == b.name {
+                a.name.push_str(" (first)");
+                b.name.push_str(" (second)");
+            }
+            [a.beside(None, options)?, b.beside(None, options)?]
         }
     })
-}
-
-/// Renders the counterpart of `read` at its size, and with the same samples if `read` is a film of the same job.
-fn beside(options: &CompareOptions, read: &Picture, rendering: &mut Rendering) -> Result<Picture> {
-    let mut recipe = options.recipe.clone();
-    (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
-    let job = recipe.job()?;
-    job.check_memory(2)?;
-    check_memory(read.width, read.height, 2)?;
-    let ranges: Vec<Range<u64>> = match (&read.film, &read.job) {
-        (Some(film), Some(other)) if *other == job && options.samples.is_none() => {
-            film.samples().iter().collect()
-        }
-        (film, _) => {
-            let of_film = film.as_ref().map(|film| film.sample_count());
-            vec![0..options.samples.or(of_film).unwrap_or(recipe.samples_per_pixel)]
-        }
-    };
-    let mut film = new_film(&job)?;
-    for range in ranges {
-        film.merge(&rendering.samples(&job, range)?)?;
-    }
-    Ok(rendering.picture(&recipe, &job, film))
-}
-
-/// Renders the same samples with both backends.
-fn both(
-    recipe: &Recipe,
-    samples: u64,
-    renderings: [&mut Rendering; 2],
-) -> Result<([Picture; 2], PairedSamples)> {
-    let job = recipe.job()?;
-    let RenderSettings { width, height, .. } = *job.settings();
-    // Two films of all samples, and two of the last sample.
-    job.check_memory(4)?;
-    check_memory(width, height, 4)?;
-    let (mut film_a, mut film_b) = (new_film(&job)?, new_film(&job)?);
-    let mut sums = PairedSums::default();
-    let [a, b] = renderings;
-    for index in 0..samples {
-        let (sample_a, sample_b) = (a.samples(&job, index..index + 1)?, b.samples(&job, index..index + 1)?);
-        sums.add(&sample_a, &sample_b);
-        film_a.merge(&sample_a)?;
-        film_b.merge(&sample_b)?;
-    }
-    let mut sides = [a.picture(recipe, &job, film_a), b.picture(recipe, &job, film_b)];
-    if sides[0].name == sides[1].name {
-        sides[0].name.push_str(" (first)");
-        sides[1].name.push_str(" (second)");
-    }
-    Ok((sides, sums.finish()))
-}
-
-fn new_film(job: &RenderJob) -> Result<Film> {
-    let RenderSettings { width, height, .. } = *job.settings();
-    Ok(Film::try_new(width, height, job.settings().half_count())?)
 }
 
 /// A backend that renders a side.
@@ -184,17 +115,30 @@ impl Rendering {
         Ok(Rendering { name: name.to_owned(), renderer })
     }
 
-    fn samples(&mut self, job: &RenderJob, range: Range<u64>) -> Result<Film> {
-        let mut film = new_film(job)?;
-        self.renderer.accumulate(job, range, &mut film, &AtomicBool::new(false))?;
-        Ok(film)
-    }
-
-    fn picture(&self, recipe: &Recipe, job: &RenderJob, film: Film) -> Picture {
+    /// Renders the counterpart of `read` at its size, and with the same samples if `read` is a film of the same job. Two
+    /// backends render what the options say.
+    fn beside(&mut self, read: Option<&Picture>, options: &CompareOptions) -> Result<Picture> {
+        let mut recipe = options.recipe.clone();
+        if let Some(read) = read {
+            (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
+        }
+        let job = recipe.job()?;
+        let RenderSettings { width, height, .. } = *job.settings();
+        job.check_memory(2)?;
+        check_memory(width, height, 2)?;
+        let is_same_job = read.and_then(|read| read.job.as_ref()) == Some(&job);
+        let ranges: Vec<Range<u64>> = match (options.samples, read.and_then(|read| read.film.as_deref())) {
+            (None, Some(film)) if is_same_job => film.samples().iter().collect(),
+            (None, Some(film)) => vec![0..film.sample_count()],
+            (samples, _) => vec![0..samples.unwrap_or(recipe.samples_per_pixel)],
+        };
+        let mut film = Film::try_new(width, height, job.settings().half_count())?;
+        for range in ranges {
+            self.renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false))?;
+        }
         let info = self.renderer.info();
-        let about = format!("{} {}, {}", info.name, info.device, about_film(&film, Some(recipe)));
-        let (job, recipe) = (Some(job.clone()), Some(recipe.clone()));
-        Picture { job, recipe, ..Picture::of_film(self.name.clone(), about, film) }
+        let about = format!("{} {}, {}", info.name, info.device, about_film(&film, Some(&recipe)));
+        Ok(Picture { job: Some(job), ..Picture::of_film(self.name.clone(), about, film) })
     }
 }
 
@@ -203,7 +147,7 @@ pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
     let Comparison { test, rms, bias, .. } = comparison;
     let side = |side: &Picture| format!("{}: {}", side.name, side.about);
     let mut text = vec![("first", side(&sides[0])), ("second", side(&sides[1]))];
-    let measure = if comparison.evidence == Evidence::Halves { "noise" } else { "noise, in blocks" };
+    let measure = if comparison.noise.is_some() { "noise" } else { "noise, in blocks" };
     let noise = comparison.noise.map_or_else(String::new, |noise| format!("; noise of both {noise:.2e}"));
     let deviation = comparison.bias_deviation.map_or_else(String::new, |x| format!(" ± {x:.1e}"));
     let times = comparison.times_noise();
@@ -211,15 +155,6 @@ pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
         "difference",
         format!("{times:.2} x {measure} ({rms:.2e} RMS{noise}), {bias:+.1e}{deviation} on average"),
     ));
-    if let Some(paired) = &comparison.paired {
-        let PairedSamples { count, parted, rms, bias } = paired;
-        let words = format!(
-            "{parted} of {count} ({:.1e}) differ by more than {PARTED:.0e}: a different path; the others by {rms:.1e} RMS, \
-             {bias:+.1e} on average",
-            paired.parted_share()
-        );
-        text.push(("samples", words));
-    }
     let blocks = format!(
         "{} of about 8x8 pixels: sum of z^2 {:+.1} deviations from that of noise (at most {SUM_DEVIATIONS:+.0}), largest |z| \
          {:.2} (at most {:.2})",
@@ -264,6 +199,7 @@ fn figures(sides: &[Picture; 2], comparison: &Comparison) -> serde_json::Value {
         "height": sides[0].height,
         "is_equal": comparison.is_equal(),
         "times_noise": comparison.times_noise(),
+        "evidence": if comparison.noise.is_some() { "halves" } else { "spread" },
         "blocks": test.blocks.len(),
         "known_blocks": test.counts,
         "sums_of_squares": test.sums,

@@ -51,23 +51,23 @@ fn bytes(value: impl Fn(u32) -> f64) -> Picture {
 }
 
 fn both_ways(a: &Picture, b: &Picture) -> [Comparison; 2] {
-    [compare(a, b, None), compare(b, a, None)]
+    [compare(a, b), compare(b, a)]
 }
 
 #[test]
 fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
-    let noise = compare(&noisy(1, 0.0), &noisy(2, 0.0), None);
-    assert!(noise.is_equal() && noise.evidence == Evidence::Halves, "{:?}", noise.reasons);
+    let noise = compare(&noisy(1, 0.0), &noisy(2, 0.0));
+    assert!(noise.is_equal(), "{:?}", noise.reasons);
     assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
-    assert!(compare(&noisy(1, 0.0), &noisy(2, 2e-3), None).is_equal());
-    let same = compare(&noisy(1, 0.0), &noisy(1, 2e-3), None);
+    assert!(compare(&noisy(1, 0.0), &noisy(2, 2e-3)).is_equal());
+    let same = compare(&noisy(1, 0.0), &noisy(1, 2e-3));
     assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
-    assert!(compare(&noisy(1, 0.0), &noisy(1, 1e-6), None).is_equal());
-    assert!(compare(&noisy(1, 0.0), &noisy(1, 0.0), None).is_same);
+    assert!(compare(&noisy(1, 0.0), &noisy(1, 1e-6)).is_equal());
+    assert!(compare(&noisy(1, 0.0), &noisy(1, 0.0)).is_same);
     // Without noise, pictures are equal or infinitely far apart.
     let dark = film_of(|_, _| 0.25);
-    assert_eq!(compare(&dark, &dark, None).times_noise(), 0.0);
-    let found = compare(&dark, &film_of(|_, pixel| 0.25 + f64::from(pixel % 2)), None);
+    assert_eq!(compare(&dark, &dark).times_noise(), 0.0);
+    let found = compare(&dark, &film_of(|_, pixel| 0.25 + f64::from(pixel % 2)));
     assert_eq!((found.rms, found.times_noise()), (0.5_f64.sqrt(), f64::INFINITY));
 }
 
@@ -107,9 +107,9 @@ fn a_mean_that_rounding_moves_is_equal() {
         film.record(0..samples, 0).unwrap();
         Picture::of_film(String::new(), String::new(), film)
     };
-    let rounded = compare(&picture(0.0), &picture(ROUNDING_BIAS), None);
+    let rounded = compare(&picture(0.0), &picture(ROUNDING_BIAS));
     assert!(rounded.is_equal(), "{:?}", rounded.reasons);
-    let moved = compare(&picture(0.0), &picture(5.0 * ROUNDING_BIAS), None);
+    let moved = compare(&picture(0.0), &picture(5.0 * ROUNDING_BIAS));
     assert!(moved.reasons.iter().any(|reason| reason.starts_with("the mean is")), "{:?}", moved.reasons);
 }
 
@@ -118,12 +118,10 @@ fn blocks_that_are_nearer_than_noise_allows_are_noted() {
     let halves = |seed| move |half: u32, pixel: u32| random(pixel, half, seed);
     let [one, other] = [1, 2].map(|seed| film_of(halves(seed)));
     let swapped = film_of(|half, pixel| random(pixel, 1 - half, 1));
-    let is_noted = |a: &Picture, b: &Picture, paired: Option<PairedSamples>| {
-        compare(a, b, paired).notes.iter().any(|note| note.starts_with("the blocks differ by less"))
+    let is_noted = |a: &Picture, b: &Picture| {
+        compare(a, b).notes.iter().any(|note| note.starts_with("the blocks differ by less"))
     };
-    assert!(is_noted(&one, &swapped, None) && !is_noted(&one, &other, None));
-    // Pictures of the same samples may be as near as they like.
-    assert!(!is_noted(&one, &swapped, Some(PairedSamples::default())));
+    assert!(is_noted(&one, &swapped) && !is_noted(&one, &other));
 }
 
 #[test]
@@ -135,23 +133,23 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
     };
     let (nan, inf) = (f64::NAN, f64::INFINITY);
     for (a, b) in [(nan, 0.5), (0.5, inf), (-inf, 0.5), (nan, inf), (inf, -inf), (nan, -inf)] {
-        let found = compare(&with(a), &with(b), None);
+        let found = compare(&with(a), &with(b));
         assert_eq!((found.verdict(), found.is_same), (Verdict::Different, false), "{a} and {b}");
         let expected = NonFinite { differing_pixels: 60, differing: 60, first: Some([40, 2]), alike: 0 };
         assert_eq!(found.non_finite, expected);
         assert!(found.reasons[0].starts_with("60 channels of 60 pixels are NaN"), "{:?}", found.reasons);
     }
     for (a, b) in [(nan, -nan), (inf, inf), (-inf, -inf)] {
-        let found = compare(&with(a), &with(b), None);
+        let found = compare(&with(a), &with(b));
         assert!(found.is_equal() && found.is_same, "{a} and {b}: {:?}", found.reasons);
         assert_eq!((found.non_finite.differing, found.non_finite.alike, found.left_out), (0, 60, 60));
     }
     // Zeros of different signs are equal, but not to the bit.
-    let found = compare(&with(0.0), &with(-0.0), None);
+    let found = compare(&with(0.0), &with(-0.0));
     assert!(found.is_equal() && !found.is_same);
     // A picture without a finite number equals no picture.
     let none = floats(|_| nan);
-    let found = compare(&none, &none, None);
+    let found = compare(&none, &none);
     assert_eq!((found.verdict(), found.is_same), (Verdict::Unclear, false), "{found:?}");
 }
 
@@ -160,13 +158,13 @@ fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
     let whole = |value: f64| bytes(move |pixel| if pixel == 7 { value } else { 0.3 });
     let float = |value: f64| floats(move |pixel| if pixel == 7 { value } else { 0.3 });
     for beyond in [1.0, 50.0, f64::INFINITY] {
-        assert!(compare(&whole(1.0), &float(beyond), None).is_equal(), "{beyond}");
+        assert!(compare(&whole(1.0), &float(beyond)).is_equal(), "{beyond}");
     }
-    assert!(compare(&whole(1.0), &whole(1.0), None).is_same);
+    assert!(compare(&whole(1.0), &whole(1.0)).is_same);
     for other in [f64::NAN, f64::NEG_INFINITY] {
-        assert!(!compare(&float(other), &whole(1.0), None).is_equal(), "{other}");
+        assert!(!compare(&float(other), &whole(1.0)).is_equal(), "{other}");
     }
-    assert!(!compare(&whole(0.5), &float(f64::INFINITY), None).is_equal());
+    assert!(!compare(&whole(0.5), &float(f64::INFINITY)).is_equal());
     // At or above the limit of the other picture: unknown, and no difference.
     let rows = |value: f64| move |pixel: u32| if pixel < 80 * 8 { value } else { 0.3 };
     for (a, b) in [(1.0, 5.0), (1.0, 255.0 / 256.0)] {
@@ -175,8 +173,8 @@ fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
             assert_eq!(found.left_out, 3 * 80 * 8, "{a} and {b}");
         }
     }
-    assert_eq!(compare(&bytes(rows(0.5)), &floats(rows(0.5)), None).left_out, 0);
-    assert!(!compare(&bytes(rows(0.5)), &floats(rows(0.6)), None).is_equal());
+    assert_eq!(compare(&bytes(rows(0.5)), &floats(rows(0.5))).left_out, 0);
+    assert!(!compare(&bytes(rows(0.5)), &floats(rows(0.6))).is_equal());
 }
 
 #[test]
@@ -200,7 +198,7 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
     let bright =
         |seed: u32| move |pixel: u32| if pixel % 80 < 24 { 2.0 + random(pixel, 0, seed) } else { 0.3 };
     for other in [floats(bright(1)), bytes(bright(1))] {
-        let found = compare(&other, &bytes(bright(2)), None);
+        let found = compare(&other, &bytes(bright(2)));
         assert!(found.is_equal(), "{:?} {:?}", found.reasons, found.unclear);
     }
     // Noise around the limit: even, or a path of radiance 8 once in a while.
@@ -211,16 +209,16 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
         };
         let there = bytes(|pixel| mean(1, pixel));
         for other in [floats(|pixel| mean(2, pixel)), bytes(|pixel| mean(3, pixel))] {
-            let found = compare(&there, &other, None);
+            let found = compare(&there, &other);
             assert!(!is_clipped(&found), "{samples} samples: {:?}", found.reasons);
         }
     }
     // If nearly everything is clipped, nothing can be said.
     let white = |columns: u32| move |pixel: u32| if pixel % 80 < columns { 1.0 } else { 0.5 };
     for (columns, verdict) in [(80, Verdict::Unclear), (48, Verdict::Unclear), (40, Verdict::Same)] {
-        let found = compare(&bytes(white(columns)), &floats(white(columns)), None);
+        let found = compare(&bytes(white(columns)), &floats(white(columns)));
         assert_eq!(found.verdict(), verdict, "{columns}: {:?}", found.reasons);
-        assert!(compare(&bytes(white(columns)), &bytes(white(columns)), None).is_same, "{columns}");
+        assert!(compare(&bytes(white(columns)), &bytes(white(columns))).is_same, "{columns}");
     }
 }
 
@@ -233,7 +231,7 @@ fn pictures_are_the_same_to_the_bit_only_in_one_format() {
     let formats = [(None, f64::INFINITY), (Some(0.002), 0.99), (Some(0.004), 0.99), (Some(0.002), 0.98)];
     for (first, second) in (0..16).map(|pair| (pair / 4, pair % 4)) {
         let [a, b] = [first, second].map(|format: usize| picture(formats[format].0, formats[format].1));
-        assert_eq!(compare(&a, &b, None).is_same, first == second, "{first} and {second}");
+        assert_eq!(compare(&a, &b).is_same, first == second, "{first} and {second}");
     }
 }
 
@@ -245,13 +243,13 @@ fn a_difference_is_measured_by_the_steps_of_both_pictures() {
     };
     // Without noise, the deviation is the root of the sum of both squares; these are two deviations apart.
     for (first, second, deviation) in [(0.003, 0.004, 0.005), (0.003, 0.0, 0.003), (0.0, 0.004, 0.004)] {
-        let found = compare(&picture(first, 0.5), &picture(second, 0.5 + 2.0 * deviation), None);
+        let found = compare(&picture(first, 0.5), &picture(second, 0.5 + 2.0 * deviation));
         assert!((found.test.largest - 2.0).abs() < 1e-3, "{first} {second}: {}", found.test.largest);
         assert!((found.bias - 2.0 * deviation).abs() < 1e-12, "{first} {second}: {}", found.bias);
     }
     // Neighbouring bytes differ by no more than rounding.
     assert_eq!(
-        compare(&bytes(|_| 0.5), &bytes(|_| 0.5 + 1.0 / 256.0), None).test.largest_limit,
+        compare(&bytes(|_| 0.5), &bytes(|_| 0.5 + 1.0 / 256.0)).test.largest_limit,
         largest_of(0, CHANCE)
     );
 }
@@ -276,7 +274,7 @@ fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else()
         for found in both_ways(&fine, &read(most, is_rounded, 0.0)) {
             assert!(found.is_equal(), "{most}, {is_rounded}: {:?} {:?}", found.reasons, found.unclear);
         }
-        assert!(!compare(&fine, &read(most, is_rounded, 0.3), None).is_equal(), "{most}, {is_rounded}");
+        assert!(!compare(&fine, &read(most, is_rounded, 0.3)).is_equal(), "{most}, {is_rounded}");
     }
 }
 
@@ -325,40 +323,7 @@ fn only_channels_of_blocks_that_differ_count_as_tries() {
     for (places, tries) in cases {
         let mut other = one.clone();
         places.iter().for_each(|(x, y, channel)| other.pixels[y * 80 + x][*channel] += 0.05);
-        assert_eq!(compare(&one, &other, None).test.largest_limit, largest_of(tries, CHANCE), "{places:?}");
-    }
-}
-
-#[test]
-fn samples_are_parted_by_any_channel_and_the_others_are_averaged() {
-    let row = |pixels: &[[f64; 3]]| {
-        let mut film = Film::new(pixels.len() as u32, 1, 1);
-        for (sum, pixel) in film.halves_mut()[0].iter_mut().zip(pixels) {
-            *sum = fixed_point(*pixel).unwrap();
-        }
-        film.record(0..1, 0).unwrap();
-        film
-    };
-    // In units that a film holds exactly; five are more than a thousandth.
-    let unit = 2.0_f64.powi(-12);
-    let other = [[0.0, 0.0, 5.0], [-5.0, 0.0, 0.0], [1.0, 2.0, 3.0], [0.0, -4.0, 0.0], [0.0; 3]];
-    let other = row(&other.map(|pixel| pixel.map(|x| 0.5 + x * unit)));
-    let mut sums = PairedSums::default();
-    assert_eq!((sums.finish(), sums.finish().parted_share()), (PairedSamples::default(), 0.0));
-    sums.add(&row(&[[0.5; 3]; 5]), &other);
-    let found = sums.finish();
-    assert_eq!((found.count, found.parted, found.parted_share()), (5, 2, 0.4));
-    // Nine channels are left, with the sum 1 + 2 + 3 - 4 and the squares 1 + 4 + 9 + 16.
-    assert!((found.bias - 2.0 / 9.0 * unit).abs() < 1e-15, "{found:?}");
-    assert!((found.rms - (30.0_f64 / 9.0).sqrt() * unit).abs() < 1e-15, "{found:?}");
-    // Too large a difference of either kind is a reason.
-    let reasons = |rms: f64, parted: u64| {
-        let paired = PairedSamples { count: 10_000, parted, rms, bias: 0.0 };
-        compare(&noisy(1, 0.0), &noisy(1, 0.0), Some(paired)).reasons
-    };
-    assert!(reasons(4e-5, 9).is_empty());
-    for (found, word) in [(reasons(6e-5, 5), "on the same path"), (reasons(1e-5, 11), "a different path")] {
-        assert!(found.len() == 1 && found[0].contains(word), "{found:?}");
+        assert_eq!(compare(&one, &other).test.largest_limit, largest_of(tries, CHANCE), "{places:?}");
     }
 }
 
@@ -445,7 +410,7 @@ fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_r
         (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (40, 30, 3);
         let options = CompareOptions { recipe, samples: asked, ..options_of(backend(), backend()) };
         let mut rendering = Rendering::start(&one_thread(), "cpu").unwrap();
-        let found = beside(&options, read, &mut rendering).unwrap();
+        let found = rendering.beside(Some(read), &options).unwrap();
         assert_eq!((found.width, found.height, found.name.as_str()), (8, 6, "cpu"));
         assert_eq!(found.film.unwrap().samples().to_string(), expected, "{asked:?}");
     }
@@ -464,11 +429,10 @@ fn a_backend_and_a_file_keep_their_order() {
     for (options, is_file_first) in
         [(options_of(file(), backend()), true), (options_of(backend(), file()), false)]
     {
-        let (found, paired) = sides(&options).unwrap();
+        let found = sides(&options).unwrap();
         // The film in the file is far brighter than any picture of the scene.
-        assert_eq!(compare(&found[0], &found[1], None).bias < 0.0, is_file_first);
+        assert_eq!(compare(&found[0], &found[1]).bias < 0.0, is_file_first);
         assert_eq!((found[0].name == "cpu", found[1].name == "cpu"), (!is_file_first, is_file_first));
-        assert!(paired.is_none());
     }
 }
 
@@ -476,12 +440,12 @@ fn a_backend_and_a_file_keep_their_order() {
 fn two_backends_render_the_same_samples() {
     for (asked, count) in [(None, 5), (Some(7), 7)] {
         let options = CompareOptions { samples: asked, ..options_of(backend(), backend()) };
-        let (found, paired) = sides(&options).unwrap();
+        let found = sides(&options).unwrap();
         for side in &found {
             assert_eq!(side.film.as_ref().unwrap().samples().to_string(), format!("0..{count}"));
         }
         assert_eq!(found.each_ref().map(|side| side.name.as_str()), ["cpu (first)", "cpu (second)"]);
-        assert_eq!(paired.map(|paired| (paired.count, paired.parted)), Some((count * 8 * 6, 0)));
+        assert!(compare_sides(&found).unwrap().is_same);
     }
 }
 

@@ -1,6 +1,5 @@
 //! Decides whether two pictures are the same except for noise and rounding.
 
-use super::paired::{PARTED_SHARE, PairedSamples, ROUNDING_RMS};
 use crate::film::{Film, PixelSum};
 use crate::pictures::Picture;
 use crate::pictures::answer::Verdict;
@@ -17,16 +16,6 @@ const FEW_PIXELS: f64 = 1e-3;
 /// A larger difference is not that of a few paths among many.
 const LOUD: f64 = 0.1;
 
-/// How the noise of the difference was estimated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Evidence {
-    /// From the halves of both films.
-    Halves,
-    /// From the spread of the differences within each block.
-    Spread,
-}
-
 /// How two pictures differ, and how much of the difference is noise. Values are linear RGB.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
@@ -40,15 +29,11 @@ pub struct Comparison {
     pub bias_deviation: Option<f64>,
     /// Root mean square noise of both pictures together, as if they shared none; `None` if it is not known.
     pub noise: Option<f64>,
-    pub evidence: Evidence,
     /// Channels that could not be compared, over all pixels.
     pub left_out: usize,
     pub non_finite: NonFinite,
     #[serde(skip)]
     pub test: BlockTest,
-    /// The comparison sample by sample, if backends rendered both.
-    #[serde(rename = "paired_samples")]
-    pub paired: Option<PairedSamples>,
     /// Why the pictures are not equal; empty if they are.
     pub reasons: Vec<String>,
     /// What to know when reading the figures.
@@ -84,7 +69,7 @@ impl Comparison {
 }
 
 /// Compares two pictures of one size.
-pub fn compare(a: &Picture, b: &Picture, paired: Option<PairedSamples>) -> Comparison {
+pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     let relations = Relation::of_all(a, b);
     let values: Vec<[f64; 3]> = relations.iter().map(|pixel| pixel.map(Relation::difference)).collect();
     let noise = a.film.as_deref().zip(b.film.as_deref()).and_then(|(a, b)| HalvesNoise::of(a, b));
@@ -105,8 +90,7 @@ pub fn compare(a: &Picture, b: &Picture, paired: Option<PairedSamples>) -> Compa
             values[pixel][channel].abs() > rounding(step)
         };
         narrow(&mut test, a.width, is_moved);
-        // Two backends compare sample by sample, which tells paths apart.
-        few = paired.is_none().then(|| few_pixels(&values, is_moved)).flatten();
+        few = few_pixels(&values, is_moved);
         clipped = add_clipped(&mut test, a, b, &differences);
     }
     let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
@@ -118,12 +102,10 @@ pub fn compare(a: &Picture, b: &Picture, paired: Option<PairedSamples>) -> Compa
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
         bias_deviation: noise.as_ref().map(|noise| noise.of_mean.hypot(ROUNDING_BIAS)),
-        evidence: if noise.is_some() { Evidence::Halves } else { Evidence::Spread },
         noise: noise.map(|noise| noise.of_both),
         left_out: 3 * values.len() - count,
         non_finite: NonFinite::of(&relations, a.width),
         test,
-        paired,
         reasons: Vec::new(),
         notes: Vec::new(),
         unclear: None,
@@ -361,21 +343,6 @@ fn judge(comparison: &mut Comparison) {
         off > SUM_DEVIATIONS,
         format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"),
     );
-    let paired = comparison.paired.unwrap_or_default();
-    reason(
-        paired.rms > ROUNDING_RMS,
-        format!(
-            "samples on the same path differ by {:.1e} RMS, but rounding causes at most {ROUNDING_RMS:.0e}",
-            paired.rms
-        ),
-    );
-    let share = paired.parted_share();
-    reason(
-        share > PARTED_SHARE,
-        format!(
-            "a share of {share:.1e} of the samples takes a different path, but rounding causes at most {PARTED_SHARE:.0e}"
-        ),
-    );
 }
 
 /// Notes what to know when reading the figures.
@@ -383,12 +350,12 @@ fn note(comparison: &mut Comparison) {
     let Comparison { test, notes, is_same, left_out, non_finite, .. } = comparison;
     let mut note = |is_so: bool, text: &str| notes.extend(is_so.then(|| text.to_owned()));
     note(
-        comparison.evidence == Evidence::Spread && !*is_same,
+        comparison.noise.is_none() && !*is_same,
         "the noise is estimated from the spread of the differences within each block, so differences finer than 8 pixels \
          pass for noise; films with two halves (--checkpoint) give a sharper comparison",
     );
     note(
-        test.is_too_near() && comparison.paired.is_none(),
+        test.is_too_near(),
         "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern finer \
          than 8 pixels, or their halves do not belong together",
     );
