@@ -66,7 +66,7 @@ pub(super) fn check(
     places: &[FilmPlace],
     resumed: Option<&Film>,
 ) -> Result<Vec<String>, Failure> {
-    let mut warnings: Vec<String> = resumed.and_then(|film| too_many(render, film)).into_iter().collect();
+    let mut warnings = Vec::new();
     for place in places {
         let is_same = |path: &PathBuf| same_file::is_same_file(path, &place.path).unwrap_or(false);
         if let Some(film) = resumed.filter(|_| render.resume.as_ref().is_some_and(is_same)) {
@@ -94,19 +94,6 @@ pub(super) fn check(
         }
     }
     Ok(warnings)
-}
-
-/// A warning if the film to continue has samples beyond those that `--samples` asks for.
-fn too_many(render: &RenderOptions, film: &Film) -> Option<String> {
-    let asked = render.asked_samples?;
-    let path = render.resume.as_deref()?.shown();
-    let samples = film.samples();
-    (samples.end() > asked).then(|| {
-        format!(
-            "{path} already holds the samples {samples} of each pixel, and none can be removed, so the result has more \
-             than --samples {asked}"
-        )
-    })
 }
 
 /// The files that were written, and why others were not.
@@ -320,25 +307,16 @@ mod tests {
     fn samples_that_would_be_lost_are_warned_of() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
-        let held = put(Path::new(&film), &options(&[]), 0..32);
-        let warned = |flags: &[&str], resumed: Option<&Film>| {
+        put(Path::new(&film), &options(&[]), 0..32);
+        let warned = |flags: &[&str]| {
             let render = options(flags);
-            check(&render, &lock(&render).unwrap(), resumed).unwrap().join("; ")
+            check(&render, &lock(&render).unwrap(), None).unwrap().join("; ")
         };
-        assert_eq!(warned(&["--out", &film, "--samples", "32"], None), "");
-        assert!(
-            warned(&["--out", &film, "--samples", "8"], None)
-                .contains("32 samples per pixel of this picture")
-        );
-        assert!(warned(&["--out", &film, "--sample-range", "1..64"], None).contains("--out replaces"));
-        let other = warned(&["--out", &film, "--seed", "3"], None);
+        assert_eq!(warned(&["--out", &film, "--samples", "32"]), "");
+        assert!(warned(&["--out", &film, "--samples", "8"]).contains("32 samples per pixel of this picture"));
+        assert!(warned(&["--out", &film, "--sample-range", "1..64"]).contains("--out replaces"));
+        let other = warned(&["--out", &film, "--seed", "3"]);
         assert!(other.contains("of another picture") && other.contains("seed"), "{other}");
-        for flags in [["--resume", &film].as_slice(), &["--checkpoint", &film, "--continue"]] {
-            let with =
-                |samples| warned(&[flags, &["--samples", samples, "--out", "f.png"]].concat(), Some(&held));
-            assert!(with("8").contains("already holds the samples 0..32"));
-            assert_eq!(with("32"), "");
-        }
         let render = options(&["--checkpoint", &film, "--samples", "64"]);
         assert!(
             check(&render, &lock(&render).unwrap(), None).unwrap_err().to_string().contains("--continue")

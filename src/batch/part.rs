@@ -7,7 +7,7 @@ use super::{check_before, frames, json_file, render_all, write_figures};
 use crate::cli::{BatchOptions, FramesOptions, PartOptions, Paths, RenderOptions};
 use crate::console;
 use crate::failure::Failure;
-use crate::files::{NAME_LIMIT, ShownPath, free_name};
+use crate::files::ShownPath;
 use crate::film::CheckpointError;
 use crate::output::PpmForm;
 use crate::plan::{Frames, Part, Plan, Samples, Work};
@@ -15,7 +15,7 @@ use crate::progressive::{self, EndReason, Phase, Status};
 use crate::saved::{self, OpenError, SavedFilm};
 use crate::terminal::print_beside;
 use anyhow::{Context, anyhow};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -72,7 +72,6 @@ fn render_samples(
         checkpoint: Some(path.clone()),
         every: options.every,
         resume: Some(path.clone()),
-        asked_samples: None,
         ppm: PpmForm::Binary,
         command: options.command,
         notes: Vec::new(),
@@ -146,19 +145,12 @@ fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Fail
     }
 }
 
-/// Renames a damaged film to `part-0.exr.damaged`, or `part-0.exr.damaged-2` and so on.
+/// Renames a damaged film to `part-0.exr.damaged`.
 fn put_aside(path: &Path, damaged: &CheckpointError) -> anyhow::Result<()> {
-    let name = |number: u32| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(if number == 1 { ".damaged".to_owned() } else { format!(".damaged-{number}") });
-        PathBuf::from(name)
-    };
-    let aside = free_name(name).with_context(|| {
-        let last = name(NAME_LIMIT);
-        format!("{damaged}; the names up to {} are taken; delete some of them", last.shown())
-    })?;
-    std::fs::rename(path, &aside)
-        .with_context(|| format!("cannot rename {} to {}", path.shown(), aside.shown()))?;
+    let mut aside = path.as_os_str().to_owned();
+    aside.push(".damaged");
+    let words = || format!("cannot rename {} to {}", path.shown(), aside.shown());
+    std::fs::rename(path, &aside).with_context(words)?;
     console::note(&format!(
         "warning: {damaged}; it is now {}, and the part is rendered again",
         aside.shown()

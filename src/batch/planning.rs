@@ -15,9 +15,6 @@ use anyhow::anyhow;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// The largest array that Slurm takes unless it is configured otherwise.
-const USUAL_ARRAY: usize = 1001;
-
 /// Writes the plan and makes its commands.
 ///
 /// # Errors
@@ -25,9 +22,6 @@ const USUAL_ARRAY: usize = 1001;
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     options.notes.iter().for_each(|note| console::note(&format!("warning: {note}")));
     create_directory(&options.directory)?;
-    if options.format == Format::Slurm {
-        check_log_path(options)?;
-    }
     let manifest = Manifest {
         command: options.command.clone(),
         scene: options.recipe.name.clone(),
@@ -42,12 +36,6 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     let (path, count) = (plan.path.to_string_lossy(), plan.manifest.work.count());
     let result = options.directory.join(&plan.manifest.result).to_string_lossy().into_owned();
     let commands = Commands::new(&options.program, &path, &plan.manifest);
-    if options.format == Format::Slurm && count > USUAL_ARRAY {
-        console::note(&format!(
-            "Slurm refuses arrays of more than {USUAL_ARRAY} tasks unless its MaxArraySize is larger: \
-             scontrol show config | grep MaxArraySize"
-        ));
-    }
     let lines: String = match (options.format, scripts.first()) {
         (Format::Json, _) => {
             let json = PlanJson {
@@ -72,20 +60,6 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
         console::note_whole(&format!("then: {}", shell::line(commands.merge(&result))));
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Refuses a directory in whose path Slurm would take signs for a pattern.
-fn check_log_path(options: &PlanOptions) -> Result<(), Failure> {
-    let physical = options.directory.canonicalize().unwrap_or_else(|_| options.directory.clone());
-    let signs: &[char] = if cfg!(windows) { &['%'] } else { &['%', '\\'] };
-    if !physical.to_string_lossy().contains(signs) {
-        return Ok(());
-    }
-    Err(Failure::Input(anyhow!(
-        "--out is {}, but Slurm takes % and \\ in the path of a log for signs of its own, and no part would run; choose \
-         a directory whose whole path has neither",
-        options.directory.shown()
-    )))
 }
 
 /// What was divided, in words.

@@ -75,14 +75,14 @@ pub enum Request {
           after_help = EXIT_CODES)]
 struct Raw {
     /// Print the version; with --verbose also commit, target, instruction level, adapters and version of film files
-    #[arg(short = 'V', long)]
-    version: bool,
+    #[arg(short = 'V', long = "version", id = "version")]
+    _version: bool,
     /// With --version: print everything that a report of a fault should say
-    #[arg(long, requires = "version")]
-    verbose: bool,
+    #[arg(long = "verbose", id = "verbose", requires = "version")]
+    _verbose: bool,
     /// Write a log of what the program does; RUST_LOG chooses what, such as warn,weekender=trace
-    #[arg(long, value_name = "FILE.log", global = true)]
-    log: Option<PathBuf>,
+    #[arg(long = "log", id = "log", value_name = "FILE.log", global = true)]
+    _log: Option<PathBuf>,
     #[command(flatten)]
     render: render::RenderFlags,
     #[command(subcommand)]
@@ -160,7 +160,8 @@ pub fn command() -> clap::Command {
 /// # Errors
 /// If its name does not end in `.log`: so a log never replaces a picture.
 pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
-    let log = Raw::try_parse_from(arguments).ok().and_then(|raw| raw.log);
+    let matches = command().try_get_matches_from(arguments).ok();
+    let log = matches.and_then(|matches| matches.get_one::<PathBuf>("log").cloned());
     if let Some(path) = &log {
         sources::check_ending("--log", path, "the log", ".log").map_err(Failure::input)?;
     }
@@ -174,6 +175,9 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
+    if matches.get_flag("version") {
+        return Ok(Request::Version { is_verbose: matches.get_flag("verbose") });
+    }
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
     let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
@@ -182,7 +186,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
 
 fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
     Ok(match raw.command {
-        None if raw.version => Request::Version { is_verbose: raw.verbose },
         None => render::request(raw.render, line)?,
         Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
         Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),

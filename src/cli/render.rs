@@ -175,8 +175,6 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
-    /// Samples per pixel that `--samples` asks for.
-    pub asked_samples: Option<u64>,
     pub ppm: PpmForm,
     /// The command that renders it.
     pub command: String,
@@ -315,7 +313,6 @@ fn render(
         checkpoint: files.checkpoint.clone(),
         every: files.every,
         resume: files.resume.clone(),
-        asked_samples: flags.samples.samples,
         ppm: files.ppm.unwrap_or_default(),
         command: line.command.clone(),
         notes: Vec::new(),

@@ -5,7 +5,7 @@ use crate::cli::{MergeOptions, Paths};
 use crate::describe::counted;
 use crate::failure::Failure;
 use crate::files::ShownPath;
-use crate::film::{FilmHead, SampleRanges, checkpoint, merge_files};
+use crate::film::{FilmHead, FilmSum, MergeError, SampleRanges, checkpoint, merge_files};
 use crate::recipe::file;
 use crate::saved::same_job;
 use crate::shell;
@@ -41,48 +41,28 @@ fn merge(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
 
 /// Reads all films, and prints what is damaged, foreign, there twice or missing between them.
 fn check(films: &[PathBuf], program: &str) -> Result<ExitCode, Failure> {
-    let (mut lines, mut good): (Vec<String>, Vec<(&Path, FilmHead)>) = (Vec::new(), Vec::new());
+    let (mut sum, mut lines): (Option<FilmSum>, Vec<String>) = (None, Vec::new());
     for path in films {
-        let head = match checkpoint::check(path) {
-            Ok(head) => head,
-            Err(error) => {
-                lines.push(error.to_string());
-                continue;
-            }
+        let added = match &mut sum {
+            Some(sum) => sum.add(path, same_job).map(drop),
+            none => begin(path).map(|begun| *none = Some(begun)),
         };
-        let shown = path.shown();
-        for (other, known) in &good {
-            if let Some(range) = known.samples.first_common(&head.samples) {
-                let other = other.shown();
-                lines.push(format!(
-                    "{other} and {shown} both hold the samples {}..{}",
-                    range.start, range.end
-                ));
-            }
-        }
-        let first = good.first().map(|(first, known)| (first.shown(), known.description.recipe()));
-        match first.map(|(first, recipe)| (first, same_job(recipe, head.description.recipe()))) {
-            Some((first, Err(difference))) => {
-                lines.push(format!("{shown} is the film of another picture than {first}: {difference}"));
-            }
-            _ => good.push((path, head)),
-        }
+        lines.extend(added.err().map(|error| error.to_string()));
     }
-    let held = good.iter().fold(SampleRanges::default(), |all, (_, head)| with(all, &head.samples));
-    let (mut from, mut commands) = (0, Vec::new());
+    let (damaged, mut commands) = (lines.len(), Vec::new());
+    let held = sum.map_or_else(SampleRanges::default, |sum| sum.film().samples().clone());
+    let mut from = 0;
     while let Some(gap) = held.first_gap(from..held.end(), u64::MAX) {
-        lines.push(format!("samples {}..{} are missing", gap.start, gap.end));
-        if let Some((first, _)) = good.first() {
-            let first = first.to_string_lossy();
-            let (first, range) = (shell::operand(&first), format!("{}..{}", gap.start, gap.end));
-            let words = [program, "--batch", "--resume", &first, "--sample-range", &range, "--out", &first];
-            commands.push(shell::line(words));
-        }
+        let range = format!("{}..{}", gap.start, gap.end);
+        lines.push(format!("samples {range} are missing"));
+        let first = films[0].to_string_lossy();
+        let first = shell::operand(&first);
+        let words = [program, "--batch", "--resume", &first, "--sample-range", &range, "--out", &first];
+        commands.push(shell::line(words));
         from = gap.end;
     }
-    let is_good = lines.is_empty();
-    let count = held.count();
-    lines.push(format!("{count} samples per pixel ({held}) in {} of {} films", good.len(), films.len()));
+    let (is_good, count, good) = (lines.is_empty(), held.count(), films.len() - damaged);
+    lines.push(format!("{count} samples per pixel ({held}) in {good} of {} films", films.len()));
     if !commands.is_empty() {
         lines.push("for what is missing:".to_owned());
         lines.extend(commands);
@@ -90,15 +70,10 @@ fn check(films: &[PathBuf], program: &str) -> Result<ExitCode, Failure> {
     print_findings(&lines, is_good)
 }
 
-/// All samples that are in either, also where the two overlap.
-fn with(mut all: SampleRanges, more: &SampleRanges) -> SampleRanges {
-    for range in more.iter() {
-        let mut from = range.start;
-        while let Some(gap) = all.first_gap(from..range.end, u64::MAX) {
-            from = gap.end;
-            // A gap is free, so it can be added.
-            let _ = all.insert(gap);
-        }
-    }
-    all
+/// A sum that begins with this film.
+fn begin(path: &Path) -> Result<FilmSum, MergeError> {
+    let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(path)?;
+    let mut sum = FilmSum::new(width, height, halves, description, path)?;
+    sum.add(path, same_job)?;
+    Ok(sum)
 }

@@ -1,13 +1,10 @@
 //! The films or frames of a plan: what is there of each, and the commands for what is missing.
 
-use crate::console;
-use crate::describe::{SOFTWARE, counted};
+use crate::describe::SOFTWARE;
 use crate::files::{ShownPath, Stamp};
 use crate::film::{SampleRanges, checkpoint};
 use crate::plan::{Commands, Part, Plan, Work};
-use crate::recipe::file;
-use crate::saved::{FrameState, same_job};
-use crate::shell;
+use crate::saved::FrameState;
 use std::path::PathBuf;
 
 /// What is there of a film or frame.
@@ -48,9 +45,6 @@ pub(super) struct Pieces<'a> {
     pub plan: &'a Plan,
     pub all: Vec<Piece>,
 }
-
-/// Most commands that are printed beside a result.
-const COMMANDS_PRINTED: usize = 50;
 
 impl<'a> Pieces<'a> {
     /// The films or frames, not looked at yet.
@@ -93,26 +87,6 @@ impl<'a> Pieces<'a> {
         changed
     }
 
-    /// Reads every file as a whole.
-    pub fn check(&mut self) {
-        self.look();
-        let recipe = file::to_picture_toml(&self.plan.recipe);
-        for piece in &mut self.all {
-            if let (Kind::Film(part), State::Whole | State::Unfinished { .. }) = (&piece.kind, &piece.state) {
-                piece.state = match checkpoint::check(&piece.path) {
-                    Ok(head) => match same_job(&recipe, head.description.recipe()) {
-                        Ok(()) => piece.of_samples(part, &head.samples),
-                        Err(difference) => State::Wrong(format!(
-                            "{} is the film of another picture: {difference}; move it away",
-                            piece.path.shown()
-                        )),
-                    },
-                    Err(error) => State::Wrong(error.to_string()),
-                };
-            }
-        }
-    }
-
     fn lacking(&self) -> impl Iterator<Item = &Piece> {
         self.all.iter().filter(|piece| piece.state != State::Whole)
     }
@@ -135,27 +109,12 @@ impl<'a> Pieces<'a> {
 
     /// How to render what is missing: a heading, and the commands, one a line.
     pub fn remedy(&self, program: &str) -> String {
-        self.remedy_lines(program, usize::MAX)
-    }
-
-    /// Prints the lines on what is missing and the remedy to standard error; of many commands, only the first ones.
-    pub fn note_lacking(&self, program: &str) {
-        self.lines().for_each(|line| console::note(&line));
-        console::note_whole(&self.remedy_lines(program, COMMANDS_PRINTED));
-    }
-
-    fn remedy_lines(&self, program: &str, most: usize) -> String {
         let mut parts: Vec<usize> = self.lacking().map(|piece| piece.part).collect();
         parts.dedup();
         let commands = Commands::new(program, &self.plan.path.to_string_lossy(), &self.plan.manifest);
-        let mut lines = vec![format!("for what is missing (--array={} in Slurm):", ranges(&parts))];
-        lines.extend(parts.iter().take(most).map(|part| commands.part_line(&part.to_string())));
-        if parts.len() > most {
-            let check = shell::line([program, "merge", &commands.manifest, "--check"]);
-            let more = counted((parts.len() - most) as u64, "more command");
-            lines.push(format!("... and {more}; all of them: {check}"));
-        }
-        lines.join("\n")
+        let heading = format!("for what is missing (--array={} in Slurm):", ranges(&parts));
+        let lines = parts.iter().map(|part| commands.part_line(&part.to_string()));
+        std::iter::once(heading).chain(lines).collect::<Vec<_>>().join("\n")
     }
 }
 

@@ -7,7 +7,7 @@ use crate::console;
 use crate::describe::{describe, describe_animation};
 use crate::failure::{FAILED, Failure};
 use crate::files::ShownPath;
-use crate::film::{Film, FilmSum, MergeError, checkpoint, key};
+use crate::film::{Film, FilmSum, MergeError, key};
 use crate::interrupt::Interrupt;
 use crate::output::{OutputFormat, write_animation};
 use crate::plan::{Frames, Plan, Work};
@@ -25,9 +25,6 @@ const SIGNAL: Duration = Duration::from_millis(100);
 
 /// Merges, watches or checks the parts.
 pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
-    if options.check {
-        return check(plan, &options.program);
-    }
     let own = plan.files();
     let paths = own.iter().fold(Paths::default(), |paths, file| paths.read("a file of the plan", Some(file)));
     let paths = options.out.iter().fold(paths, |paths, out| paths.write("--out", Some(out)));
@@ -47,6 +44,9 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failu
         words: String::new(),
         is_written: false,
     };
+    if options.check {
+        return merging.check();
+    }
     if options.watch {
         merging.interrupt = Some(Interrupt::install().map_err(Failure::Run)?);
         merging.watch(options.every)?;
@@ -55,37 +55,6 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failu
         merging.write(true)?;
     }
     merging.finish()
-}
-
-/// Reads everything, and prints what is missing, damaged or foreign.
-fn check(plan: &Plan, program: &str) -> Result<ExitCode, Failure> {
-    let mut pieces = Pieces::of(plan);
-    pieces.check();
-    let mut lines: Vec<String> = pieces.lines().collect();
-    lines.extend(strays(&pieces));
-    lines.push(pieces.words());
-    if !pieces.is_complete() {
-        lines.push(pieces.remedy(program));
-    }
-    print_findings(&lines, pieces.is_complete())
-}
-
-/// Films in the plan's directory that are none of its parts.
-fn strays(pieces: &Pieces) -> Vec<String> {
-    let plan = pieces.plan;
-    let is_known = |name: &str| {
-        let path = plan.beside(name);
-        name == plan.manifest.result || pieces.all.iter().any(|piece| piece.path == path)
-    };
-    let entries = std::fs::read_dir(plan.directory()).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let mut strays: Vec<String> = names.filter(|name| name.ends_with(".exr") && !is_known(name)).collect();
-    strays.sort();
-    let words = |name: String| match checkpoint::read_head(&plan.beside(&name)) {
-        Ok(head) => format!("{name} is not in the plan (samples {})", head.samples),
-        Err(_) => format!("{name} is not in the plan (no film)"),
-    };
-    strays.into_iter().map(words).collect()
 }
 
 fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
@@ -121,6 +90,20 @@ struct Merging<'a> {
 }
 
 impl Merging<'_> {
+    /// Reads everything, and prints what is missing, damaged or foreign.
+    fn check(mut self) -> Result<ExitCode, Failure> {
+        self.pieces.look();
+        if let Some(sum) = &mut self.sum {
+            add(sum, &mut self.pieces.all, |state| matches!(state, State::Whole | State::Unfinished { .. }));
+        }
+        let (pieces, is_complete) = (&self.pieces, self.pieces.is_complete());
+        let mut lines: Vec<String> = pieces.lines().chain([pieces.words()]).collect();
+        if !is_complete {
+            lines.push(pieces.remedy(&self.options.program));
+        }
+        print_findings(&lines, is_complete)
+    }
+
     /// Merges parts as they come, until all are whole or a signal has come.
     fn watch(&mut self, every: Duration) -> Result<(), Failure> {
         let (mut is_news, mut last) = (true, None::<Instant>);
@@ -207,7 +190,8 @@ impl Merging<'_> {
         if interrupted.is_some() {
             console::note("interrupted; the same command continues");
         }
-        pieces.note_lacking(&options.program);
+        pieces.lines().for_each(|line| console::note(&line));
+        console::note_whole(&pieces.remedy(&options.program));
         Ok(interrupted.map_or(ExitCode::from(FAILED), |interrupt| interrupt.exit_code()))
     }
 }

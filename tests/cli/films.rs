@@ -18,16 +18,6 @@ fn a_saved_scene_renders_the_same_film() {
 }
 
 #[test]
-fn a_scene_is_saved_along_with_its_picture() {
-    let directory = temp();
-    let at = |name: &str| directory.path().join(name);
-    let first = ["--stage", "gamut", "--samples", "2", "--save-scene", "s.toml", "--checkpoint", "a.exr"];
-    render(directory.path(), &first);
-    render(directory.path(), &["--scene", "s.toml", "--samples", "2", "--checkpoint", "b.exr"]);
-    assert_eq!(film(at("a.exr")), film(at("b.exr")));
-}
-
-#[test]
 fn a_resumed_film_equals_an_uninterrupted_one() {
     let directory = temp();
     let at = |name: &str| directory.path().join(name);
@@ -95,7 +85,6 @@ fn films_of_other_pictures_are_not_resumed() {
             (&["--sampler", "independent"], &["independent", "sobol"]),
             (&["--estimate-error", "off"], &["estimate-error is off"]),
             (&["--scene", "book", "--size", "32x18"], &["another picture"]),
-            (&["--stage", "metal", "--size", "32x18"], &["another picture"]),
         ] {
             refused_in(&directory, &with("film.exr", flags), parts);
         }
@@ -132,57 +121,6 @@ fn a_checkpoint_is_never_replaced_unless_the_render_goes_on_with_it() {
     std::fs::write(at("k.exr"), "").unwrap();
     render(directory.path(), &["--samples", "4", "--checkpoint", "k.exr"]);
     assert_eq!(film(at("k.exr")).sample_count(), 4);
-}
-
-#[test]
-fn an_output_replaces_a_longer_film_with_a_warning() {
-    let directory = temp();
-    let at = |name: &str| directory.path().join(name);
-    let warned = |flags: &[&str]| {
-        let output = render(directory.path(), &[&["--out", "k.exr", "--json", "j.json"], flags].concat());
-        let json: Value = serde_json::from_slice(&std::fs::read(at("j.json")).unwrap()).unwrap();
-        let told = text(&output.stderr);
-        assert_eq!(json["warnings"].as_array().unwrap().is_empty(), told.is_empty(), "{told} {json}");
-        told
-    };
-    assert_eq!(warned(&["--samples", "32"]), "");
-    // The new film has all samples of the old one.
-    assert_eq!(warned(&["--samples", "40"]), "");
-    let told = warned(&["--samples", "8"]);
-    assert!(
-        told.contains("warning: --out replaces k.exr, which holds 40 samples per pixel of this"),
-        "{told}"
-    );
-    assert_eq!(film(at("k.exr")).sample_count(), 8);
-    let told = warned(&["--samples", "2", "--seed", "3"]);
-    assert!(told.contains("8 samples per pixel of another picture (seed is 3 here, 0 there)"), "{told}");
-    // A merge is an output, too.
-    render(directory.path(), &["--sample-range", "4..8", "--seed", "3", "--out", "more.exr"]);
-    let merge = run(directory.path(), &["merge", "more.exr", "--out", "k.exr"]);
-    let told = text(&merge.stderr);
-    assert!(
-        merge.status.success() && told.contains("k.exr, which holds 2 samples per pixel of this"),
-        "{told}"
-    );
-}
-
-#[test]
-fn who_asks_for_fewer_samples_than_there_are_is_warned() {
-    let directory = temp();
-    render(directory.path(), &["--samples", "32", "--checkpoint", "film.exr"]);
-    for flags in [&["--resume", "film.exr"][..], &["--checkpoint", "film.exr", "--continue"]] {
-        let with = |samples: &str| {
-            let output =
-                render(directory.path(), &[flags, &["--samples", samples, "--out", "f.png"]].concat());
-            text(&output.stderr)
-        };
-        let told = with("8");
-        assert!(
-            told.contains("warning: film.exr already holds the samples 0..32") && told.contains("8"),
-            "{told}"
-        );
-        assert_eq!(with("32"), "");
-    }
 }
 
 #[test]

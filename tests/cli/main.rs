@@ -6,8 +6,6 @@ mod common;
 mod ending;
 mod films;
 mod outputs;
-mod own_files;
 #[path = "../program_common/mod.rs"]
 mod program_common;
 mod values;
-mod warned;

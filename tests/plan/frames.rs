@@ -5,7 +5,6 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 const SMALL: [&str; 8] = ["--size", "24x14", "--samples", "4", "--device", "cpu", "--threads", "2"];
@@ -123,31 +122,6 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
     succeeds(at, &["merge", "p", "--check"]);
 }
 
-#[test]
-fn a_watch_makes_the_animation_when_the_last_frame_has_come() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    plan(at, &["--turntable=3", "--parts", "3"]);
-    let mut flags =
-        super::common::command(at, &["merge", "p", "--watch", "--every", "0.1s", "--out", "t.png"]);
-    let mut child = flags.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    for part in ["2", "0"] {
-        succeeds(at, &["render-part", "p", "--part", part, "--device", "cpu"]);
-    }
-    std::thread::sleep(Duration::from_millis(1500));
-    assert!(child.try_wait().unwrap().is_none() && !at.join("t.png").exists());
-    succeeds(at, &["render-part", "p", "--part", "1", "--device", "cpu"]);
-    let begin = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        assert!(begin.elapsed() < Duration::from_secs(60), "the watch does not end");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let output = child.wait_with_output().unwrap();
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).contains("3 of 3 frames are whole"));
-    assert!(at.join("t.png").exists());
-}
-
 #[cfg(unix)]
 #[test]
 fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
@@ -179,26 +153,10 @@ fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
     let killed = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(killed.success());
     told_until("1 of 2 frames are whole");
-    told_until("interrupted; the same command goes on");
+    told_until("interrupted; the same command continues");
     told_until("--part 0");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(!at.join("t.png").exists());
-}
-
-#[cfg(unix)]
-#[test]
-fn make_renders_the_frames_and_the_animation() {
-    if !Command::new("make").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        eprintln!("NOT TESTED: there is no make");
-        return;
-    }
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let flags = ["--turntable=4", "--parts", "2", "--format", "make"];
-    let start = plan(at, &[&flags[..], &["--program", env!("CARGO_BIN_EXE_weekender")]].concat());
-    let made = Command::new("sh").arg("-c").arg(start).current_dir(at).output().unwrap();
-    assert!(made.status.success(), "{}", text(&made.stderr));
-    assert!(at.join("p/animation.png").exists() && frame(&at.join("p"), 3).exists());
 }
 
 #[test]
@@ -222,8 +180,6 @@ fn what_cannot_be_planned_by_frames_is_refused() {
     let sampled = ["plan", "--out", "q", "--sample-range", "4..8", "--turntable=9", "--parts", "2"];
     assert!(ends(at, 2, &sampled).1.contains("--sample-range"));
     plan(at, &["--turntable=3", "--parts", "3"]);
-    let (_, told) = ends(at, 2, &["render-part", "p", "--part", "0", "--every", "5s"]);
-    assert!(told.contains("--every") && told.contains("leave it out"), "{told}");
     let (_, told) = ends(at, 2, &["merge", "p", "--out", "a.exr"]);
     assert!(told.contains("a.exr") && told.contains(".png"), "{told}");
     // The directory keeps its plan.
@@ -233,7 +189,6 @@ fn what_cannot_be_planned_by_frames_is_refused() {
         let (_, told) = ends(at, 2, &[&["plan", "--out", "p"], &SMALL[..], other].concat());
         assert!(told.contains("holds the plan of another picture"), "{told}");
     }
-    plan(at, &["--turntable=3", "--parts", "3", "--format", "parallel"]);
     let manifest = fs::read_to_string(at.join("p/plan.json")).unwrap();
     fs::write(at.join("p/plan.json"), manifest.replacen("\"frames\": [\n    0,", "\"frames\": [\n    1,", 1))
         .unwrap();

@@ -57,15 +57,3 @@ fn files_say_what_they_are() {
     let (_, refused) = ends(at, 2, &["info", "x.exr"]);
     assert!(refused.contains("x.exr"), "{refused}");
 }
-
-#[test]
-fn a_plan_is_known_by_its_ending_however_that_is_written() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    plan(at, "p", &["--samples", "4", "--parts", "2"]);
-    let told = succeeds(at, &["info", "p"]);
-    std::fs::copy(at.join("p/plan.json"), at.join("p/COPY.JSON")).unwrap();
-    let of_copy = succeeds(at, &["info", "p/COPY.JSON"]);
-    assert_eq!(told.lines().count(), of_copy.lines().count(), "{told}{of_copy}");
-    assert!(of_copy.contains("in 2 parts"), "{of_copy}");
-}

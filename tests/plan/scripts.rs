@@ -1,6 +1,6 @@
 //! The files for Slurm, GNU parallel and make.
 
-use super::common::{PICTURE, ends, film, part_path, plan, succeeds, whole};
+use super::common::{ends, film, part_path, plan, whole};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -34,7 +34,7 @@ fn json_has_the_words_of_every_command() {
         json["part_commands"][1].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
     assert_eq!(
         words[1..],
-        ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=120s"]
+        ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=2m"]
     );
     assert_eq!(json["merge_command"][2], "p q/plan.json");
 }
@@ -165,31 +165,4 @@ fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
         assert_eq!(fs::read_to_string(&asked_path).unwrap(), asked);
         assert!(film(&part).sample_count() > before);
     }
-}
-
-/// Slurm's default of MaxArraySize is 1001, which is above the largest number of a task.
-#[test]
-fn an_array_that_slurm_refuses_by_default_is_pointed_out() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    for (parts, is_too_long) in [("1001", false), ("1002", true)] {
-        let flags = ["plan", "--samples", "4096", "--format", "slurm", "--parts", parts, "--out", parts];
-        let (_, told) = ends(at, 0, &flags);
-        assert_eq!(told.contains("MaxArraySize"), is_too_long, "{parts}: {told}");
-    }
-}
-
-#[test]
-fn a_plan_of_the_usual_example_is_divided_evenly() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let flags =
-        ["plan", "--scene", "book", "--size", "1200x675", "--samples", "4096", "--parts", "32", "--out", "d"];
-    let (out, told) = ends(at, 0, &flags);
-    assert!(told.contains("32 parts of 128 samples per pixel each"), "{told}");
-    assert!(out.lines().nth(31).unwrap().ends_with("render-part d/plan.json --part 31"), "{out}");
-    let uneven = [&["plan"], &PICTURE[..], &["--samples", "1000", "--parts", "3", "--out", "e"]].concat();
-    let (_, told) = ends(at, 0, &uneven);
-    assert!(told.contains("3 parts of 328 to 336 samples per pixel, in blocks of 16"), "{told}");
-    succeeds(at, &["info", "d"]);
 }

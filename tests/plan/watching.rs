@@ -1,7 +1,6 @@
 //! `merge --watch`.
 
 use super::common::{command, film, part_path, plan, render_part, text, whole};
-use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
@@ -73,39 +72,9 @@ fn a_signal_ends_it_with_the_picture_so_far() {
         assert!(killed.success());
         let (code, told) = ended(child);
         assert_eq!(code, Some(expected), "{told}");
-        assert!(told.contains("the same command goes on") && told.contains("--part 0"), "{told}");
+        assert!(told.contains("the same command continues") && told.contains("--part 0"), "{told}");
         assert_eq!(film(&at.join("so-far.exr")).sample_count(), 4);
     }
-}
-
-#[test]
-fn nothing_is_written_while_nothing_comes() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    plan(at, "p", &["--samples", "8", "--parts", "2"]);
-    let child = watch(at);
-    render_part(at, "p", 0);
-    until(at, 4);
-    // It looks at the parts every second.
-    sleep(Duration::from_millis(2500));
-    render_part(at, "p", 1);
-    let (code, told) = ended(child);
-    assert_eq!((code, told.matches("4 of 8 samples per pixel").count()), (Some(0), 1), "{told}");
-}
-
-#[test]
-fn a_wrong_part_does_not_delay_the_first_picture() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    plan(at, "p", &["--samples", "8", "--parts", "2"]);
-    std::fs::write(part_path(at, "p", 0), "no film").unwrap();
-    let mut child = watch_every(at, "1h");
-    let mut told = BufReader::new(child.stderr.take().unwrap());
-    assert!(told.by_ref().lines().any(|line| line.unwrap().contains("warning: part 0")));
-    render_part(at, "p", 1);
-    until(at, 4);
-    child.kill().unwrap();
-    child.wait().unwrap();
 }
 
 #[test]
