@@ -57,7 +57,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     };
     console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     if options.format == Format::Text {
-        console::note_whole(&format!("then: {}", shell::line(commands.merge(&result))));
+        console::note(&format!("then: {}", shell::line(commands.merge(&result))));
     }
     Ok(ExitCode::SUCCESS)
 }

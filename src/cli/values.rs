@@ -6,7 +6,7 @@ use crate::backends::BackendError;
 use crate::files::ShownPath;
 use crate::film::ROUNDING_LIMIT;
 use crate::output::FrameRate;
-use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
+use crate::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use clap::builder::{PathBufValueParser, TypedValueParser};

@@ -191,7 +191,7 @@ impl Merging<'_> {
             console::note("interrupted; the same command continues");
         }
         pieces.lines().for_each(|line| console::note(&line));
-        console::note_whole(&pieces.remedy(&options.program));
+        console::note(&pieces.remedy(&options.program));
         Ok(interrupted.map_or(ExitCode::from(FAILED), |interrupt| interrupt.exit_code()))
     }
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::app::model::view::With;
 use crate::backends::BackendChoice;
+use crate::measure::stress::shown_cases;
 use crate::progressive::{Phase, Stop, View};
 use crate::render_cpu::CpuOptions;
 use crate::stages::{Stage, SurfaceRule};
