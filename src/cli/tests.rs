@@ -7,6 +7,7 @@ use crate::output::FrameRate;
 use crate::plan::{Format, Work};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
+use std::time::Duration;
 
 fn request(line: &str) -> Result<Request, Failure> {
     parse(format!("weekender {line}").split(' ').map(Into::into))
