@@ -111,7 +111,7 @@ mod tests {
     /// A film file that is valid except for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
-        let mut head = Head::of(&film, TEXTS).unwrap();
+        let mut head = Head::of(&film, TEXTS);
         change(&mut head);
         head.head_checksum = head.checksum(TEXTS);
         let mut file = Cursor::new(Vec::new());
@@ -136,10 +136,10 @@ mod tests {
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
         refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the ");
-        refused(|head| head.bands = Vec::new(), "0 checksums for 1 bands");
+        refused(|head| head.bands = Vec::new(), "2 halves and 0 checksums of bands");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
-        refused(|head| head.halves = 3, "3 halves");
+        refused(|head| head.halves = 3, "3 halves and 1 checksums of bands");
         refused(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
         refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }

@@ -137,12 +137,12 @@ fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, Ch
         });
     }
     let head: Head = toml::from_str(text).map_err(unreadable)?;
-    if !(1..=2).contains(&head.halves) {
-        return Err(damaged(path, format!("it has {} halves, but a film has 1 or 2", head.halves)));
-    }
-    let (checksums, bands) = (head.bands.len(), band_count(head.height) as usize);
-    if checksums != bands {
-        return Err(damaged(path, format!("it has {checksums} checksums for {bands} bands of rows")));
+    let (halves, checksums, bands) = (head.halves, head.bands.len(), band_count(head.height) as usize);
+    if !(1..=2).contains(&halves) || checksums != bands {
+        let what = format!(
+            "it has {halves} halves and {checksums} checksums of bands, of which it should have {bands}"
+        );
+        return Err(damaged(path, what));
     }
     Ok(head)
 }

@@ -36,7 +36,7 @@ pub(crate) fn write(
 ) -> io::Result<()> {
     let comments: String = description.lines().map(|line| line + "\n").collect();
     let texts = [description.recipe().as_bytes(), comments.as_bytes()];
-    write_with(film, texts, &Head::of(film, texts)?, writer)
+    write_with(film, texts, &Head::of(film, texts), writer)
 }
 
 /// Writes a film file with the given head.
