@@ -319,7 +319,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("obvhs", &["prepared"]),
     ("libm", &["animation", "statistics"]),
     ("image", &["output", "compare", "check"]),
-    ("indicatif", &["memory", "terminal", "report"]),
+    ("indicatif", &["terminal", "report"]),
     ("maud", &["gallery", "companion"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
