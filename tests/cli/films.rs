@@ -105,7 +105,10 @@ fn a_checkpoint_is_never_replaced_unless_the_render_goes_on_with_it() {
         &["k.exr", "32 samples per pixel of this picture", "--continue", "move this one away"],
     );
     refused(&["./k.exr", "--time-limit", "1"], &["32 samples per pixel"]);
-    refused(&["k.exr", "--seed", "5"], &["k.exr", "32 samples", "another picture: seed is 5 here, 0 there"]);
+    refused(
+        &["k.exr", "--seed", "5"],
+        &["k.exr", "32 samples", "another picture", "seed is 5 here, 0 there"],
+    );
     refused(&["k.exr", "--seed", "5", "--continue"], &["seed is 5 here, 0 there", "name another film"]);
     render(directory.path(), &["--samples", "4", "--out", "other.exr"]);
     refused(&["k.exr", "--resume", "other.exr"], &["k.exr", "32 samples per pixel"]);
