@@ -124,7 +124,7 @@ mod tests {
         }
         let parallel = &scripts(Format::Parallel, &manifest, "a w")[0].1;
         let command =
-            parallel.lines().filter_map(|line| line.trim().strip_suffix(" || exit")).last().unwrap();
+            parallel.lines().filter_map(|line| line.trim().strip_suffix(" || exit")).next_back().unwrap();
         assert_eq!(
             shlex::split(command).unwrap(),
             ["'a w' render-part plan.json --part {} \"--adapter=it's \"'$1'"]

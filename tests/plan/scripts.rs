@@ -1,6 +1,6 @@
 //! The files for Slurm, GNU parallel and make.
 
-use super::common::{ends, film, part_path, plan, whole};
+use super::common::{film, part_path, plan, whole};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
