@@ -132,10 +132,11 @@ fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Fail
             part.samples[1]
         ))),
         Ok(found) => Ok(Some(found)),
-        Err(
-            OpenError::Film(damaged @ CheckpointError::Damaged { .. })
-            | OpenError::NotFilm(damaged @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })),
-        ) => put_aside(path, &damaged).map(|()| None).map_err(Failure::Input),
+        Err(OpenError::Film(
+            damaged @ (CheckpointError::Damaged { .. }
+            | CheckpointError::NotExr { .. }
+            | CheckpointError::NotFilm { .. }),
+        )) => put_aside(path, &damaged).map(|()| None).map_err(Failure::Input),
         Err(OpenError::OtherPicture { path, difference }) => Err(Failure::Input(anyhow!(
             "{} is the film of another picture: {difference}; {REMEDY}",
             path.shown()

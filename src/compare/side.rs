@@ -48,7 +48,7 @@ impl Side {
         let saved = match Saved::read(path) {
             Ok(saved) => Some(saved),
             // Most pictures have no description. The picture itself is read below, which reports its own errors.
-            Err(OpenError::Picture(_) | OpenError::NotFilm(_)) => None,
+            Err(OpenError::Picture(_)) => None,
             Err(error) => return Err(error.into()),
         };
         // Pixels can be compared even if the recipe is not valid.

@@ -48,9 +48,15 @@ impl FileLock {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             return Ok(FileLock { held: None });
         }
-        let beside =
-            resolved(path).and_then(|path| lock_file(&path).ok_or(ErrorKind::InvalidFilename.into()));
-        match beside.and_then(|beside| Ok((lock_path(&beside, patience)?, beside))) {
+        let lock = || -> io::Result<(File, PathBuf)> {
+            let path = resolved(path)?;
+            let mut name = OsString::from(PREFIX);
+            name.push(path.file_name().ok_or(ErrorKind::InvalidFilename)?);
+            name.push(LOCK);
+            let path = path.with_file_name(name);
+            Ok((lock_path(&path, patience)?, path))
+        };
+        match lock() {
             Ok(held) => Ok(FileLock { held: Some(held) }),
             Err(error) if error.kind() == ErrorKind::WouldBlock => Err(LockedError { path: path.to_owned() }),
             Err(error) => {
@@ -70,13 +76,6 @@ impl Drop for FileLock {
     }
 }
 
-fn lock_file(path: &Path) -> Option<PathBuf> {
-    let mut name = OsString::from(PREFIX);
-    name.push(path.file_name()?);
-    name.push(LOCK);
-    Some(path.with_file_name(name))
-}
-
 /// Locks the file at `path`, which is created if it is missing, until the result is dropped.
 ///
 /// # Errors
@@ -87,7 +86,7 @@ pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
     loop {
         let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
-            Ok(()) if is_at(&file, path) => return Ok(file),
+            Ok(()) if is_at(&file, path)? => return Ok(file),
             // Its last owner has removed it just now.
             Ok(()) => {}
             Err(TryLockError::WouldBlock) if begin.elapsed() >= patience => {
@@ -99,9 +98,9 @@ pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
     }
 }
 
-fn is_at(file: &File, path: &Path) -> bool {
-    let handle = file.try_clone().and_then(Handle::from_file);
-    handle.is_ok_and(|handle| Handle::from_path(path).is_ok_and(|there| there == handle))
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    let held = Handle::from_file(file.try_clone()?)?;
+    Ok(Handle::from_path(path).is_ok_and(|there| there == held))
 }
 
 #[cfg(test)]

@@ -52,8 +52,7 @@ impl ErrorEstimate {
 
     /// The relative uncertainty of the estimate, one standard deviation, such as "± 0.2 %".
     pub fn uncertainty(&self) -> String {
-        let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
-        format!("± {:.1} %", (100.0 * share).max(0.1))
+        format!("± {:.1} %", (100.0 * self.rmse_deviation / self.rmse).max(0.1))
     }
 }
 

@@ -71,9 +71,9 @@ impl FilmSum {
     /// # Errors
     /// [`FilmError::Memory`].
     pub fn try_copy(&self) -> Result<Self, FilmError> {
-        let film = self.film.try_copy()?;
-        let (description, first, parts) = (self.description.clone(), self.first.clone(), self.parts.clone());
-        Ok(FilmSum { film, description, first, parts })
+        let FilmSum { film, description, first, parts } = self;
+        let (description, first, parts) = (description.clone(), first.clone(), parts.clone());
+        Ok(FilmSum { film: film.try_copy()?, description, first, parts })
     }
 
     /// Adds the film in a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and

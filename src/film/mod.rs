@@ -58,13 +58,8 @@ impl Film {
     pub fn new(width: u32, height: u32, half_count: usize) -> Self {
         debug_assert!(half_count == 1 || half_count == 2);
         let pixels = width as usize * height as usize;
-        Film {
-            width,
-            height,
-            halves: vec![vec![PixelSum::default(); pixels]; half_count],
-            samples: SampleRanges::default(),
-            rejected: 0,
-        }
+        let halves = vec![vec![PixelSum::default(); pixels]; half_count];
+        Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 }
     }
 
     /// Like [`Film::new`], but returns an error if there is not enough memory.
@@ -177,15 +172,9 @@ impl Film {
     /// [`FilmError::Overlap`] if the film already had some of them, [`FilmError::Range`] if they reach beyond the
     /// limit. Nothing is recorded then.
     pub fn record(&mut self, range: Range<u64>, rejected: u64) -> Result<(), FilmError> {
-        let rejected = self.with_rejected(rejected)?;
         self.samples.insert(range)?;
-        self.rejected = rejected;
+        self.rejected = self.rejected.saturating_add(rejected);
         Ok(())
-    }
-
-    fn with_rejected(&self, more: u64) -> Result<u64, FilmError> {
-        let what = || format!("{} and {more} samples rejected, more than can be counted", self.rejected);
-        self.rejected.checked_add(more).ok_or_else(|| FilmError::Parts { what: what() })
     }
 
     /// Sum of a pixel over the halves.
@@ -200,16 +189,14 @@ impl Film {
     /// Merges another film of the same size into this one.
     ///
     /// # Errors
-    /// [`FilmError::Size`] or [`FilmError::Overlap`], or an error if there are more rejected samples than can be
-    /// counted. This film is then unchanged.
+    /// [`FilmError::Size`] or [`FilmError::Overlap`]. This film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
         let shape = |f: &Film| (f.width, f.height, f.halves.len());
         if shape(self) != shape(other) {
             return Err(FilmError::Size { mine: shape(self), theirs: shape(other) });
         }
-        let samples = self.samples.union(&other.samples)?;
-        self.rejected = self.with_rejected(other.rejected)?;
-        self.samples = samples;
+        self.samples = self.samples.union(&other.samples)?;
+        self.rejected = self.rejected.saturating_add(other.rejected);
         for (mine, theirs) in self.halves.iter_mut().zip(&other.halves) {
             for (sum, more) in mine.iter_mut().zip(theirs) {
                 sum.add(*more);

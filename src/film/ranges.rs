@@ -19,11 +19,8 @@ impl SampleRanges {
     /// ranges have samples in common.
     pub fn from_ranges(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
         let mut ranges: Vec<Range<u64>> = ranges.into_iter().collect();
-        for range in &ranges {
-            if range.is_empty() {
-                return Err(FilmError::Range { range: range.clone() });
-            }
-            check(range)?;
+        if let Some(range) = ranges.iter().find(|range| range.is_empty() || range.end > SAMPLE_LIMIT) {
+            return Err(FilmError::Range { range: range.clone() });
         }
         ranges.sort_unstable_by_key(|range| range.start);
         Self::of_sorted(ranges)
@@ -100,12 +97,12 @@ impl SampleRanges {
         if range.is_empty() {
             return Ok(());
         }
-        check(&range)?;
-        if self.end() <= range.start {
-            self.push(range);
-            return Ok(());
+        let added = SampleRanges::from_ranges([range])?;
+        // Most ranges come in order.
+        match added.ranges.as_slice() {
+            [range] if self.end() <= range.start => self.push(range.clone()),
+            _ => *self = self.union(&added)?,
         }
-        *self = self.union(&SampleRanges { count: range.end - range.start, ranges: vec![range] })?;
         Ok(())
     }
 
@@ -137,10 +134,6 @@ impl SampleRanges {
         let end = end.min(start.saturating_add(limit));
         (start < end).then_some(start..end)
     }
-}
-
-fn check(range: &Range<u64>) -> Result<(), FilmError> {
-    if range.end > SAMPLE_LIMIT { Err(FilmError::Range { range: range.clone() }) } else { Ok(()) }
 }
 
 /// As `0..64, 128..256`.

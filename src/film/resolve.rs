@@ -7,7 +7,8 @@ use std::ops::Range;
 impl Film {
     /// Mean radiance of pixel `index` (row by row from the top), linear RGB; black without samples.
     pub fn mean(&self, index: usize) -> [f64; 3] {
-        mean_of(self.pixel_sum(index), self.sample_count())
+        let count = self.sample_count().max(1) as f64;
+        self.pixel_sum(index).radiance().map(|x| x / count)
     }
 
     /// The whole picture, linear RGB, row by row from the top.
@@ -105,10 +106,6 @@ impl Film {
             }
         }
     }
-}
-
-fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
-    if count == 0 { [0.0; 3] } else { sum.radiance().map(|x| x / count as f64) }
 }
 
 /// Converts one channel of a pixel in `row` of `height` from linear radiance to 8 bits.

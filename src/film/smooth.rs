@@ -24,37 +24,24 @@ impl Film {
             return smooth;
         }
         let side = SIDE * FEW / samples.max(FEW);
-        let width = self.width as usize;
+        let [width, height] = [self.width as usize, self.height as usize];
         for half in &mut smooth.halves {
-            for row in half.chunks_exact_mut(width) {
-                along(row, side);
-            }
-            down(half, width, side);
+            (0..height).for_each(|row| smooth_line(half, row * width, 1, width, side));
+            (0..width).for_each(|column| smooth_line(half, column, width, height, side));
         }
         smooth
     }
 }
 
-/// Averages the pixels of a row with those beside them. The first and the last one are their own neighbours.
-fn along(row: &mut [PixelSum], side: u64) {
-    let Some(mut before) = row.first().copied() else { return };
-    for x in 0..row.len() {
-        let here = row[x];
-        row[x] = average([before, here, row.get(x + 1).copied().unwrap_or(here)], side);
+/// Averages `count` pixels with those beside them. The first and the last one are their own neighbours.
+fn smooth_line(sums: &mut [PixelSum], start: usize, stride: usize, count: usize, side: u64) {
+    let mut before = sums[start];
+    for index in 0..count {
+        let at = start + index * stride;
+        let here = sums[at];
+        let after = if index + 1 < count { sums[at + stride] } else { here };
+        sums[at] = average([before, here, after], side);
         before = here;
-    }
-}
-
-/// Averages the pixels of rows of this width with those above and below.
-fn down(rows: &mut [PixelSum], width: usize, side: u64) {
-    let mut before = rows[..width].to_vec();
-    for start in (0..rows.len()).step_by(width) {
-        for (x, above) in before.iter_mut().enumerate() {
-            let here = rows[start + x];
-            let below = rows.get(start + width + x).copied().unwrap_or(here);
-            rows[start + x] = average([*above, here, below], side);
-            *above = here;
-        }
     }
 }
 

@@ -73,14 +73,11 @@ mod tests {
         assert_eq!(told(|_| {}), None);
         // Equal numbers are no difference, whatever their signs.
         assert_eq!(told(|recipe| recipe.camera.look_from.x = -0.0), None);
-        let cases: [(fn(&mut Recipe), &str); 11] = [
+        let cases: [(fn(&mut Recipe), &str); 8] = [
             (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
             (|recipe| recipe.settings.seed = 5, "seed is 0 here, 5 there"),
             (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov is 90 here, 20 there"),
             (|recipe| recipe.camera.look_from.y = -2.5, "look-from is [0, 0, 0] here, [0, -2.5, 0] there"),
-            (|recipe| recipe.camera.look_at.z = -2.0, "look-at is [0, 0, -1] here, [0, 0, -2] there"),
-            (|recipe| recipe.camera.vup.z = 0.25, "vup is [0, 1, 0] here, [0, 1, 0.25] there"),
-            (|recipe| recipe.camera.defocus_angle_degrees = 0.6, "defocus-angle is 0 here, 0.6 there"),
             (
                 |recipe| recipe.camera.focus_distance = Some(3.4),
                 "focus-distance is that to the point looked at here, 3.4 there",

@@ -13,7 +13,7 @@ pub use rescue::rescue;
 
 use crate::files::ShownPath;
 use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
-use crate::output::{OutputError, OutputFormat, RECIPE_LIMIT, length_of_missing, read_description};
+use crate::output::{OutputError, RECIPE_LIMIT, length_of_missing, read_description};
 use crate::recipe::{Recipe, file};
 use crate::render::RenderJob;
 use crate::stages::Stage;
@@ -24,12 +24,9 @@ use std::path::{Path, PathBuf};
 pub enum OpenError {
     #[error(transparent)]
     Scene(#[from] file::FileError),
-    /// The film is damaged, of another version, or cannot be read.
+    /// The film is damaged, of another version, or cannot be read; or a film is needed, and this is none.
     #[error(transparent)]
     Film(CheckpointError),
-    /// The file is named like a film, but is not a film and does not describe how it was made.
-    #[error(transparent)]
-    NotFilm(CheckpointError),
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
     Picture(OutputError),
@@ -56,22 +53,14 @@ impl Saved {
     /// Reads a picture or film. The first bytes of the file tell which it is.
     ///
     /// # Errors
-    /// [`OpenError::Film`], [`OpenError::NotFilm`] or [`OpenError::Picture`].
+    /// [`OpenError::Film`] or [`OpenError::Picture`].
     pub fn read(path: &Path) -> Result<Self, OpenError> {
-        let error = match checkpoint::load(path) {
+        match checkpoint::load(path) {
             Ok(FilmFile { film, description }) => {
-                return Ok(Saved { path: path.to_owned(), description, film: Some(film) });
+                Ok(Saved { path: path.to_owned(), description, film: Some(film) })
             }
-            Err(error @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })) => error,
-            Err(error) => return Err(OpenError::Film(error)),
-        };
-        match Self::describe(path) {
-            Err(OpenError::Picture(OutputError::NoDescription { .. }))
-                if matches!(OutputFormat::from_path(path), Ok(OutputFormat::Exr)) =>
-            {
-                Err(OpenError::NotFilm(error))
-            }
-            outcome => outcome,
+            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => Self::describe(path),
+            Err(error) => Err(OpenError::Film(error)),
         }
     }
 
@@ -193,10 +182,10 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
 /// # Errors
 /// [`OpenError`]; pictures and scene files are refused.
 pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
-    let Opened { job, content, .. } = open(path)?;
-    match content {
-        Content::Film(film) => Ok((job, film)),
-        _ => Err(OpenError::NotFilm(CheckpointError::NotFilm { path: path.to_owned() })),
+    checkpoint::read_head(path).map_err(OpenError::Film)?;
+    match open(path)? {
+        Opened { job, content: Content::Film(film), .. } => Ok((job, film)),
+        _ => Err(OpenError::Film(CheckpointError::NotFilm { path: path.to_owned() })),
     }
 }
 

@@ -116,7 +116,7 @@ fn a_checkpoint_is_never_replaced_unless_the_render_goes_on_with_it() {
     std::fs::write(at("k.exr"), &before[..100]).unwrap();
     refused(&["k.exr"], &["k.exr is damaged", "move this one away"]);
     std::fs::write(at("k.exr"), "a picture").unwrap();
-    refused(&["k.exr"], &["k.exr", "not a film of Weekender", "move this one away"]);
+    refused(&["k.exr"], &["k.exr", "is not an EXR file", "move this one away"]);
     // There is nothing to lose.
     std::fs::write(at("k.exr"), "").unwrap();
     render(directory.path(), &["--samples", "4", "--checkpoint", "k.exr"]);

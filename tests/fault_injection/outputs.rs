@@ -1,72 +1,38 @@
 //! Standard output and standard error that are closed or full.
 
 use super::common::{ENDLESS, batch, film, names, signal, succeeds, text, until, wait, weekender};
-use std::fs::{self};
+use std::fs;
+use std::process::Stdio;
 use tempfile::TempDir;
 
 #[test]
 fn what_is_only_said_never_ends_a_run() {
-    for (round, both) in [(0, false), (1, false), (2, true)] {
+    for is_full in [true, false] {
         let at = TempDir::new().unwrap();
         let at = at.path();
         let mut command = batch(at, "on", &ENDLESS);
-        let gone = || {
-            // A pipe whose reader has gone away.
-            let (reader, writer) = std::io::pipe().unwrap();
-            drop(reader);
-            writer
-        };
-        let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-        if round == 1 {
-            command.stderr(full())
-        } else {
-            command.stderr(gone())
-        };
-        if both {
-            command.stdout(gone());
+        command.stderr(closed(is_full));
+        if !is_full {
+            command.stdout(closed(is_full));
         }
         let mut child = command.spawn().unwrap();
         until("the film is not written", || at.join("g.exr").exists());
         signal(&child, "INT");
         let status = wait(&mut child);
-        assert_eq!(status.code(), Some(130), "round {round}: {status}");
+        assert_eq!(status.code(), Some(130), "{is_full}: {status}");
         assert_eq!(names(at), ["g.exr", "g.png"]);
         assert!(film(&at.join("g.exr")).sample_count() > 0);
+        let status = weekender(at, &["--batch", "--scene", "nowhere"]).stderr(closed(is_full)).status();
+        assert_eq!(status.unwrap().code(), Some(2));
     }
-    // Other runs that print messages: a lost device, a report, a comparison, bad input.
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let quiet = |arguments: &[&str]| {
-        let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-        let status = weekender(at, arguments).stderr(full()).status().unwrap();
-        status.code()
-    };
-    assert_eq!(quiet(&["--batch", "--scene", "nowhere"]), Some(2));
-    assert_eq!(quiet(&["--no-such-flag"]), Some(2));
-    let small = ["--batch", "--size", "8x8", "--samples", "2", "--device", "cpu", "--progress", "on"];
-    assert_eq!(quiet(&[&small[..], &["--json", "-"]].concat()), Some(0));
-    let report = [
-        "report",
-        "--out",
-        "r",
-        "--scenes",
-        "three-spheres",
-        "--backends",
-        "cpu",
-        "--samplers",
-        "sobol",
-        "--size",
-        "16x9",
-        "--seeds",
-        "1",
-        "--max-samples",
-        "4",
-        "--time-limit",
-        "1",
-        "--progress",
-        "on",
-    ];
-    assert_eq!(quiet(&report), Some(0));
+}
+
+/// A full device, or a pipe whose reader has gone away.
+fn closed(is_full: bool) -> Stdio {
+    if is_full {
+        return fs::OpenOptions::new().write(true).open("/dev/full").unwrap().into();
+    }
+    std::io::pipe().unwrap().1.into()
 }
 
 #[test]
@@ -85,15 +51,7 @@ fn results_that_nobody_can_read_are_a_failure_with_a_word() {
     ];
     for (arguments, code) in commands {
         for is_full in [true, false] {
-            let mut command = weekender(at, arguments);
-            if is_full {
-                command.stdout(fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
-            } else {
-                let (reader, writer) = std::io::pipe().unwrap();
-                drop(reader);
-                command.stdout(writer);
-            }
-            let output = command.output().unwrap();
+            let output = weekender(at, arguments).stdout(closed(is_full)).output().unwrap();
             assert_eq!(output.status.code(), Some(code), "{arguments:?}: {output:?}");
             assert!(text(&output.stderr).contains("cannot write to standard output"), "{arguments:?}");
         }

@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{CheckpointError, FIXED_POINT_MAX, Film, checkpoint};
+use weekender::film::{CheckpointError, Film, checkpoint};
 use weekender::output::decode_description;
 
 proptest! {
@@ -31,23 +31,12 @@ proptest! {
         let path = directory.path().join("film.exr");
         checkpoint::save(&path, &film, &description()).unwrap();
         let file = checkpoint::load(&path).unwrap();
-        prop_assert_eq!(file.film, film);
-        prop_assert_eq!(file.description, description());
+        prop_assert!(file.film == film && file.description == description());
+        // The same film always becomes the same bytes.
+        let again = directory.path().join("again.exr");
+        checkpoint::save(&again, &film, &description()).unwrap();
+        prop_assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
     }
-}
-
-#[test]
-fn a_film_always_becomes_the_same_bytes() {
-    let directory = tempfile::tempdir().unwrap();
-    let film = noisy_film(9, 4, 2, &[0..10]);
-    let bytes: Vec<Vec<u8>> = (0..8)
-        .map(|i| {
-            let path = directory.path().join(format!("{i}.exr"));
-            checkpoint::save(&path, &film, &description()).unwrap();
-            std::fs::read(path).unwrap()
-        })
-        .collect();
-    assert!(bytes.iter().all(|other| *other == bytes[0]));
 }
 
 fn load_error(path: &Path) -> CheckpointError {
@@ -214,28 +203,7 @@ fn the_head_of_a_film_file_tells_everything_but_the_sums() {
     let head = checkpoint::read_head(&path).unwrap();
     assert_eq!((head.width, head.height, head.halves), (5, 3, 1));
     assert_eq!((&head.samples, head.rejected), (film.samples(), 6));
-    assert_eq!((head.version, head.sample_version), (4, 3));
     assert_eq!(head.bytes, std::fs::metadata(&path).unwrap().len());
     assert_eq!(head.description, description());
     assert_eq!(checkpoint::check(&path).unwrap(), head);
-}
-
-#[test]
-fn sums_that_their_samples_cannot_give_are_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("x.exr");
-    let most = u64::from(FIXED_POINT_MAX);
-    // Of three samples, two are in the first half.
-    for (half, sum, is_possible) in
-        [(0, 2 * most, true), (0, 2 * most + 1, false), (1, most, true), (1, most + 1, false)]
-    {
-        let mut film = Film::new(2, 20, 2);
-        film.halves_mut()[half][39].0[1] = sum;
-        film.record(0..3, 0).unwrap();
-        checkpoint::save(&path, &film, &description()).unwrap();
-        match checkpoint::load(&path) {
-            Ok(read) => assert!(is_possible && read.film == film, "{sum} in half {half}"),
-            Err(error) => assert!(!is_possible && error.to_string().contains("pixel 39"), "{sum}: {error}"),
-        }
-    }
 }

@@ -37,18 +37,6 @@ fn films_that_do_not_go_together_are_left_as_they_were() {
 }
 
 #[test]
-fn more_rejected_samples_than_can_be_counted_are_an_error() {
-    let mut film = Film::new(1, 1, 1);
-    film.record(0..1, u64::MAX).unwrap();
-    let before = film.clone();
-    assert!(matches!(film.record(1..2, 1), Err(FilmError::Parts { .. })));
-    let mut other = Film::new(1, 1, 1);
-    other.record(1..2, 1).unwrap();
-    assert!(matches!(film.merge(&other), Err(FilmError::Parts { .. })));
-    assert_eq!(film, before);
-}
-
-#[test]
 fn merged_files_are_the_film_of_one_run() {
     let directory = tempfile::tempdir().unwrap();
     let paths: Vec<_> = [0..4, 9..12, 4..9]

@@ -1,10 +1,8 @@
 //! The head of a film file, which describes its sums, and the checksums.
 
-use super::{Film, PixelSum, SAMPLE_VERSION, VERSION, threads};
+use super::{Film, PixelSum, SAMPLE_VERSION, VERSION};
 use crate::film::{Checksum, FilmError, SampleRanges};
-use crate::threads::shared;
 use serde::{Deserialize, Serialize};
-use std::io;
 use std::ops::Range;
 
 /// Rows of a band. Each band has a checksum of its own, so that damage can be located.
@@ -35,12 +33,8 @@ pub(super) struct Versions {
     pub sample_version: Option<i64>,
 }
 
-/// The texts that a file holds beside its head and pixels.
-#[derive(Clone, Copy)]
-pub(super) struct Texts<'a> {
-    pub recipe: &'a [u8],
-    pub comments: &'a [u8],
-}
+/// The texts that a file holds beside its head and pixels: the recipe, and the comments.
+pub(super) type Texts<'a> = [&'a [u8]; 2];
 
 /// The number of bands of a picture of this height.
 pub(super) fn band_count(height: u32) -> u32 {
@@ -60,27 +54,14 @@ pub(super) fn band_checksum<'a>(band: u32, halves: impl Iterator<Item = &'a [Pix
     sum.finish()
 }
 
-/// The checksums of all bands, made by several threads.
-fn band_checksums(film: &Film) -> io::Result<Vec<String>> {
-    let width = film.width() as usize;
-    let checksum = |band: u32| {
-        let rows = band_rows(band, film.height());
-        let pixels = rows.start as usize * width..rows.end as usize * width;
-        band_checksum(band, film.halves().iter().map(|half| &half[pixels.clone()]))
-    };
-    let bands: Vec<u32> = (0..band_count(film.height())).collect();
-    let shares = bands.chunks(bands.len().div_ceil(threads()).max(1)).collect();
-    let sums = shared(shares, |share: &[u32]| share.iter().map(|band| checksum(*band)).collect());
-    let sums: Result<Vec<Vec<String>>, _> = sums.into_iter().collect();
-    sums.map(|sums| sums.concat()).map_err(|_| io::Error::other("a thread that makes checksums has failed"))
-}
-
 impl Head {
     /// Makes the head of a film with these texts.
-    ///
-    /// # Errors
-    /// If a thread that makes checksums has failed.
-    pub fn of(film: &Film, texts: Texts) -> io::Result<Self> {
+    pub fn of(film: &Film, texts: Texts) -> Self {
+        let band = |band: u32| {
+            let rows = band_rows(band, film.height());
+            let pixels = (rows.start * film.width()) as usize..(rows.end * film.width()) as usize;
+            band_checksum(band, film.halves().iter().map(|half| &half[pixels.clone()]))
+        };
         let mut head = Head {
             version: VERSION,
             sample_version: SAMPLE_VERSION,
@@ -90,10 +71,10 @@ impl Head {
             samples: film.samples().iter().map(|range| [range.start, range.end]).collect(),
             rejected: film.rejected(),
             head_checksum: String::new(),
-            bands: band_checksums(film)?,
+            bands: (0..band_count(film.height())).map(band).collect(),
         };
         head.head_checksum = head.checksum(texts);
-        Ok(head)
+        head
     }
 
     /// The sample ranges that the film holds.
@@ -107,8 +88,7 @@ impl Head {
         sum.words(&[self.version.into(), self.width.into(), self.height.into(), self.halves as u64]);
         sum.words(&[self.rejected, self.samples.len() as u64]);
         self.samples.iter().for_each(|range| sum.words(range));
-        sum.text(texts.recipe);
-        sum.text(texts.comments);
+        texts.iter().for_each(|text| sum.text(text));
         sum.word(self.sample_version.into());
         self.bands.iter().for_each(|band| sum.text(band.as_bytes()));
         sum.finish()

@@ -90,16 +90,4 @@ mod tests {
         let told = check_length(&header, least - 1).unwrap_err();
         assert!(told.ends_with("too few for chunks of 8192x8192 pixels"), "{told}");
     }
-
-    #[test]
-    fn deep_data_and_coarser_channels_are_refused_however_long_the_file_is() {
-        let plain = header((4, 4), Compression::RLE, BlockDescription::ScanLines);
-        assert_eq!(check_length(&plain, 1 << 30), Ok(()));
-        let mut deep = plain.clone();
-        deep.deep = true;
-        assert!(check_length(&deep, 1 << 30).unwrap_err().contains("deep data"));
-        let mut coarse = plain;
-        coarse.channels.list[0].sampling = Vec2(1, 2);
-        assert!(check_length(&coarse, 1 << 30).unwrap_err().contains("fewer samples than pixels"));
-    }
 }

@@ -97,7 +97,7 @@ mod tests {
     use std::io::Cursor;
     use std::path::Path;
 
-    const TEXTS: Texts = Texts { recipe: b"[render]\n", comments: b"Scene: none\n" };
+    const TEXTS: Texts = [b"[render]\n", b"Scene: none\n"];
 
     fn film() -> Film {
         let mut film = Film::new(4, 3, 2);
@@ -111,7 +111,7 @@ mod tests {
     /// A film file that is valid except for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
-        let mut head = Head::of(&film, TEXTS).unwrap();
+        let mut head = Head::of(&film, TEXTS);
         change(&mut head);
         head.head_checksum = head.checksum(TEXTS);
         let mut file = Cursor::new(Vec::new());
@@ -136,10 +136,10 @@ mod tests {
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
         refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the ");
-        refused(|head| head.bands = Vec::new(), "0 checksums for 1 bands");
+        refused(|head| head.bands = Vec::new(), "2 halves and 0 checksums of bands");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
-        refused(|head| head.halves = 3, "3 halves");
+        refused(|head| head.halves = 3, "3 halves and 1 checksums of bands");
         refused(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
         refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
@@ -172,6 +172,6 @@ mod tests {
         let told = claim(SIZE_LIMIT);
         assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{told}");
         let told = claim(20_000);
-        assert!(told.contains("its size is 20000x20000, but each side must have 1 to 16384"), "{told}");
+        assert!(told.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{told}");
     }
 }

@@ -1,6 +1,6 @@
 //! Opening film files: the head, the file's length and its description are checked before any sum is read.
 
-use super::head::{Head, Texts, Versions, band_count};
+use super::head::{Head, Versions, band_count};
 use super::length::check_length;
 use super::planes::{self, Plane};
 use super::{
@@ -27,10 +27,6 @@ pub struct FilmHead {
     /// Samples that were left out, over all pixels.
     pub rejected: u64,
     pub description: Description,
-    /// Version of the file's layout.
-    pub version: u32,
-    /// Version of the samples.
-    pub sample_version: u32,
     /// Length of the file in bytes.
     pub bytes: u64,
 }
@@ -76,8 +72,6 @@ impl<'a> Opened<'a> {
             samples: head.ranges().map_err(|error| damaged(path, error))?,
             rejected: head.rejected,
             description,
-            version: head.version,
-            sample_version: head.sample_version,
             bytes: length,
         };
         Ok((Opened { path, header: header.clone(), about, bands: head.bands, planes }, reader))
@@ -118,7 +112,7 @@ fn read_texts(header: &Header, path: &Path) -> Result<Option<(Head, Description)
     let head = read_head_text(head, header, path)?;
     let recipe = attribute(header, RECIPE_ATTRIBUTE).ok_or_else(|| damaged(path, "its recipe is missing"))?;
     let comments = header.own_attributes.comments.as_ref().map_or(&[][..], |text| text.as_slice());
-    if head.checksum(Texts { recipe, comments }) != head.head_checksum {
+    if head.checksum([recipe, comments]) != head.head_checksum {
         return Err(damaged(path, "its head or texts do not match their checksum"));
     }
     let no_text = |_| damaged(path, "its recipe or description is not text");
@@ -143,12 +137,12 @@ fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, Ch
         });
     }
     let head: Head = toml::from_str(text).map_err(unreadable)?;
-    if !(1..=2).contains(&head.halves) {
-        return Err(damaged(path, format!("it has {} halves, but a film has 1 or 2", head.halves)));
-    }
-    let (checksums, bands) = (head.bands.len(), band_count(head.height) as usize);
-    if checksums != bands {
-        return Err(damaged(path, format!("it has {checksums} checksums for {bands} bands of rows")));
+    let (halves, checksums, bands) = (head.halves, head.bands.len(), band_count(head.height) as usize);
+    if !(1..=2).contains(&halves) || checksums != bands {
+        let what = format!(
+            "it has {halves} halves and {checksums} checksums of bands, of which it should have {bands}"
+        );
+        return Err(damaged(path, what));
     }
     Ok(head)
 }

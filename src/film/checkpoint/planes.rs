@@ -7,7 +7,7 @@ use exr::block::UncompressedBlock;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::ChannelList;
 use exr::meta::header::Header;
-use exr::prelude::{ChannelDescription, Compression, SampleType, Text};
+use exr::prelude::{ChannelDescription, Compression, SampleType, Text, Vec2};
 
 /// What a channel contains.
 #[derive(Clone, Copy)]
@@ -42,20 +42,15 @@ pub(super) fn channels(half_count: usize) -> Vec<(ChannelDescription, Plane)> {
 
 /// What each channel of the file holds, if the layout is that of a film.
 pub(super) fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
-    let (columns, rows) = (header.layer_size.x(), header.layer_size.y());
+    let Vec2(columns, rows) = header.layer_size;
     if (head.width as usize, head.height as usize) != (columns, rows) {
-        return Err(format!(
-            "it has {columns}x{rows} pixels, but its head says {}x{}",
-            head.width, head.height
-        ));
+        let [width, height] = [head.width, head.height];
+        return Err(format!("it has {columns}x{rows} pixels, but its head says {width}x{height}"));
     }
-    if !(1..=SIZE_LIMIT).contains(&head.width) || !(1..=SIZE_LIMIT).contains(&head.height) {
-        return Err(format!(
-            "its size is {columns}x{rows}, but each side must have 1 to {SIZE_LIMIT} pixels"
-        ));
+    if [head.width, head.height].iter().any(|side| !(1..=SIZE_LIMIT).contains(side)) {
+        return Err(format!("it has {columns}x{rows} pixels, but each side of a film has 1 to {SIZE_LIMIT}"));
     }
-    let is_film = header.blocks == BlockDescription::ScanLines && header.compression == Compression::RLE;
-    if header.deep || !is_film {
+    if header.deep || header.blocks != BlockDescription::ScanLines || header.compression != Compression::RLE {
         return Err("its pixels are not stored as those of a film".to_owned());
     }
     let known = channels(head.halves);

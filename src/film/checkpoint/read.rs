@@ -108,13 +108,13 @@ impl Opened<'_> {
         let wanted = first_row..band_rows(bands.end - 1, *height).end as usize;
         let chunks = reader.filter_chunks(true, |_, _, block| wanted.contains(&block.pixel_position.y()));
         let mut chunks = chunks.map_err(|error| damaged(self.path, error))?.sequential_decompressor(true);
-        let mut row = Row::new(width);
+        let (mut row, mut found) = (Row::new(width), vec![Vec::new(); *halves]);
         for band in bands {
+            found.iter_mut().for_each(Vec::clear);
             let rows = band_rows(band, *height);
             let named = |what: &str| {
                 damaged(self.path, format!("the rows {} to {}: {what}", rows.start, rows.end - 1))
             };
-            let mut found = vec![Vec::with_capacity(rows.len() * width); *halves];
             for y in rows.clone() {
                 let block = match chunks.decompress_next_block() {
                     Some(Ok(block)) if block.index.pixel_position.y() == y as usize => block,

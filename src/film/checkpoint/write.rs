@@ -35,14 +35,14 @@ pub(crate) fn write(
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
     let comments: String = description.lines().map(|line| line + "\n").collect();
-    let texts = Texts { recipe: description.recipe().as_bytes(), comments: comments.as_bytes() };
-    write_with(film, texts, &Head::of(film, texts)?, writer)
+    let texts = [description.recipe().as_bytes(), comments.as_bytes()];
+    write_with(film, texts, &Head::of(film, texts), writer)
 }
 
 /// Writes a film file with the given head.
 pub(super) fn write_with(
     film: &Film,
-    texts: Texts,
+    [recipe, comments]: Texts,
     head: &Head,
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
@@ -58,12 +58,12 @@ pub(super) fn write_with(
         LineOrder::Increasing,
     );
     header.own_attributes.software_name = Some(text(SOFTWARE.as_bytes()));
-    header.own_attributes.comments = Some(text(texts.comments));
+    header.own_attributes.comments = Some(text(comments));
     let head = toml::to_string(head).map_err(io::Error::other)?;
     // One attribute in each of the two maps, so that the same film always gives the same bytes.
     let attribute = |bytes: &[u8]| AttributeValue::Text(text(bytes));
     header.own_attributes.other.insert(text(FILM_ATTRIBUTE.as_bytes()), attribute(head.as_bytes()));
-    header.shared_attributes.other.insert(text(RECIPE_ATTRIBUTE.as_bytes()), attribute(texts.recipe));
+    header.shared_attributes.other.insert(text(RECIPE_ATTRIBUTE.as_bytes()), attribute(recipe));
 
     let mut headers = SmallVec::new();
     headers.push(header);
@@ -88,7 +88,11 @@ fn compressed(
 ) -> exr::error::Result<Vec<(usize, Chunk)>> {
     let compress = |blocks: &[(usize, BlockIndex)]| -> exr::error::Result<Vec<(usize, Chunk)>> {
         let chunk = |(number, index): &(usize, BlockIndex)| {
-            let block = row_block(film, planes, meta, *index);
+            let mut data =
+                Vec::with_capacity(film.width() as usize * meta.headers[0].channels.bytes_per_pixel);
+            // With RLE, a block is a row.
+            planes::append_row(film, planes, index.pixel_position.y(), &mut data);
+            let block = UncompressedBlock { index: *index, data };
             Ok((*number, block.compress_to_chunk(&meta.headers)?))
         };
         blocks.iter().map(chunk).collect()
@@ -98,20 +102,6 @@ fn compressed(
     let chunks: Result<Vec<_>, _> =
         shared(shares, compress).into_iter().map(|share| share.unwrap_or_else(failed)).collect();
     Ok(chunks?.into_iter().flatten().collect())
-}
-
-fn row_block(
-    film: &Film,
-    planes: &[(ChannelDescription, Plane)],
-    meta: &MetaData,
-    index: BlockIndex,
-) -> UncompressedBlock {
-    let mut data = Vec::with_capacity(index.pixel_size.area() * meta.headers[0].channels.bytes_per_pixel);
-    let first_row = index.pixel_position.y();
-    for row in first_row..first_row + index.pixel_size.y() {
-        planes::append_row(film, planes, row, &mut data);
-    }
-    UncompressedBlock { index, data }
 }
 
 fn text(text: &[u8]) -> Text {
