@@ -76,18 +76,18 @@ impl BackendFlags {
         // Flags that only one kind of device understands.
         let (for_gpu, for_packets) =
             (gpu.adapter.is_some() || injection.is_some(), lanes.is_some() || isa.is_some());
-        let refuse = |flag, other, reason| Err(CliError::Together { flag, other, reason });
+        let device =
+            self.device.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        let refuse = |flags: &str, limit: &str| {
+            Err(CliError::Refused(format!(
+                "{flags} cannot be used with --device {device}: {limit}; leave one of them out"
+            )))
+        };
         match self.device {
-            Device::Cpu | Device::Reference if for_gpu => refuse(
-                "--adapter or --simulate",
-                "this --device",
-                "it applies only to the GPU; leave one of them out",
-            ),
-            Device::Reference if for_packets => refuse(
-                "--simd or --isa",
-                "--device reference",
-                "the reference is scalar; leave one of them out",
-            ),
+            Device::Cpu | Device::Reference if for_gpu => {
+                refuse("--adapter or --simulate", "it applies only to the GPU")
+            }
+            Device::Reference if for_packets => refuse("--simd or --isa", "the reference is scalar"),
             Device::Reference => Ok(BackendChoice::Reference { threads }),
             Device::Cpu => Ok(BackendChoice::Cpu(cpu)),
             Device::Both => Ok(BackendChoice::Both(cpu, gpu)),

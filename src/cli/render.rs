@@ -378,7 +378,7 @@ mod tests {
     #[test]
     fn what_ends_a_render_is_what_was_asked_for() {
         for (flags, range, seconds, noise) in [
-            ("--stage metal", Some(0..100), None, None),
+            ("--stage metal", Some(0..128), None, None),
             ("--samples 7 --noise-target 0.01", Some(0..7), None, Some(0.01)),
             ("--time-limit 5", None, Some(5.0), None),
             ("--sample-range 4..9 --time-limit 5", Some(4..9), Some(5.0), None),

@@ -150,14 +150,19 @@ impl Merging<'_> {
             }
             return Ok(true);
         };
-        add(sum, &mut self.pieces.all, |state| *state == State::Whole);
+        let mut wrong = add(sum, &mut self.pieces.all, |state| *state == State::Whole);
         // Checkpoints of unfinished parts will grow, so they are added to a copy unless this is the end.
         let mut copy = if is_end { None } else { sum.try_copy().ok() };
         if is_end || copy.is_some() {
             let sum = copy.as_mut().unwrap_or(&mut *sum);
-            add(sum, &mut self.pieces.all, |state| matches!(state, State::Unfinished { .. }));
+            let unfinished = |state: &State| matches!(state, State::Unfinished { .. });
+            wrong.extend(add(sum, &mut self.pieces.all, unfinished));
         } else {
             console::note("warning: there is no memory for the checkpoints of unfinished parts");
+        }
+        // At the end, they are named among what is missing.
+        if !is_end {
+            wrong.iter().for_each(|line| console::note(&format!("warning: {line}")));
         }
         let sum = copy.as_ref().unwrap_or(sum);
         let (samples, lengths) = (sum.film().samples(), plan.manifest.work.lengths());
@@ -196,18 +201,24 @@ impl Merging<'_> {
     }
 }
 
-/// Adds the films whose state `fits` to the sum. One that cannot be added is [`State::Wrong`].
-fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) {
+/// Adds the films whose state `fits` to the sum. One that cannot be added is [`State::Wrong`]; returns lines on these.
+fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) -> Vec<String> {
+    let mut wrong = Vec::new();
     for piece in pieces.iter_mut().filter(|piece| fits(&piece.state) && !piece.is_merged) {
-        match sum.add(&piece.path, same_job) {
-            Ok(_) => piece.is_merged = piece.state == State::Whole,
-            Err(MergeError::OtherJob { other, difference, .. }) => {
-                let words = format!("{} is the film of another picture: {difference}", other.shown());
-                piece.state = State::Wrong(words + "; move it away");
+        let words = match sum.add(&piece.path, same_job) {
+            Ok(_) => {
+                piece.is_merged = piece.state == State::Whole;
+                continue;
             }
-            Err(error) => piece.state = State::Wrong(error.to_string()),
-        }
+            Err(MergeError::OtherJob { other, difference, .. }) => {
+                format!("{} is the film of another picture: {difference}; move it away", other.shown())
+            }
+            Err(error) => error.to_string(),
+        };
+        piece.state = State::Wrong(words);
+        wrong.push(piece.line());
     }
+    wrong
 }
 
 /// Makes the animated PNG of all frames.

@@ -123,7 +123,8 @@ mod tests {
             assert!(text.lines().any(|found| found == line), "{line:?} is not in {name}: {text}");
         }
         let parallel = &scripts(Format::Parallel, &manifest, "a w")[0].1;
-        let command = parallel.lines().find_map(|line| line.trim().strip_suffix(" || exit")).unwrap();
+        let command =
+            parallel.lines().filter_map(|line| line.trim().strip_suffix(" || exit")).next_back().unwrap();
         assert_eq!(
             shlex::split(command).unwrap(),
             ["'a w' render-part plan.json --part {} \"--adapter=it's \"'$1'"]

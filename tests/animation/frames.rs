@@ -38,22 +38,6 @@ fn a_frame_alone_has_the_same_bits_as_in_a_run() {
 }
 
 #[test]
-fn a_frame_is_the_single_picture_of_its_camera() {
-    let directory = temp();
-    render(directory.path(), &[&KEYFRAMED[..], &["--frames", "2..3", "--out", "d"]].concat());
-    let single =
-        ["--batch", "--scene", "scene.toml", "--size", "24x14", "--samples", "4", "--out", "one.png"];
-    let camera = ["--look-from", "3,1,3", "--vfov", "60"];
-    assert!(weekender(directory.path(), &[&single[..], &camera].concat()).output().unwrap().status.success());
-    let frame = directory.path().join("d/frame-0002.png");
-    assert!(pixels(&frame) == pixels(&directory.path().join("one.png")));
-    let description = read_description(&frame).unwrap();
-    assert_eq!(description.get(key::FRAME), Some("2"));
-    let recipe = parse(description.recipe(), "frame").unwrap();
-    assert_eq!((recipe.camera.vfov_degrees, recipe.keyframes.len()), (60.0, 0));
-}
-
-#[test]
 fn whole_frames_are_kept_and_others_are_rendered_again() {
     let directory = temp();
     let run = |more: &[&str]| {
@@ -84,22 +68,6 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
     assert_eq!(run(&["--samples", "5"]), [8, 0]);
     assert_eq!(run(&["--samples", "5", "--seed", "1"]), [8, 0]);
     assert_eq!(run(&["--samples", "5", "--seed", "1"]), [0, 8]);
-}
-
-/// Its recipe asks for 64 samples, but a noise target ended it before.
-#[test]
-fn a_picture_with_fewer_samples_is_no_whole_frame() {
-    let directory = temp();
-    fs::create_dir(directory.path().join("d")).unwrap();
-    let picture = ["--batch", "--size", "24x14", "--threads", "2", "--samples", "64", "--noise-target", "10"];
-    let output =
-        weekender(directory.path(), &[&picture[..], &["--out", "d/frame-0000.png"]].concat()).output();
-    assert!(output.unwrap().status.success());
-    let frame = directory.path().join("d/frame-0000.png");
-    assert_eq!(read_description(&frame).unwrap().get(key::SAMPLES), Some("16"));
-    let flags = ["--turntable=8", "--frames", "0..1", "--samples", "64", "--out", "d"];
-    assert_eq!(render(directory.path(), &flags)["rendered"], 1);
-    assert_eq!(read_description(&frame).unwrap().get(key::SAMPLES), Some("64"));
 }
 
 #[cfg(unix)]
@@ -201,29 +169,4 @@ fn an_animated_png_has_all_frames_and_exact_delays() {
     let description = read_description(&directory.path().join("turn.png")).unwrap();
     assert!(description.get(key::COMMAND).unwrap().contains("--turntable=6"));
     parse(description.recipe(), "turn").unwrap().job().unwrap();
-}
-
-#[test]
-fn the_figures_tell_the_picture_and_the_files() {
-    let directory = temp();
-    let json = render(directory.path(), &["--turntable=9", "--frames", "2..5", "--out", "d"]);
-    for (key, value) in [
-        ("schema", 1.into()),
-        ("version", env!("CARGO_PKG_VERSION").into()),
-        ("scene", "three-spheres".into()),
-        ("width", 24.into()),
-        ("height", 14.into()),
-        ("samples_per_pixel", 4.into()),
-        ("directory", "d".into()),
-        ("first_file", "d/frame-0002.png".into()),
-        ("last_file", "d/frame-0004.png".into()),
-        ("animation", serde_json::Value::Null),
-    ] {
-        assert_eq!(json[key], value, "{key}");
-    }
-    let seconds = ["rendering_seconds", "total_seconds"].map(|key| json[key].as_f64().unwrap());
-    assert!(0.0 < seconds[0] && seconds[0] <= seconds[1], "{json}");
-    // Frames that are there take no time.
-    let again = render(directory.path(), &["--turntable=9", "--frames", "2..5", "--out", "d"]);
-    assert_eq!((&again["rendering_seconds"], &again["kept"]), (&0.0.into(), &3.into()));
 }

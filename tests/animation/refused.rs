@@ -65,6 +65,6 @@ fn an_animation_is_not_a_film() {
         with(&["--out", "d", flag, value], &["cannot be used with", flag]);
     }
     with(&["--out", "d", "--stage", "all"], &["all"]);
-    refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--frames needs --batch"]);
+    refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--batch"]);
     refused(&["--batch", "--fps", "30"], &["--fps needs --frames"]);
 }

@@ -1,7 +1,6 @@
 //! Parts rendered one by one.
 
 use super::common::{command, damage, ends, film, part_path, plan, render_part, succeeds, whole};
-use std::path::Path;
 use tempfile::TempDir;
 
 #[test]
@@ -135,24 +134,6 @@ fn the_environment_of_a_task_chooses_its_part() {
     assert_eq!(task("JOB_COMPLETION_INDEX", "4"), Some(2));
     let there = [0, 1, 2, 3].map(|part| part_path(at, "p", part).exists());
     assert_eq!(there, [false, true, true, false]);
-}
-
-#[test]
-fn one_command_starts_a_render_and_goes_on_with_it() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let go_on = |samples: &str| {
-        let flags =
-            ["--samples", samples, "--checkpoint", "f.exr", "--continue", "--out", "f.png", "--json", "-"];
-        let common = ["--batch", "--size", "32x18", "--device", "cpu", "--threads", "2"];
-        let json: serde_json::Value =
-            serde_json::from_str(&succeeds(at, &[&common[..], &flags].concat())).unwrap();
-        json["added_samples_per_pixel"].as_u64().unwrap()
-    };
-    assert_eq!([go_on("5"), go_on("5"), go_on("12")], [5, 0, 7]);
-    assert!(film(Path::new(&at.join("f.exr"))) == whole(at, "0..12", &[]));
-    let (_, told) = ends(at, 2, &["--batch", "--continue", "--out", "f.png"]);
-    assert!(told.contains("--checkpoint"), "{told}");
 }
 
 /// As when a scheduler starts a task again on another machine while the first one still runs.

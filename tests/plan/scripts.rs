@@ -1,6 +1,6 @@
 //! The files for Slurm, GNU parallel and make.
 
-use super::common::{ends, film, part_path, plan, whole};
+use super::common::{film, part_path, plan, whole};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -37,40 +37,6 @@ fn json_has_the_words_of_every_command() {
         ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=2m"]
     );
     assert_eq!(json["merge_command"][2], "p q/plan.json");
-}
-
-#[cfg(unix)]
-#[test]
-fn a_directory_that_begins_with_a_dash_is_no_flag() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let flags = |format: &str, out: &str| {
-        let picture = ["plan", "--size", "8x4", "--samples", "2", "--parts", "2", "--device", "cpu"];
-        let own = [format!("--out={out}"), format!("--format={format}")];
-        let program = ["--program", env!("CARGO_BIN_EXE_weekender")];
-        let words: Vec<&str> =
-            picture.into_iter().chain(own.iter().map(String::as_str)).chain(program).collect();
-        ends(at, 0, &words)
-    };
-    let shell = |line: &str| Command::new("sh").arg("-c").arg(line).current_dir(at).output().unwrap();
-    let (parts, told) = flags("text", "-d");
-    let merge = told.lines().find_map(|line| line.strip_prefix("then: ")).unwrap();
-    for line in parts.lines().chain([merge]) {
-        let output = shell(line);
-        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    }
-    assert_eq!(film(&at.join("-d/picture.exr")).sample_count(), 2);
-    let (json, _) = flags("json", "-d");
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["part_commands"][0][2], "./-d/plan.json");
-    assert_eq!(json["merge_command"][4], "./-d/picture.exr");
-    for (format, start) in
-        [("make", "make -C ./-d\n"), ("slurm", "sh ./-d/submit.sh\n"), ("parallel", "sh ./-d/run.sh\n")]
-    {
-        assert_eq!(flags(format, "-d").0, start);
-    }
-    let (told, _) = ends(at, 0, &["merge", "--check", "--", "-d"]);
-    assert!(told.contains("2 of 2 parts are whole"), "{told}");
 }
 
 #[cfg(unix)]

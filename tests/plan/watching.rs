@@ -10,11 +10,7 @@ use tempfile::TempDir;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 fn watch(at: &Path) -> Child {
-    watch_every(at, "0.1s")
-}
-
-fn watch_every(at: &Path, every: &str) -> Child {
-    let flags = ["merge", "--watch", "p", "--every", every, "--out", "so-far.exr"];
+    let flags = ["merge", "--watch", "p", "--every", "0.1s", "--out", "so-far.exr"];
     command(at, &flags).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -75,22 +71,4 @@ fn a_signal_ends_it_with_the_picture_so_far() {
         assert!(told.contains("the same command continues") && told.contains("--part 0"), "{told}");
         assert_eq!(film(&at.join("so-far.exr")).sample_count(), 4);
     }
-}
-
-#[test]
-fn between_two_writings_it_waits_as_long_as_it_is_told_to() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    plan(at, "p", &["--samples", "12", "--parts", "3"]);
-    let child = watch_every(at, "1h");
-    render_part(at, "p", 0);
-    until(at, 4);
-    render_part(at, "p", 1);
-    // It looks at the parts every second.
-    sleep(Duration::from_millis(2500));
-    assert_eq!(film(&at.join("so-far.exr")).sample_count(), 4);
-    render_part(at, "p", 2);
-    let (code, told) = ended(child);
-    assert_eq!(code, Some(0), "{told}");
-    assert_eq!(film(&at.join("so-far.exr")).sample_count(), 12);
 }
