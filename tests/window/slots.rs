@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::film::to_byte;
 use weekender::pictures::Picture;
-use weekender::pictures::compare::{compare_sides, text};
+use weekender::pictures::compare::{compare_sides, text as text_of};
 use weekender::heat::HeatScale;
 use weekender::output::{Encoding, OutputFormat};
 use weekender::progressive::{Phase, luminance};
@@ -211,7 +211,7 @@ fn the_verdict_is_that_of_compare() {
         let (headline, text) = verdict(&mut harness);
         assert_eq!(headline, expected, "{text}");
         let sides = [&first, &second].map(|path| Picture::read(path, Encoding::Srgb).unwrap());
-        let by_compare = text(&sides, &compare_sides(&sides).unwrap());
+        let by_compare = text_of(&sides, &compare_sides(&sides).unwrap());
         let after_names = |text: &str| text.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(after_names(&text), after_names(&by_compare));
     }
