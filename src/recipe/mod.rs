@@ -5,7 +5,7 @@ pub mod file;
 
 use crate::animation::{CameraPath, Keyframe};
 use crate::memory::{self, MemoryError};
-use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT, TRACING_BYTES_PER_SPHERE};
+use crate::render::{JobError, RenderJob, RenderSettings, TRACING_BYTES_PER_SPHERE};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
 use crate::scene::{Camera, Scene, Sphere};
 use crate::stages::{Rules, Setup, Stage};
@@ -83,24 +83,12 @@ impl Recipe {
         }
     }
 
-    /// Checks scene, camera, settings and rules. [`Recipe::check_samples`] checks the rest.
+    /// Checks scene, camera, settings and rules.
     ///
     /// # Errors
     /// See [`RenderJob::new`].
     pub fn job(&self) -> Result<RenderJob, JobError> {
         RenderJob::new(Arc::clone(&self.scene), self.camera, self.settings, self.rules)
-    }
-
-    /// Checks the samples per pixel.
-    ///
-    /// # Errors
-    /// If they are not within `1..=2^32`.
-    pub fn check_samples(&self) -> Result<(), SamplesError> {
-        if (1..=SAMPLE_LIMIT).contains(&self.samples_per_pixel) {
-            Ok(())
-        } else {
-            Err(SamplesError { samples: self.samples_per_pixel })
-        }
     }
 }
 
@@ -151,14 +139,6 @@ pub enum SceneNameError {
     Memory(#[from] MemoryError),
 }
 
-/// The number of samples per pixel is out of range.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("samples_per_pixel is {samples}, but must be within 1 and {SAMPLE_LIMIT}; try 100")]
-pub struct SamplesError {
-    /// Samples per pixel.
-    pub samples: u64,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -169,7 +149,6 @@ mod tests {
             let recipe = Recipe::builtin(builtin.name).expect("in the registry");
             assert_eq!(recipe.name, builtin.name);
             recipe.job().expect("valid");
-            recipe.check_samples().expect("valid");
         }
         let field = Recipe::builtin("field:123").expect("a field");
         assert_eq!((field.name.as_str(), field.scene.spheres.len()), ("field:123", 124));
@@ -196,14 +175,5 @@ mod tests {
         assert_eq!(plain_name("field:100"), "field-100");
         assert_eq!(plain_name("a/b\\c\"d*e?f<g>h|i\0j"), "a-b-c-d-e-f-g-h-i-j");
         assert_eq!(plain_name("Köln 1_2.3-4"), "Köln 1_2.3-4");
-    }
-
-    #[test]
-    fn samples_have_limits() {
-        let with = |samples_per_pixel| Recipe { samples_per_pixel, ..Stage::ALL[0].recipe() }.check_samples();
-        with(1).expect("least");
-        with(SAMPLE_LIMIT).expect("most");
-        assert!(with(0).expect_err("none").to_string().contains("samples_per_pixel is 0"));
-        assert_eq!(with(SAMPLE_LIMIT + 1), Err(SamplesError { samples: SAMPLE_LIMIT + 1 }));
     }
 }

@@ -92,13 +92,13 @@ impl SceneError {
 }
 
 /// A name as a key of a scene file, quoted if it must be.
-fn toml_key(name: &str) -> String {
+pub(crate) fn toml_key(name: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { toml_string(name) }
 }
 
 /// A text as a scene file has it: quoted, and with escapes for what a reader would not see.
-fn toml_string(text: &str) -> String {
+pub(crate) fn toml_string(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
         let is_seen = c == '\'' || c.escape_debug().count() == 1;

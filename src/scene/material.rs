@@ -4,6 +4,7 @@ use super::SceneError;
 use super::error::{colour, finite};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use std::ops::RangeInclusive;
 
 /// Limits on the refraction index.
@@ -11,7 +12,7 @@ pub const REFRACTION_INDEX_LIMITS: RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The behaviour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields, expecting = "a table of a material")]
 pub enum Material {
     /// Scatters with a density proportional to the cosine to the normal. (Section 9.4.)
     Lambertian {
@@ -126,8 +127,8 @@ impl Material {
         }
     }
 
-    pub(super) fn validate(&self, name: &str) -> Result<(), SceneError> {
-        let of = |key: &str| format!("materials.{name}.{key}");
+    pub(crate) fn validate(&self, what: fmt::Arguments<'_>) -> Result<(), SceneError> {
+        let of = |key: &str| format!("{what}.{key}");
         match *self {
             Material::Lambertian { albedo } => colour(|| of("albedo"), albedo, 1.0),
             Material::Metal { albedo, fuzz } => {
@@ -164,7 +165,7 @@ mod tests {
     use super::*;
 
     fn refusal(material: Material) -> String {
-        material.validate("m").expect_err("refused").to_string()
+        material.validate(format_args!("materials.m")).expect_err("refused").to_string()
     }
 
     #[test]
@@ -173,13 +174,15 @@ mod tests {
             assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
             assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));
         }
-        Material::Lambertian { albedo: DVec3::ONE }.validate("m").expect("white is fine");
+        Material::Lambertian { albedo: DVec3::ONE }
+            .validate(format_args!("materials.m"))
+            .expect("white is fine");
     }
 
     #[test]
     fn fuzz_above_one_is_kept_and_acts_as_one() {
         let fuzzy = Material::Metal { albedo: DVec3::ONE, fuzz: 5.0 };
-        fuzzy.validate("m").expect("as in the book");
+        fuzzy.validate(format_args!("materials.m")).expect("as in the book");
         assert_eq!(fuzzy.effective_fuzz(), 1.0);
         assert_eq!(fuzzy.look(), Look::Mirror { fuzz: 1.0 });
         let refused = refusal(Material::Metal { albedo: DVec3::ONE, fuzz: -0.5 });
@@ -211,13 +214,17 @@ mod tests {
     #[test]
     fn limits_of_materials_are_allowed() {
         for refraction_index in [1e-9, 1e9] {
-            Material::Dielectric { refraction_index }.validate("m").expect("at the limit");
+            Material::Dielectric { refraction_index }
+                .validate(format_args!("materials.m"))
+                .expect("at the limit");
         }
         for refraction_index in [0.9e-9, 1.1e9] {
             assert!(refusal(Material::Dielectric { refraction_index }).contains("within 1e-9 and 1e9"));
         }
         for albedo in [DVec3::ZERO, DVec3::ONE] {
-            Material::Metal { albedo, fuzz: 0.0 }.validate("m").expect("at the limit");
+            Material::Metal { albedo, fuzz: 0.0 }
+                .validate(format_args!("materials.m"))
+                .expect("at the limit");
         }
         assert!(refusal(Material::Metal { albedo: DVec3::splat(1.01), fuzz: 0.0 }).contains("albedo"));
     }

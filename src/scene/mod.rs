@@ -13,6 +13,7 @@ mod sphere;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_LIMITS_DEGREES};
 pub use error::{LENGTH_LIMIT, SceneError};
+pub(crate) use error::{toml_key, toml_string};
 pub use material::{Look, Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
 pub use pick::{NearestHit, Pick};
 pub use sphere::{RADIUS_LIMITS, Sphere};
@@ -41,6 +42,13 @@ pub struct Sky {
 impl Default for Sky {
     fn default() -> Self {
         Sky { bottom: DVec3::ONE, top: DVec3::new(0.5, 0.7, 1.0) }
+    }
+}
+
+impl Sky {
+    pub(crate) fn validate(&self) -> Result<(), SceneError> {
+        error::colour(|| "sky.bottom".to_owned(), self.bottom, SKY_LIMIT)?;
+        error::colour(|| "sky.top".to_owned(), self.top, SKY_LIMIT)
     }
 }
 
@@ -85,13 +93,12 @@ impl Scene {
             if !names.insert(named.name.as_str()) {
                 return Err(SceneError::DuplicateMaterial { name: named.name.clone() });
             }
-            named.material.validate(&named.name)?;
+            named.material.validate(format_args!("materials.{}", named.name))?;
         }
         for (index, sphere) in self.spheres.iter().enumerate() {
             sphere.validate(index, self.materials.len())?;
         }
-        error::colour(|| "sky.bottom".to_owned(), self.sky.bottom, SKY_LIMIT)?;
-        error::colour(|| "sky.top".to_owned(), self.sky.top, SKY_LIMIT)
+        self.sky.validate()
     }
 }
 

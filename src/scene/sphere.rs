@@ -21,7 +21,7 @@ pub struct Sphere {
 pub const RADIUS_LIMITS: RangeInclusive<f64> = 1e-18..=LENGTH_LIMIT;
 
 impl Sphere {
-    pub(super) fn validate(&self, index: usize, material_count: usize) -> Result<(), SceneError> {
+    pub(crate) fn validate(&self, index: usize, material_count: usize) -> Result<(), SceneError> {
         let of = |key: &str| format!("spheres[{index}].{key}");
         position(|| of("center"), self.center)?;
         finite(|| of("radius"), self.radius)?;

@@ -1,4 +1,4 @@
-//! What a file may leave out, and how it may say the rest.
+//! Defaults, and the forms that a file may have.
 
 use super::common::{CAMERA, ONE_SPHERE, assert_round_trip};
 use glam::DVec3;
@@ -8,7 +8,7 @@ use weekender::scene::{Material, Scene, Sky};
 use weekender::stages::{Rules, SurfaceRule};
 
 #[test]
-fn what_is_left_out_has_defaults() {
+fn missing_keys_have_defaults() {
     let recipe = parse(CAMERA, "bare").expect("enough");
     assert_eq!(recipe.name, "bare");
     assert_eq!(*recipe.scene, Scene::default());

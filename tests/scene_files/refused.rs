@@ -1,4 +1,4 @@
-//! What is wrong is named with its line.
+//! Errors name the file, the line, the key, the value and its limit.
 
 use super::common::{CAMERA, ONE_SPHERE};
 use std::path::Path;
@@ -12,302 +12,188 @@ fn refusal(text: &str, line: usize) -> String {
         Err(error) => error.to_string(),
     };
     assert!(message.starts_with(&format!("bad.toml:{line}:")), "line {line} expected: {message}\n{text}");
+    assert_eq!(message.lines().count(), 1, "{message}");
     message
 }
 
-/// The error message for the one-sphere file with one line replaced.
-fn refusal_with(old: &str, new: &str, expected: &[&str]) {
+/// Refuses the file of one sphere with `old` replaced by `new`, at `line` with a message that has all of `parts`.
+fn refuse_with(old: &str, new: &str, line: usize, parts: &[&str]) {
     assert!(ONE_SPHERE.contains(old), "{old}");
-    let text = ONE_SPHERE.replace(old, new);
-    let line = 1 + ONE_SPHERE[..ONE_SPHERE.find(old).unwrap_or(0)].matches('\n').count();
-    let message = refusal(&text, line);
-    for part in expected {
+    let message = refusal(&ONE_SPHERE.replace(old, new), line);
+    for part in parts {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 }
 
 #[test]
 fn bad_spheres_are_refused() {
-    // Case 37.
-    refusal_with("radius = 1", "radius = 0", &["spheres[0].radius is 0", "within 1e-18 and 1e18"]);
-    refusal_with("radius = 1", "radius = -0.5", &["spheres[0].radius is -0.5", "hollow glass"]);
-    refusal_with("radius = 1", "radius = nan", &["spheres[0].radius is NaN", "finite"]);
-    refusal_with("radius = 1", "radius = inf", &["spheres[0].radius is inf", "finite"]);
-    refusal_with(
-        "radius = 1",
-        "radius = 1e300",
-        &["spheres[0].radius is 1e300, but", "1e18", "give the sphere"],
-    );
-    refusal_with("radius = 1", "radius = 1e-300", &["spheres[0].radius is 1e-300, but"]);
-    refusal_with("radius = 1", "radius = \"big\"", &["invalid type", "expected a number"]);
-    refusal_with("center = [0, 0, 0]", "center = [0, nan, 0]", &["spheres[0].center.y is NaN"]);
-    refusal_with("center = [0, 0, 0]", "center = [0, 0]", &["length 2", "three numbers"]);
-    refusal_with("center = [0, 0, 0]", "center = [0, 0, 0, 0]", &["length 4", "three numbers"]);
-    refusal_with("center = [0, 0, 0]", "center = 0", &["invalid type", "three numbers"]);
-    refusal_with("material = \"ball\"", "material = \"bell\"", &["\"bell\"", "add [materials.bell]"]);
-    refusal_with("material = \"ball\"", "material = 3", &["invalid type", "a material's name or a table"]);
-    refusal_with("radius = 1", "radious = 1", &["unknown key `radious`", "`radius`"]);
-    refusal_with("[[spheres]]\ncenter = [0, 0, 0]\n", "[[spheres]]\n", &["missing key `center`"]);
+    for (radius, parts) in [
+        ("0", &["spheres[0].radius is 0", "within 1e-18 and 1e18"][..]),
+        ("-0.5", &["spheres[0].radius is -0.5", "hollow glass"]),
+        ("nan", &["spheres[0].radius is NaN", "finite"]),
+        ("inf", &["spheres[0].radius is inf", "finite"]),
+        ("1e300", &["spheres[0].radius is 1e300, but", "1e18", "give the sphere"]),
+        ("1e-300", &["spheres[0].radius is 1e-300, but"]),
+    ] {
+        refuse_with("radius = 1", &format!("radius = {radius}"), 8, parts);
+    }
+    let center = "center = [0, 0, 0]";
+    refuse_with(center, "center = [0, nan, 0]", 8, &["spheres[0].center.y is NaN"]);
+    for (old, new, line, parts) in [
+        ("radius = 1", "radius = \"big\"", 10, &["expected a number", "spheres.radius"][..]),
+        ("radius = 1", "radious = 1", 10, &["unknown key `radious`", "`radius`"]),
+        ("radius = 1", "radius = 1e400", 10, &["overflow"]),
+        ("radius = 1", "radius = 1\nradius = 2", 11, &["duplicate key"]),
+        (center, "center = [0, 0]", 9, &["three numbers", "found 2", "spheres.center"]),
+        (center, "center = [0, 0, 0, 0]", 9, &["three numbers", "found 4"]),
+        (center, "center = 0", 9, &["invalid type"]),
+        (center, "", 8, &["missing key `center`"]),
+    ] {
+        refuse_with(old, new, line, parts);
+    }
 }
 
 #[test]
 fn bad_materials_are_refused() {
-    let albedo = "albedo = [0.5, 0.5, 0.5]";
-    refusal_with(
-        albedo,
-        "albedo = [0.5, 1.5, 0.5]",
-        &["materials.ball.albedo is [0.5, 1.5, 0.5]", "within 0 and 1"],
-    );
-    refusal_with(albedo, "albedo = [0.5, 0.5, inf]", &["materials.ball.albedo.z is inf"]);
-    refusal_with(
-        "kind = \"lambertian\"",
-        "kind = \"matte\"",
-        &["materials.ball.kind is \"matte\"", "\"metal\""],
-    );
-}
-
-#[test]
-fn keys_of_a_material_suit_its_kind() {
-    let with = |keys: &str| ONE_SPHERE.replace("kind = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n", keys);
-    let lambertian = "kind = \"lambertian\"\nalbedo = [0, 0, 0]\n";
-
-    let message = refusal(&with(&format!("{lambertian}fuzz = 0.1\n")), 8);
-    assert!(message.contains("materials.ball.fuzz has no meaning for lambertian"), "{message}");
-    let message = refusal(&with("kind = \"dielectric\"\nrefraction_index = 1.5\nalbedo = [1, 1, 1]\n"), 8);
-    assert!(message.contains("has only refraction_index"), "{message}");
-    let message = refusal(&with("kind = \"metal\"\nfuzz = 0.1\n"), 5);
-    assert!(message.contains("materials.ball is metal and needs the key \"albedo\""), "{message}");
-    let message = refusal(&with("kind = \"dielectric\"\n"), 5);
-    assert!(message.contains("refraction_index = 1.5"), "{message}");
-    let message = refusal(&with("albedo = [0, 0, 0]\n"), 5);
-    assert!(message.contains("missing key `kind`"), "{message}");
-    let message = refusal(&with(&format!("{lambertian}glow = 1\n")), 8);
-    assert!(message.contains("unknown key `glow`"), "{message}");
-    let message = refusal(&with("kind = \"metal\"\nalbedo = [0, 0, 0]\nfuzz = -1\n"), 8);
-    assert!(message.contains("materials.ball.fuzz is -1, but must be 0 or more"), "{message}");
-    let message = refusal(&with("kind = \"dielectric\"\nrefraction_index = 0\n"), 7);
-    assert!(message.contains("materials.ball.refraction_index is 0"), "{message}");
-}
-
-#[test]
-fn inline_materials_are_named_by_their_sphere() {
-    let with = |table: &str| ONE_SPHERE.replace("\"ball\"\n", &format!("{table}\n"));
-    for (table, expected) in [
-        ("{ kind = \"metal\", albedo = [1, 1, 2] }", "spheres[0].material.albedo is [1, 1, 2]"),
-        ("{ kind = \"metal\", albedo = [1, 1, 1], fuzz = nan }", "spheres[0].material.fuzz is NaN"),
-        ("{ kind = \"glass\" }", "spheres[0].material.kind is \"glass\""),
-        ("{ kind = \"metal\" }", "spheres[0].material is metal and needs"),
-        ("{ kind = \"metal\", colour = 3 }", "unknown key `colour`"),
+    let (kind, albedo) = ("kind = \"lambertian\"", "albedo = [0.5, 0.5, 0.5]");
+    for (old, new, parts) in [
+        (
+            albedo,
+            "albedo = [0.5, 1.5, 0.5]",
+            &["materials.ball.albedo is [0.5, 1.5, 0.5]", "within 0 and 1"][..],
+        ),
+        (albedo, "albedo = [0.5, 0.5, inf]", &["materials.ball.albedo.z is inf"]),
+        (albedo, "albedo = [0.5, 0.5]", &["invalid length 2", "materials.ball"]),
+        (albedo, "albedo = [0.5, 0.5, 0.5, 0.5]", &["invalid length 4", "materials.ball"]),
+        (albedo, "", &["missing key `albedo`", "materials.ball"]),
+        (albedo, "albedo = [0, 0, 0]\nfuzz = 0.1", &["unknown key `fuzz`", "materials.ball"]),
+        (kind, "kind = \"metal\"\nfuzz = -0.1", &["materials.ball.fuzz is -0.1", "0 or more"]),
+        (kind, "", &["missing key `kind`", "materials.ball"]),
     ] {
-        let message = refusal(&with(table), 11);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
+        refuse_with(old, new, 5, parts);
+    }
+    refuse_with(kind, "kind = \"matte\"", 6, &["unknown value `matte`", "`metal`", "materials.ball"]);
+    let glass = "kind = \"dielectric\"\nrefraction_index = 0\n";
+    let message = refusal(&ONE_SPHERE.replace(&format!("{kind}\n{albedo}\n"), glass), 5);
+    assert!(message.contains("materials.ball.refraction_index is 0"), "{message}");
+
+    let material = "material = \"ball\"";
+    let table = |keys: &str| format!("material = {{ {keys} }}");
+    for (new, parts) in [
+        ("material = \"bell\"".to_owned(), &["\"bell\"", "add [materials.bell]"][..]),
+        ("material = 3".to_owned(), &["spheres[0].material is 3", "a material's name or a table"]),
+        (table("kind = \"metal\""), &["spheres[0].material: missing key `albedo`"]),
+        (table("kind = \"metal\", albedo = [1, 1, 1], fuz = 1"), &["spheres[0].material: unknown key `fuz`"]),
+        (table("kind = \"metal\", albedo = [1, 2, 1]"), &["spheres[0].material.albedo is [1, 2, 1]"]),
+    ] {
+        refuse_with(material, &new, 8, parts);
     }
 }
 
 #[test]
 fn bad_cameras_are_refused() {
-    // Case 32.
-    for vfov in ["0", "180", "-20.0"] {
-        let expected = ["vfov_degrees is", "within 0.01 and 179 degrees"];
-        refusal_with("vfov_degrees = 40", &format!("vfov_degrees = {vfov}"), &expected);
-    }
-    refusal_with("vfov_degrees = 40", "vfov_degrees = nan", &["vfov_degrees is NaN", "finite"]);
-    // Case 31.
-    refusal_with("look_at = [0, 0, 0]", "look_at = [0, 0, 3]", &["look_from and look_at are both [0, 0, 3]"]);
-    for (vup, expected) in
-        [("[0, 0, 0]", "vup is [0, 0, 0], which has no direction"), ("[0, 0, -2]", "parallel to the view")]
-    {
-        let message =
-            refusal(&ONE_SPHERE.replace("[materials.ball]", &format!("vup = {vup}\n[materials.ball]")), 5);
-        assert!(
-            message.contains(expected) && message.contains("use another, such as [0, 1, 0]"),
-            "{message}"
-        );
-    }
-    // Case 33.
     let with = |line: &str| ONE_SPHERE.replace("[materials.ball]", &format!("{line}\n[materials.ball]"));
     for (line, expected) in [
+        ("vup = [0, 0, 1]", "vup is [0, 0, 1], which is parallel to the view"),
+        ("vup = [0, 0, nan]", "vup.z is NaN"),
         ("focus_distance = 0", "focus_distance is 0, but must be within"),
-        ("focus_distance = -1.5", "focus_distance is -1.5"),
         ("defocus_angle_degrees = 180", "below 179 degrees"),
         ("defocus_angle_degrees = -1", "use 0 for a pinhole"),
-        ("defocus_angle_degrees = inf", "defocus_angle_degrees is inf"),
-        ("vup = [0, 0, nan]", "vup.z is NaN"),
-        ("vup = [0, 0]", "three numbers"),
-        ("roll = 3", "unknown key `roll`"),
     ] {
+        let message = refusal(&with(line), 1);
+        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
+    }
+    for (line, expected) in [("vup = [0, 0]", "three numbers"), ("roll = 3", "unknown key `roll`")] {
         let message = refusal(&with(line), 5);
         assert!(message.contains(expected), "{expected:?} is not in {message:?}");
     }
-    refusal_with("look_from = [0, 0, 3]", "look_from = [0, inf, 3]", &["look_from.y is inf"]);
-    refusal_with("look_from = [0, 0, 3]", "look_from = [0, 1e30, 3]", &["look_from.y is", "scale the scene"]);
-    let message = refusal(&CAMERA.replace("vfov_degrees = 40\n", ""), 1);
-    assert!(message.contains("missing key `vfov_degrees`"), "{message}");
+    let from = "look_from = [0, 0, 3]";
+    for (old, new, part) in [
+        (from, "look_from = [0, 0, 0]", "move one of them"),
+        (from, "look_from = [0, inf, 3]", "look_from.y is inf"),
+        (from, "look_from = [0, 1e30, 3]", "scale the scene"),
+        ("vfov_degrees = 40", "vfov_degrees = 180", "vfov_degrees is 180, but must be within 0.01 and 179"),
+        ("vfov_degrees = 40", "", "missing key `vfov_degrees`"),
+    ] {
+        refuse_with(old, new, 1, &[part]);
+    }
     let message = refusal("", 1);
     assert!(message.contains("missing key `camera`"), "{message}");
 }
 
 #[test]
 fn bad_settings_are_refused() {
-    for (line, expected) in [
-        ("width = 0", "width is 0, but must be within 1 and 16384"),
-        ("height = 100000", "height is 100000, but must be within 1 and 16384"),
-        ("width = -5", "width is -5"),
-        ("width = 99999999999", "width is 99999999999"),
-        (
-            "width = 40.5",
-            "width is 40.5, but must be a whole number within 1 and 16384; give pixels, such as 800",
-        ),
-        ("width = 8e2", "width is 800.0, but must be a whole number within"),
-        ("width = \"8\"", "expected a whole number"),
-        (
-            "max_depth = 99999999999999999999",
-            "max_depth is 99999999999999999999, but must be within 1 and 10000",
-        ),
-        ("samples_per_pixel = 0", "samples_per_pixel is 0, but must be within 1 and 4294967296"),
-        ("samples_per_pixel = -1", "samples_per_pixel is -1"),
-        ("max_depth = 0", "max_depth is 0, but must be within 1 and 10000"),
-        ("max_depth = 10001", "max_depth is 10001"),
-        ("seed = -1", "seed is -1, but must be within 0 and 4294967295"),
-        ("sampler = \"random\"", "`sobol`"),
-        ("samples = 3", "unknown key `samples`"),
-        ("estimate_error = 1", "expected a boolean"),
-    ] {
-        let message = refusal(&format!("{CAMERA}[render]\n{line}\n"), 6);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
-    }
     for (table, line, expected) in [
-        ("sky", "top = [0, 0, 101]", "sky.top is [0, 0, 101], but each component must be within 0 and 100"),
-        ("sky", "bottom = [nan, 0, 0]", "sky.bottom.x is NaN"),
+        ("render", "width = 0", "width is 0, but must be within 1 and 16384; give pixels"),
+        ("render", "height = 100000", "height is 100000, but must be within 1 and 16384"),
+        ("render", "width = -5", "width is -5"),
+        ("render", "width = 99999999999", "width is 99999999999"),
+        ("render", "width = 40.5", "expected a whole number in `render.width`"),
+        ("render", "width = \"8\"", "expected a whole number in `render.width`"),
+        ("render", "max_depth = 99999999999999999999", "expected a whole number in `render.max_depth`"),
+        ("render", "samples_per_pixel = 0", "samples_per_pixel is 0, but must be within 1 and 4294967296"),
+        ("render", "samples_per_pixel = 4294967297", "samples_per_pixel is 4294967297"),
+        ("render", "max_depth = 10001", "max_depth is 10001, but must be within 1 and 10000"),
+        ("render", "seed = -1", "seed is -1, but must be within 0 and 4294967295"),
+        ("render", "sampler = \"random\"", "`sobol`"),
+        ("render", "samples = 3", "unknown key `samples`"),
+        ("render", "estimate_error = 1", "expected a boolean"),
         ("sky", "middle = [0, 0, 0]", "unknown key `middle`"),
+        ("sky", "top = [0, 0, 1, 1]", "three numbers"),
         ("rules", "surface = \"smooth\"", "`exact`"),
         ("rules", "gravity = true", "unknown key `gravity`"),
     ] {
         let message = refusal(&format!("{CAMERA}[{table}]\n{line}\n"), 6);
         assert!(message.contains(expected), "{expected:?} is not in {message:?}");
     }
+    for (line, expected) in [
+        ("top = [0, 0, 101]", "sky.top is [0, 0, 101], but each component must be within 0 and 100"),
+        ("bottom = [nan, 0, 0]", "sky.bottom.x is NaN"),
+    ] {
+        let message = refusal(&format!("{CAMERA}[sky]\n{line}\n"), 5);
+        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
+    }
 }
 
 #[test]
 fn malformed_text_is_refused() {
-    let message = refusal(&ONE_SPHERE.replace("look_at = [0, 0, 0]", "look_at = [0, 0, 0"), 4);
-    assert!(message.contains("missing comma"), "{message}");
-    refusal_with("radius = 1", "radius 1", &[]);
-    let message = refusal(&format!("{CAMERA}[lights]\n"), 5);
-    assert!(message.contains("unknown key `lights`"), "{message}");
-    let message = refusal(&format!("{CAMERA}[camera]\n"), 5);
-    assert!(message.contains("duplicate key `camera`; keep one of them"), "{message}");
-    let message = refusal(&ONE_SPHERE.replace("radius = 1", "radius = 1\nradius = 2"), 11);
-    assert!(message.contains("duplicate key `radius`; keep one of them"), "{message}");
-    let message = refusal(&ONE_SPHERE.replace("radius = 1", "\"a b\" = 1\n\"a b\" = 2"), 11);
-    assert!(message.contains("duplicate key") && message.contains("a b"), "{message}");
-    // Columns count characters.
+    refusal(&ONE_SPHERE.replace("look_at = [0, 0, 0]", "look_at = [0, 0, 0"), 4);
+    refuse_with("radius = 1", "radius 1", 10, &[]);
+    for table in ["lights", "camera"] {
+        refusal(&format!("{CAMERA}[{table}]\n"), 5);
+    }
+    // Columns count characters, and lines may end as on Windows.
     let message = refusal("# é\n[camera]\n\"é\" = 1\n", 3);
     assert!(message.starts_with("bad.toml:3:1: unknown key `é`"), "{message}");
     let line = "\"é\" = { kind = \"metal\", albedo = [0.5, 0.5, 0.5], fuzz = -1 }";
     let message = refusal(&format!("{CAMERA}[materials]\n{line}\n"), 6);
-    assert!(message.starts_with("bad.toml:6:51: materials.é.fuzz is -1"), "{message}");
-}
-
-#[test]
-fn numbers_that_no_type_holds_are_refused_as_typed() {
-    let limits = ["within 1e-18 and 1e18", "give the sphere a size"];
-    for number in ["1e400", "1_0e999", "99999999999999999999999999999999999999999"] {
-        refusal_with("radius = 1", &format!("radius = {number}"), &limits);
-        refusal_with(
-            "radius = 1",
-            &format!("radius = {number}"),
-            &[&format!("spheres[0].radius is {number}, but")],
-        );
-    }
-    refusal_with("radius = 1", "radius = -1e400", &["spheres[0].radius is -1e400, but", "hollow glass"]);
-    // An integer that is too large for a length is a number all the same.
-    refusal_with(
-        "radius = 1",
-        "radius = 99999999999999999999",
-        &["spheres[0].radius is 1e20, but", limits[0]],
-    );
-    refusal_with(
-        "center = [0, 0, 0]",
-        "center = [0, 1e400, 0]",
-        &["spheres[0].center.y is 1e400, but", "-1e18"],
-    );
-    refusal_with(
-        "vfov_degrees = 40",
-        "vfov_degrees = 1e400",
-        &["vfov_degrees is 1e400, but", "0.01 and 179"],
-    );
-    refusal_with(
-        "albedo = [0.5, 0.5, 0.5]",
-        "albedo = [0.5, 1e999, 0.5]",
-        &["[0.5, 1e999, 0.5], but each component"],
-    );
-    let message = refusal(&format!("{CAMERA}[render]\nwidth = 1e400\n"), 6);
-    assert!(message.contains("width is 1e400, but must be a whole number within 1 and 16384"), "{message}");
-    // Where any number is allowed, or two are too large.
-    let message =
-        refusal(&ONE_SPHERE.replace("[materials.ball]", "vup = [0, 1e400, 1]\n[materials.ball]"), 5);
-    assert!(message.contains("1e400 is too large for a number, whose limit is 1.8e308"), "{message}");
-    let message = refusal(&ONE_SPHERE.replace("[0, 0, 3]", "[1e400, 2e400, 3]"), 2);
-    assert!(message.contains("1e400 is too large for a number"), "{message}");
-}
-
-#[test]
-fn lines_are_those_of_the_file_whatever_their_ends() {
-    let message = refusal(&ONE_SPHERE.replace("radius = 1", "radius = 0").replace('\n', "\r\n"), 10);
+    assert!(message.starts_with("bad.toml:6:1: materials.é.fuzz is -1"), "{message}");
+    let message = refusal(&ONE_SPHERE.replace("radius = 1", "radius = 0").replace('\n', "\r\n"), 8);
     assert!(message.contains("spheres[0].radius is 0"), "{message}");
 }
 
 #[test]
-fn unreadable_files_are_told_from_bad_ones() {
+fn files_that_cannot_be_read_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
+    let message = |path: &Path| load(path).expect_err("refused").to_string();
     let missing = folder.path().join("missing.toml");
-    let error = load(&missing).expect_err("missing");
-    assert!(matches!(error, FileError::Input(InputError::Unreadable { .. })));
-    let message = error.to_string();
-    assert!(message.contains("missing.toml") && message.contains("check its name"), "{message}");
-    let message = load(folder.path()).expect_err("a directory").to_string();
-    assert!(message.contains("is a directory, but a file is needed; name a file in it"), "{message}");
+    assert!(matches!(load(&missing), Err(FileError::Input(InputError::Unreadable { .. }))));
+    assert!(message(&missing).contains("missing.toml"), "{}", message(&missing));
+    assert!(message(folder.path()).contains("is a directory"), "{}", message(folder.path()));
     let huge = folder.path().join("huge.toml");
     std::fs::File::create(&huge).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
-    let message = load(&huge).expect_err("too long").to_string();
-    assert!(message.contains("has 1099.5 GB, but a scene file of more than 1.1 GB is not read"), "{message}");
-    #[cfg(unix)]
-    {
-        let message = load(Path::new("/dev/zero")).expect_err("endless").to_string();
-        assert!(
-            message.contains("/dev/zero is a device, but a file is needed; save what it gives"),
-            "{message}"
-        );
-    }
+    assert!(message(&huge).contains("has 1099.5 GB, but a scene file of more than"), "{}", message(&huge));
 
     let binary = folder.path().join("binary.toml");
-    std::fs::write(&binary, b"[camera]\nlook_from = [0,\xff\xfe").expect("written");
-    let message = load(&binary).expect_err("no text").to_string();
-    assert!(message.contains("binary.toml:2: this is not UTF-8 text"), "{message}");
-    assert!(message.ends_with("; save it as UTF-8"), "{message}");
-    let picture = folder.path().join("picture.jpg");
-    std::fs::write(&picture, b"\xc3\x28").expect("written");
-    let message = load(&picture).expect_err("no text").to_string();
-    assert!(message.ends_with("save it as UTF-8, or name a .toml file"), "{message}");
-    let wide = |bytes: fn(u16) -> [u8; 2], mark: &str| -> Vec<u8> {
-        format!("{mark}{ONE_SPHERE}").encode_utf16().flat_map(bytes).collect()
-    };
-    for bytes in [
-        wide(u16::to_le_bytes, "\u{feff}"),
-        wide(u16::to_be_bytes, "\u{feff}"),
-        wide(u16::to_le_bytes, ""),
-        wide(u16::to_be_bytes, ""),
+    let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for (bytes, part) in [
+        (b"[camera]\nlook_from = [0,\xff\xfe".to_vec(), "binary.toml:2:16: this is not UTF-8 text"),
+        ([b"\xff\xfe".to_vec(), wide.clone()].concat(), "binary.toml:1:1: this is not UTF-8 text"),
+        (wide, "binary.toml:1:"),
     ] {
         std::fs::write(&binary, bytes).expect("written");
-        let message = load(&binary).expect_err("not UTF-8").to_string();
-        assert!(message.ends_with("it looks like UTF-16: save it as UTF-8"), "{message}");
+        assert!(message(&binary).contains(part), "{part}: {}", message(&binary));
     }
-
-    let bad = folder.path().join("bad.toml");
-    std::fs::write(&bad, ONE_SPHERE.replace("radius = 1", "radius = 0")).expect("written");
-    let message = load(&bad).expect_err("no radius").to_string();
-    assert!(message.contains("bad.toml:10:1: spheres[0].radius is 0"), "{message}");
 
     let good = folder.path().join("my scene.v2.toml");
     std::fs::write(&good, ONE_SPHERE).expect("written");

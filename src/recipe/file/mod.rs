@@ -24,18 +24,9 @@
 //!
 //! A recipe that is written and read back is the same to the bit, except for its name, which is that of the file.
 
-mod error;
-mod keyframes;
-mod materials;
 mod named;
-mod numbers;
-mod overflow;
-mod place;
 mod read;
-mod settings;
-mod triple;
 mod write;
 
-pub use error::{FileError, Reason};
-pub use read::{load, parse};
+pub use read::{FileError, load, parse};
 pub use write::{to_picture_toml, to_toml};

@@ -63,23 +63,6 @@ mod tests {
 
     #[test]
     fn any_change_changes_the_mark() {
-        let scene = field(50).0;
-        let changed = |change: fn(&mut Scene)| {
-            let mut other = scene.clone();
-            change(&mut other);
-            mark(&other) != mark(&scene)
-        };
-        assert!(!changed(|_| {}));
-        assert!(changed(|s| s.sky.top.x += 1e-15));
-        assert!(changed(|s| s.spheres[50].center.z += 1e-15));
-        assert!(changed(|s| s.spheres[7].material += 1));
-        assert!(changed(|s| s.materials[3].name.push('x')));
-        assert!(changed(|s| s.materials[3].material = Material::Dielectric { refraction_index: 1.5 }));
-        assert!(changed(|s| s.spheres.truncate(50)));
-    }
-
-    #[test]
-    fn a_mark_is_of_the_sky_the_spheres_and_all_numbers_of_the_materials() {
         let scene = |change: fn(&mut Scene)| {
             let mut scene = Scene::default();
             let albedo = DVec3::new(0.1, 0.2, 0.3);
@@ -92,9 +75,11 @@ mod tests {
             change(&mut scene);
             mark(&scene)
         };
-        let changes: [fn(&mut Scene); 9] = [
+        let changes: [fn(&mut Scene); 11] = [
             |_| {},
             |s| s.sky.bottom.z = 0.5,
+            |s| s.materials[1].name.push('x'),
+            |s| s.spheres[1].material = 1,
             |s| s.spheres[1].radius = 2.0,
             |s| s.spheres[0].center.y = -0.0,
             |s| s.spheres.swap(0, 1),
