@@ -9,7 +9,6 @@ use program_common::names;
 use std::fs;
 use std::io;
 use std::path::Path;
-use weekender::describe::seconds;
 use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
 use weekender::output::{
@@ -42,7 +41,7 @@ fn description() -> Description {
 }
 
 #[test]
-fn the_ending_decides() {
+fn the_format_follows_the_extension() {
     for (name, format) in
         [("a.png", OutputFormat::Png), ("dir.exr/a.PPM", OutputFormat::P6), ("a.png.Exr", OutputFormat::Exr)]
     {
@@ -94,7 +93,7 @@ fn an_exr_is_the_linear_picture_and_the_film() {
 }
 
 #[test]
-fn a_picture_says_what_was_said_of_it() {
+fn descriptions_are_read_back() {
     let directory = tempfile::tempdir().unwrap();
     let mut foreign = description();
     foreign.set("Place", "東京 or Köln");
@@ -143,15 +142,8 @@ fn a_picture_holds_its_recipe_up_to_the_limit_and_says_that_a_longer_one_is_miss
     }
 }
 
-/// 59.6 s are a minute, and neither "60 s" nor "0 min".
 #[test]
-fn times_are_rounded_before_they_are_divided_into_units() {
-    let found = [59.4, 59.6, 119.6, 3599.7, 7199.6].map(seconds);
-    assert_eq!(found, ["59.4 s", "1 min 00 s", "2 min 00 s", "1 h 00 min", "2 h 00 min"]);
-}
-
-#[test]
-fn pictures_of_others_say_nothing() {
+fn foreign_pictures_have_no_description() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a");
     let pixels = image::RgbImage::new(2, 2);
@@ -190,7 +182,7 @@ fn a_file_is_replaced_whole_or_not_at_all() {
 }
 
 #[test]
-fn what_cannot_be_written_is_found_beforehand() {
+fn check_writable_finds_errors_beforehand() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     fs::create_dir(at("directory.png")).unwrap();
@@ -254,6 +246,8 @@ mod unix {
         replace_file(&link, |writer| io::Write::write_all(writer, b"new")).unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&target).unwrap(), b"new");
+        fs::remove_file(&target).unwrap();
+        assert!(check_writable(&link).unwrap_err().to_string().contains("link to a file that is not there"));
     }
 
     #[cfg(target_os = "linux")]
@@ -274,22 +268,22 @@ mod unix {
 fn a_frame_is_a_whole_rgb_picture_of_its_size() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
-    let told = |name: &str, size| check_frame(&at(name), size).unwrap_err().to_string();
+    let message = |name: &str, size| check_frame(&at(name), size).unwrap_err().to_string();
     write_image(&at("a.png"), &film(), Transfer::Gamma2, &description()).unwrap();
     check_frame(&at("a.png"), [13, 7]).unwrap();
     for [width, height] in [[7, 13], [12, 7], [13, 8]] {
         let words = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
-        let told = told("a.png", [width, height]);
-        assert!(told.contains("a.png") && told.contains(&words), "{told}");
+        let message = message("a.png", [width, height]);
+        assert!(message.contains("a.png") && message.contains(&words), "{message}");
     }
     image::GrayImage::new(13, 7).save(at("grey.png")).unwrap();
     image::RgbaImage::new(13, 7).save(at("rgba.png")).unwrap();
     image::ImageBuffer::from_pixel(13, 7, image::Rgb([9_u16; 3])).save(at("deep.png")).unwrap();
     for name in ["grey.png", "rgba.png", "deep.png"] {
-        assert!(told(name, [13, 7]).contains("not an 8-bit RGB picture of 13x7 pixels"), "{name}");
+        assert!(message(name, [13, 7]).contains("not an 8-bit RGB picture of 13x7 pixels"), "{name}");
     }
     let whole = fs::read(at("a.png")).unwrap();
     fs::write(at("short.png"), &whole[..whole.len() - 20]).unwrap();
-    assert!(told("short.png", [13, 7]).contains("short.png"));
-    assert!(told("missing.png", [13, 7]).contains("missing.png"));
+    assert!(message("short.png", [13, 7]).contains("short.png"));
+    assert!(message("missing.png", [13, 7]).contains("missing.png"));
 }

@@ -3,6 +3,7 @@
 use super::png;
 use super::{Description, OutputError};
 use crate::files::{self, replace_file};
+use ::png::EncodingError;
 use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -37,7 +38,10 @@ pub fn write_animation(
     description: &Description,
 ) -> Result<(), OutputError> {
     replace_file(path, |writer| {
-        png::with_first_error(writer, |writer| encode(writer, size, rate, frames, description))
+        encode(writer, size, rate, frames, description).map_err(|error| match error {
+            EncodingError::IoError(error) => error,
+            other => other.into(),
+        })
     })?;
     Ok(())
 }
@@ -48,7 +52,7 @@ fn encode(
     rate: FrameRate,
     frames: impl ExactSizeIterator<Item = PathBuf>,
     description: &Description,
-) -> io::Result<()> {
+) -> Result<(), EncodingError> {
     let mut encoder = ::png::Encoder::new(writer, size[0], size[1]);
     encoder.set_color(::png::ColorType::Rgb);
     let count = u32::try_from(frames.len()).map_err(io::Error::other)?;

@@ -3,7 +3,6 @@
 //! [`read_picture`].
 
 mod apng;
-mod limits;
 mod long_recipe;
 mod pfm;
 mod png;

@@ -2,7 +2,7 @@
 //!
 //! Source: Paul Debevec, "PFM Portable FloatMap Image Format".
 
-use super::limits::{check_memory, pixel_count};
+use super::read::{check_memory, invalid, pixel_count};
 use std::io::{self, BufRead, Read};
 
 /// Longest word of the header, bytes.
@@ -58,10 +58,6 @@ fn word(reader: &mut impl BufRead) -> io::Result<String> {
             _ => return Err(invalid("it has no PFM header".to_owned())),
         }
     }
-}
-
-fn invalid(reason: String) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, reason)
 }
 
 #[cfg(test)]

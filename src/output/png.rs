@@ -1,8 +1,10 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
+use super::read::invalid;
 use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
+use ::png::EncodingError;
 use std::io::{self, BufRead, Seek, Write};
 
 pub(super) fn write(
@@ -13,9 +15,7 @@ pub(super) fn write(
     writer: &mut impl Write,
 ) -> io::Result<()> {
     let size = [film.width(), film.height()];
-    with_first_error(writer, |writer| {
-        encode(size, description, form, writer, |rows| write_rows(film, transfer, rows))
-    })
+    writer.write_all(&encoded(size, description, form, |rows| write_rows(film, transfer, rows))?)
 }
 
 /// Writes a picture of `size` pixels from its bytes, three per pixel.
@@ -25,57 +25,18 @@ pub(super) fn write_bytes(
     description: &Description,
     writer: &mut impl Write,
 ) -> io::Result<()> {
-    with_first_error(writer, |writer| {
-        encode(size, description, PngForm::Fast, writer, |rows| rows.write_all(rgb8))
-    })
+    writer.write_all(&encoded(size, description, PngForm::Fast, |rows| rows.write_all(rgb8))?)
 }
 
-/// Runs an encoder. An error of the file system stays whole; the encoder would keep only its text.
-pub(super) fn with_first_error<W: Write>(
-    writer: W,
-    encode: impl FnOnce(&mut FirstError<W>) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut writer = FirstError { inner: writer, error: None };
-    let result = encode(&mut writer);
-    result.map_err(|error| writer.error.take().unwrap_or(error))
-}
-
-/// Remembers the file system's error.
-pub(super) struct FirstError<W> {
-    inner: W,
-    error: Option<io::Error>,
-}
-
-impl<W: Write> FirstError<W> {
-    fn remember<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
-        result.map_err(|error| {
-            let kind = error.kind();
-            self.error.get_or_insert(error);
-            kind.into()
-        })
-    }
-}
-
-impl<W: Write> Write for FirstError<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let result = self.inner.write(bytes);
-        self.remember(result)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let result = self.inner.flush();
-        self.remember(result)
-    }
-}
-
-fn encode<W: Write>(
+/// The whole file: the encoder's stream would reduce an error of the file system to its text.
+fn encoded(
     [width, height]: [u32; 2],
     description: &Description,
     form: PngForm,
-    writer: &mut W,
-    write: impl FnOnce(&mut ::png::StreamWriter<'_, &mut W>) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut encoder = ::png::Encoder::new(writer, width, height);
+    write: impl FnOnce(&mut ::png::StreamWriter<'_, &mut Vec<u8>>) -> io::Result<()>,
+) -> io::Result<Vec<u8>> {
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_compression(match form {
         PngForm::Fast => ::png::Compression::Fast,
@@ -86,14 +47,14 @@ fn encode<W: Write>(
     write(&mut rows)?;
     rows.finish()?;
     writer.finish()?;
-    Ok(())
+    Ok(file)
 }
 
 /// Writes the head of a PNG with its description.
 pub(super) fn begin<W: Write>(
     mut encoder: ::png::Encoder<'_, W>,
     description: &Description,
-) -> io::Result<::png::Writer<W>> {
+) -> Result<::png::Writer<W>, EncodingError> {
     // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be
     // lost.
     let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
@@ -115,30 +76,13 @@ fn decoder<R: BufRead + Seek>(reader: R) -> ::png::Decoder<R> {
     ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: 4 * RECIPE_LIMIT })
 }
 
-/// The number of values that a sample can have: fewer than its bits allow if the file says that only some of them are
-/// significant. The colours of a palette have 8 bits.
-pub(super) fn levels(reader: impl BufRead + Seek) -> io::Result<u32> {
-    use ::png::ColorType;
-    let reader = decoder(reader).read_info()?;
-    let info = reader.info();
-    let (bits, colours) = match info.color_type {
-        ColorType::Grayscale | ColorType::GrayscaleAlpha => (info.bit_depth as u32, 1),
-        ColorType::Rgb | ColorType::Rgba => (info.bit_depth as u32, 3),
-        ColorType::Indexed => (8, 3),
-    };
-    let significant = info.sbit.as_deref().unwrap_or_default().iter().take(colours);
-    let bits = significant.map(|bits| u32::from(*bits)).fold(bits, u32::min);
-    Ok(1 << bits)
-}
-
 /// Reads an 8-bit RGB picture of this size to its end, row by row from the top, three bytes a pixel.
 pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<Vec<u8>> {
     let mut reader = decoder(reader).read_info()?;
     let info = reader.info();
     let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
     if (info.width, info.height) != (width, height) || !is_rgb || info.interlaced {
-        let reason = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        return Err(invalid(format!("it is not an 8-bit RGB picture of {width}x{height} pixels")));
     }
     let mut pixels = vec![0; 3 * width as usize * height as usize];
     reader.next_frame(&mut pixels)?;
@@ -155,8 +99,7 @@ pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option
     let mut recipe = recipe.clone();
     // The decompressor wants room for one byte more to find the end.
     recipe.decompress_text_with_limit(RECIPE_LIMIT + 1).map_err(|error| {
-        let reason = format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})");
-        io::Error::new(io::ErrorKind::InvalidData, reason)
+        invalid(format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})"))
     })?;
     let mut description = Description::new(&recipe.get_text()?);
     for chunk in &info.uncompressed_latin1_text {

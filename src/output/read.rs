@@ -1,13 +1,13 @@
 //! Reads pictures of any program as linear radiance: PFM, EXR, PNG and binary PPM.
 
 use super::OutputError;
-use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
-use super::{pfm, png};
+use super::pfm;
 use crate::files;
 use crate::film::checkpoint;
+use crate::memory;
 use crate::stages::Transfer;
-use image::ImageDecoder;
-use image::codecs::pnm::PnmDecoder;
+use image::codecs::{png::PngDecoder, pnm::PnmDecoder};
+use image::{DynamicImage, ImageDecoder, ImageFormat};
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
@@ -61,8 +61,8 @@ pub fn decode_picture(
     match start.as_slice() {
         [b'P', b'F' | b'f', ..] => pfm::read(reader, length).map(float),
         start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader, length).map(float),
-        [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, image::ImageFormat::Png, encoding),
-        [b'P', b'2'..=b'6', ..] => read_whole(reader, length, image::ImageFormat::Pnm, encoding),
+        [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, ImageFormat::Png, encoding),
+        [b'P', b'2'..=b'6', ..] => read_whole(reader, length, ImageFormat::Pnm, encoding),
         _ => Err(invalid("it is not a PFM, EXR, PNG or PPM file")),
     }
 }
@@ -73,12 +73,12 @@ pub fn decode_picture(
 /// [`OutputError::Input`] or [`OutputError::Read`].
 pub fn read_rgb8(path: &Path) -> Result<([u32; 2], Vec<u8>), OutputError> {
     let (file, length) = files::open(path)?;
-    let image = decode(BufReader::new(file), length, image::ImageFormat::Png)
+    let (image, _) = decode(BufReader::new(file), length, ImageFormat::Png)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })?;
     Ok(([image.width(), image.height()], image.into_rgb8().into_raw()))
 }
 
-fn invalid(reason: impl ToString) -> io::Error {
+pub(super) fn invalid(reason: impl ToString) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
 }
 
@@ -135,14 +135,12 @@ fn size_of_layer(size: exr::prelude::Vec2<usize>) -> io::Result<(u32, u32)> {
 const LARGEST_RATIO: u64 = 1032 * 24;
 
 fn read_whole(
-    mut reader: impl BufRead + Seek,
+    reader: impl BufRead + Seek,
     length: u64,
-    format: image::ImageFormat,
+    format: ImageFormat,
     encoding: Encoding,
 ) -> io::Result<ReadPicture> {
-    let image = decode(&mut reader, length, format)?;
-    reader.rewind()?;
-    let levels = levels(reader, format)?;
+    let (image, levels) = decode(reader, length, format)?;
     let (width, height) = (image.width(), image.height());
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (most, values): (u16, Vec<u16>) = if is_deep {
@@ -167,37 +165,69 @@ fn read_whole(
     Ok(ReadPicture { width, height, pixels, steps: Some(steps), limit })
 }
 
-/// The number of values that a sample in the file can have, 2 to 65536.
-fn levels(reader: impl BufRead + Seek, format: image::ImageFormat) -> io::Result<u32> {
-    if format == image::ImageFormat::Png {
-        return png::levels(reader);
-    }
-    let most = PnmDecoder::new(reader).map_err(invalid)?.header().maximal_sample();
-    Ok(most.clamp(1, u16::MAX.into()) + 1)
-}
-
-/// Decodes a picture whose size its file can have.
+/// The picture, and the number of values that a sample in the file can have, 2 to 65536.
 fn decode(
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     length: u64,
-    format: image::ImageFormat,
-) -> io::Result<image::DynamicImage> {
-    let mut reader = image::ImageReader::with_format(reader, format);
+    format: ImageFormat,
+) -> io::Result<(DynamicImage, u32)> {
+    if format != ImageFormat::Png {
+        let decoder = PnmDecoder::new(reader).map_err(invalid)?;
+        let most = decoder.header().maximal_sample().clamp(1, u16::MAX.into());
+        return Ok((image_of(decoder, length, 8)?, most + 1));
+    }
+    let mut head = [0; 26];
+    reader.read_exact(&mut head)?;
+    reader.rewind()?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(invalid)?;
+    let decoder = PngDecoder::with_limits(reader, limits).map_err(invalid)?;
+    let levels = match head[24..] {
+        // The bits of a sample, unless it is the index of a colour in a palette.
+        [bits @ (1 | 2 | 4 | 16), colour_type] if colour_type != 3 => 1 << bits,
+        _ => 1 << 8,
+    };
+    Ok((image_of(decoder, length, LARGEST_RATIO)?, levels))
+}
+
+/// Decodes a picture if its size is within the limits and its file is long enough: a byte becomes at most `ratio`.
+fn image_of(decoder: impl ImageDecoder, length: u64, ratio: u64) -> io::Result<DynamicImage> {
     let (width, height) = decoder.dimensions();
     pixel_count(width, height)?;
-    let ratio = if format == image::ImageFormat::Png { LARGEST_RATIO } else { 8 };
-    if decoder.total_bytes() / ratio > length {
-        let least = decoder.total_bytes() / ratio;
+    let least = decoder.total_bytes() / ratio;
+    if least > length {
         return Err(invalid(format!(
             "it has {length} bytes, but {width}x{height} pixels need at least {least}"
         )));
     }
     check_memory(width, height)?;
-    image::DynamicImage::from_decoder(decoder).map_err(invalid)
+    DynamicImage::from_decoder(decoder).map_err(invalid)
+}
+
+/// Largest number of pixels that is read.
+const PIXEL_LIMIT: u64 = 1 << 28;
+
+/// Number of pixels, or an error if the size is out of range.
+pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
+    let count = u64::from(width) * u64::from(height);
+    if !(1..=PIXEL_LIMIT).contains(&count) {
+        return Err(invalid(format!(
+            "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
+        )));
+    }
+    Ok(count as usize)
+}
+
+/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// quantisation steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Returns an error if the picture would not fit into memory.
+pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+    let what = || format!("a picture of {width}x{height} pixels");
+    memory::check(what, bytes, "close other programs or make it smaller")
+        .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 impl Encoding {
@@ -237,4 +267,159 @@ fn srgb_to_linear(v: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::film::to_byte;
+    use proptest::prelude::*;
+
+    /// Reads a PPM whose only row has these bytes.
+    fn of_bytes(bytes: &[u8], encoding: Encoding) -> ReadPicture {
+        let header = format!("P6 {} 1 255 ", bytes.len() / 3);
+        let file = [header.as_bytes(), bytes].concat();
+        decode_picture(io::Cursor::new(&file), file.len() as u64, encoding).unwrap()
+    }
+
+    #[test]
+    fn whole_numbers_end_where_the_last_of_them_begins() {
+        let srgb = ((254.5 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
+        for (encoding, limit) in [
+            (Encoding::Book(Transfer::Linear), 255.0 / 256.0),
+            (Encoding::Book(Transfer::Gamma2), (255.0_f64 / 256.0).powi(2)),
+            (Encoding::Srgb, srgb),
+        ] {
+            let read = of_bytes(&[254, 255, 0], encoding);
+            assert!((read.limit - limit).abs() < 1e-12, "{encoding:?}: {}", read.limit);
+            let [below, end, zero] = read.pixels[0];
+            assert!(below < read.limit && end.is_nan() && zero < below, "{:?}", read.pixels);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {
+            for transfer in [Transfer::Linear, Transfer::Gamma2] {
+                let byte = to_byte(x, transfer, 0, 1);
+                let [low, high] = Encoding::Book(transfer).interval(byte.into(), 256, 0, 1);
+                if byte == 255 {
+                    prop_assert!(low.is_nan());
+                } else {
+                    prop_assert!(low <= x && x < high, "{x}: {low} to {high}");
+                }
+            }
+        }
+
+        #[test]
+        fn srgb_is_read_within_its_steps(x in 0.0..0.99_f64) {
+            let v = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+            let byte = (255.0 * v).round() as u16;
+            if byte < 255 {
+                let [low, high] = Encoding::Srgb.interval(byte, 256, 0, 1);
+                prop_assert!(low - 1e-9 <= x && x <= high + 1e-9, "{x}: {low} to {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_exr_that_deflates_well_is_no_short_file() {
+        use exr::prelude::*;
+        let (width, height) = (512, 512);
+        let black = SpecificChannels::rgb(|_: Vec2<usize>| (0.0_f32, 0.0_f32, 0.0_f32));
+        for compression in [Compression::ZIP1, Compression::ZIP16] {
+            let encoding = Encoding { compression, ..Encoding::FAST_LOSSLESS };
+            let layer = Layer::new((width, height), LayerAttributes::default(), encoding, black.clone());
+            let mut file = io::Cursor::new(Vec::new());
+            Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
+            let bytes = file.into_inner();
+            assert!(compression == Compression::ZIP1 || bytes.len() * 300 < width * height * 12);
+            let (found_width, found_height, pixels) =
+                read_exr(io::Cursor::new(&bytes), bytes.len() as u64).unwrap();
+            assert_eq!((found_width as usize, found_height as usize), (width, height));
+            assert!(pixels.iter().flatten().all(|x| *x == 0.0), "{compression:?}");
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_have_as_many_levels() {
+        let file = b"P6 1 1 65535 \xff\xff\x80\x00\x00\x00";
+        let encoding = Encoding::Book(Transfer::Linear);
+        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
+        let [end, middle, zero] = read.pixels[0];
+        assert!(end.is_nan());
+        assert_eq!([middle, zero, read.limit], [32_768.5, 0.5, 65_535.0].map(|level| level / 65_536.0));
+    }
+
+    /// Checks that a picture of one row of gray pixels, in linear values, has these intervals.
+    fn assert_intervals(file: &[u8], intervals: &[[f64; 2]], limit: f64) {
+        let encoding = Encoding::Book(Transfer::Linear);
+        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
+        let steps = read.steps.unwrap();
+        assert_eq!(read.pixels.len(), intervals.len());
+        for (index, [low, high]) in intervals.iter().enumerate() {
+            let found = read.pixels[index].iter().zip(steps[index]);
+            for [from, to] in found.map(|(middle, step)| [middle - step, middle + step]) {
+                let is_near =
+                    |found: f64, end: f64| (found - end).abs() < 1e-12 || (found.is_nan() && end.is_nan());
+                assert!(
+                    is_near(from, *low) && is_near(to, *high),
+                    "{index}: {from} to {to}, not {low} to {high}"
+                );
+            }
+        }
+        assert!((read.limit - limit).abs() < 1e-12, "{}", read.limit);
+    }
+
+    #[test]
+    fn a_pnm_has_as_many_levels_as_its_header_says() {
+        let unknown = [f64::NAN; 2];
+        let of_32 = [[0.0, 1.0 / 32.0], [15.5 / 31.0, 16.5 / 31.0], [30.0 / 32.0, 30.5 / 31.0], unknown];
+        assert_intervals(b"P5 4 1 31 \x00\x10\x1e\x1f", &of_32, 31.0 / 32.0);
+        assert_intervals(b"P3 4 1 31 0 0 0 16 16 16 30 30 30 31 31 31 ", &of_32, 31.0 / 32.0);
+        let of_1024 = [[511.5 / 1023.0, 512.5 / 1023.0], unknown];
+        assert_intervals(b"P5 2 1 1023 \x02\x00\x03\xff", &of_1024, 1023.0 / 1024.0);
+        // In a bitmap, 1 is black.
+        assert_intervals(b"P4 2 1 \x80", &[[0.0, 0.5], unknown], 0.5);
+    }
+
+    /// A byte of a bitmap has eight pixels, so no PNM is shorter than an eighth of what becomes of it.
+    #[test]
+    fn a_pnm_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+        let message = |length: u64| {
+            let header = io::Cursor::new(b"P6 160 100 255 ");
+            decode_picture(header, length, Encoding::Srgb).unwrap_err().to_string()
+        };
+        assert_eq!(message(5999), "it has 5999 bytes, but 160x100 pixels need at least 6000");
+        assert!(!message(6000).contains("need at least"), "{}", message(6000));
+    }
+
+    #[test]
+    fn a_png_has_as_many_levels_as_its_bits_and_its_palette_has_256() {
+        use ::png::{
+            BitDepth,
+            ColorType::{self, Grayscale, Indexed},
+        };
+        let png_of = |colour: ColorType, depth: BitDepth, width: u32, row: &[u8]| {
+            let mut file = Vec::new();
+            let mut encoder = ::png::Encoder::new(&mut file, width, 1);
+            encoder.set_color(colour);
+            encoder.set_depth(depth);
+            if colour == Indexed {
+                encoder.set_palette(vec![0x80; 3]);
+            }
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_image_data(row).unwrap();
+            writer.finish().unwrap();
+            file
+        };
+        let unknown = [f64::NAN; 2];
+        let of_16 = [[0.0, 1.0 / 16.0], [6.5 / 15.0, 0.5], unknown];
+        assert_intervals(&png_of(Grayscale, BitDepth::Four, 3, b"\x07\xf0"), &of_16, 15.0 / 16.0);
+        assert_intervals(&png_of(Grayscale, BitDepth::Two, 2, b"\x30"), &[[0.0, 0.25], unknown], 0.75);
+        assert_intervals(&png_of(Grayscale, BitDepth::One, 2, b"\x40"), &[[0.0, 0.5], unknown], 0.5);
+        let of_256 = [[128.0 / 256.0, 129.0 / 256.0]];
+        assert_intervals(&png_of(Grayscale, BitDepth::Eight, 1, b"\x80"), &of_256, 255.0 / 256.0);
+        assert_intervals(&png_of(Indexed, BitDepth::One, 1, b"\x00"), &of_256, 255.0 / 256.0);
+        let of_65536 = [[32_768.0 / 65_536.0, 32_769.0 / 65_536.0], unknown];
+        let deep = png_of(Grayscale, BitDepth::Sixteen, 2, b"\x80\x00\xff\xff");
+        assert_intervals(&deep, &of_65536, 65_535.0 / 65_536.0);
+    }
+}

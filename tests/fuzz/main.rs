@@ -1,155 +1,248 @@
-//! Fuzz tests of all parsers. An input may be refused, but there must be no panic, no endless loop, and no memory use
-//! that
-//! the length of the input does not explain.
+//! Fuzz tests of all parsers. An input may be refused, but there must be no panic, and no memory use that the length of the
+//! input does not explain. What a parser accepts must be written and read again.
 //!
-//! A short run is part of the tests. For a long run:
-//! `WEEKENDER_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture`, with `WEEKENDER_FUZZ_SEED=N` for other
-//! inputs and `WEEKENDER_FUZZ_ONLY=NAME` for a single parser. Inputs that break a parser are saved in
-//! `tests/fuzz/finds/NAME/`, and every run starts with them.
+//! A short run is part of the tests. For a long run: `PROPTEST_CASES=1000000 cargo test --release --test fuzz`.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
-mod mutate;
-mod parsers;
 mod seeds;
 
-use mutate::{Draws, mutate};
-use parsers::{Outcome, Parser};
 use peak_alloc::PeakAlloc;
-use std::collections::HashSet;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+use proptest::test_runner::TestRunner;
+use std::ffi::OsString;
+use std::io::Cursor;
+use std::path::Path;
+use weekender::film::{Checksum, FilmFile, checkpoint};
+use weekender::output::{Encoding, decode_description, decode_picture};
+use weekender::recipe::file;
+use weekender::stages::Transfer;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
 /// Number of inputs for each parser in a short run.
-const SHORT_RUN: u64 = 2000;
+const SHORT_RUN: u32 = 2000;
 
-/// An input that takes longer counts as an endless loop.
-const PATIENCE: Duration = Duration::from_secs(60);
-
-/// Largest number of inputs that are kept because they were refused or accepted in a new way.
-const KEPT_LIMIT: usize = 4000;
-
-fn number(name: &str) -> Option<u64> {
-    std::env::var(name).ok()?.parse().ok()
+/// A parser under test.
+struct Parser {
+    name: &'static str,
+    seeds: Vec<Vec<u8>>,
+    /// Words of the parser's language.
+    words: &'static str,
+    /// Returns the memory that may be used beyond what the length of the input explains, bytes.
+    parse: fn(&[u8]) -> usize,
+    /// Bytes of memory allowed per byte of input.
+    bytes_per_byte: usize,
 }
 
-fn finds(parser: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/finds").join(parser)
+fn parsers() -> Vec<Parser> {
+    let exr = "sum.a.R.lo weekenderFilm chlist box2i tiledesc deepscanline";
+    let exrs = seeds::exrs().into_iter().chain(seeds::kept("tests/fuzz/finds/exr")).collect();
+    let parser =
+        |name, seeds, words, parse, bytes_per_byte| Parser { name, seeds, words, parse, bytes_per_byte };
+    vec![
+        parser("scene", seeds::scenes(), SCENE_WORDS, scene, 600),
+        parser("film", seeds::films(), exr, film, 3000),
+        parser("exr", exrs, exr, picture, 100_000),
+        parser("png", seeds::pngs(), "IHDR PLTE IDAT tRNS iTXt zTXt IEND", picture, 10_000),
+        parser("ppm", seeds::ppms(), "P1 P2 P3 P4 P5 P6 P7 255 65535 #", picture, 700),
+        parser("pfm", seeds::pfms(), "PF Pf -1 1e39", picture, 100),
+        parser("description", seeds::descriptions(), "Weekender recipe # iTXt zTXt", description, 3000),
+        parser("flags", seeds::flags(), FLAG_WORDS, flags, 1 << 20),
+    ]
 }
 
-/// The input that is being parsed, for the thread that watches for endless loops.
-type Current = Arc<Mutex<Option<(Instant, &'static str, Vec<u8>)>>>;
+const SCENE_WORDS: &str = "[camera] [render] [sky] [rules] [[spheres]] [[keyframes]] [materials.a] look_from vup \
+    vfov_degrees focus_distance center radius material kind albedo fuzz refraction_index \"lambertian\" \"metal\" \
+    \"dielectric\" scene scene_mark samples_per_pixel estimate_error [[ ]] { } \"\"\" ''' # = . , true \
+    1979-05-27T07:32:00Z \\u0000 \\U0010ffff";
 
-fn watch(current: Current) {
-    std::thread::spawn(move || {
-        loop {
-            std::thread::sleep(Duration::from_secs(1));
-            let current = current.lock().unwrap();
-            if let Some((since, parser, input)) = &*current
-                && since.elapsed() > PATIENCE
-            {
-                let path = keep(parser, "hang", input);
-                eprintln!("{parser} does not end: {}", path.display());
-                std::process::abort();
-            }
-        }
-    });
+const FLAG_WORDS: &str = "--batch --scene --stage --size --samples --depth --seed --look-from --vfov --simd --isa --threads \
+    --out --resume --json --time-limit --noise-target --sample-range compare merge bench diff report --help -- = , .. x";
+
+/// Numbers that often cause errors.
+const NUMBERS: &[&str] = &[
+    "0",
+    "-0",
+    "-1",
+    "1",
+    "1e308",
+    "-1e308",
+    "1e-320",
+    "1e400",
+    "nan",
+    "inf",
+    "-inf",
+    "0.5",
+    "4294967296",
+    "4294967295",
+    "9223372036854775807",
+    "18446744073709551615",
+    "99999999999999999999999999",
+    "0x7f",
+    "1e",
+    "16384",
+    "16385",
+    "20000",
+];
+
+/// At a place of an input, so many bytes are replaced by others.
+type Change = (Index, Option<usize>, Vec<u8>);
+
+fn change(words: &'static str) -> impl Strategy<Value = Change> {
+    let text = |list: Vec<&'static str>| select(list).prop_map(|word| word.as_bytes().to_vec());
+    let words = words.split_whitespace().flat_map(|word| [word, "\n"]).collect();
+    let binary =
+        (any::<u64>(), 0..64_u32, 1..=8_usize, any::<bool>()).prop_map(|(number, shift, size, is_little)| {
+            let number = number >> shift;
+            let bytes = if is_little { number.to_le_bytes() } else { number.swap_bytes().to_le_bytes() };
+            if is_little { bytes[..size].to_vec() } else { bytes[8 - size..].to_vec() }
+        });
+    let inserted = prop_oneof![
+        3 => prop::collection::vec(any::<u8>(), 0..4),
+        3 => text(words),
+        2 => text(NUMBERS.to_vec()),
+        2 => binary,
+        1 => (any::<u8>(), 1..300_usize).prop_map(|(byte, count)| vec![byte; count]),
+    ];
+    // `None` overwrites.
+    let removed = prop_oneof![2 => Just(None), 1 => Just(Some(0)), 1 => (0..64_usize).prop_map(Some)];
+    (any::<Index>(), removed, inserted)
 }
 
-/// Saves an input with which later runs start.
-fn keep(parser: &str, kind: &str, input: &[u8]) -> PathBuf {
-    let directory = finds(parser);
-    std::fs::create_dir_all(&directory).unwrap();
-    let sum = input.iter().fold(0_u64, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3));
-    let path = directory.join(format!("{kind}-{sum:016x}"));
-    std::fs::write(&path, input).unwrap();
-    path
-}
-
-/// Parses an input; `Err` says what went wrong.
-fn attempt(parser: &Parser, input: &[u8], current: &Current) -> Result<Outcome, String> {
-    *current.lock().unwrap() = Some((Instant::now(), parser.name, input.to_vec()));
-    let before = MEMORY.current_usage();
-    MEMORY.reset_peak_usage();
-    let outcome = catch_unwind(AssertUnwindSafe(|| (parser.parse)(input)));
-    let peak = MEMORY.peak_usage().saturating_sub(before);
-    *current.lock().unwrap() = None;
-    let outcome = outcome
-        .map_err(|_| format!("{} panics: {}", parser.name, keep(parser.name, "panic", input).display()))?;
-    let limit = (4 << 20) + parser.bytes_per_byte * input.len() + outcome.allowance;
-    if peak > limit {
-        let path = keep(parser.name, "memory", input);
-        return Err(format!("{} takes {peak} bytes, more than {limit}: {}", parser.name, path.display()));
+fn changed(seed: &[u8], changes: &[Change]) -> Vec<u8> {
+    let mut input = seed.to_vec();
+    for (at, removed, inserted) in changes {
+        let start = at.index(input.len() + 1);
+        let end = (start + removed.unwrap_or(inserted.len())).min(input.len());
+        input.splice(start..end, inserted.iter().copied());
     }
-    Ok(outcome)
+    input
 }
 
-/// The outcome without its numbers, so that equal kinds of outcomes are equal.
-fn kind(outcome: &Outcome) -> String {
-    let told: String = outcome.told.chars().filter(|c| !c.is_ascii_digit()).take(160).collect();
-    // Quoted input has endless variations.
-    told.split('"').step_by(2).collect()
-}
-
+/// There is one test, because the memory of all threads counts.
 #[test]
 fn no_input_breaks_a_parser() {
-    let seed = number("WEEKENDER_FUZZ_SEED").unwrap_or(1);
-    let only = std::env::var("WEEKENDER_FUZZ_ONLY").ok();
-    let parsers: Vec<Parser> = parsers::all()
-        .into_iter()
-        .filter(|parser| only.as_deref().is_none_or(|only| only == parser.name))
-        .collect();
-    let seconds = number("WEEKENDER_FUZZ_SECONDS").map(|seconds| seconds as f64 / parsers.len() as f64);
-    let current = Current::default();
-    watch(Arc::clone(&current));
-    let mut faults = Vec::new();
-    for parser in &parsers {
-        let mut kept = parser.seeds.clone();
-        let found = std::fs::read_dir(finds(parser.name)).into_iter().flatten();
-        kept.extend(found.map(|entry| std::fs::read(entry.unwrap().path()).unwrap()));
-        let (begin, mut inputs, mut taken, mut slowest) = (Instant::now(), 0_u64, 0_u64, Duration::ZERO);
-        let mut kinds = HashSet::new();
-        for seed in &kept {
-            match attempt(parser, seed, &current) {
-                Ok(outcome) => drop(kinds.insert(kind(&outcome))),
-                Err(fault) => faults.push(fault),
-            }
-        }
-        let mut draws = Draws::new(seed);
-        let more =
-            |inputs| seconds.map_or(inputs < SHORT_RUN, |seconds| begin.elapsed().as_secs_f64() < seconds);
-        let faults_before = faults.len();
-        while more(inputs) && faults.len() < faults_before + 10 {
-            let mut input = mutate(&mut draws, &kept, parser.words);
-            if let Some(seal) = parser.seal
-                && draws.below(2) == 0
-            {
-                seal(&mut input);
-            }
-            inputs += 1;
-            let start = Instant::now();
-            match attempt(parser, &input, &current) {
-                Ok(outcome) => {
-                    taken += u64::from(outcome.is_taken);
-                    if kinds.insert(kind(&outcome)) && kept.len() < KEPT_LIMIT {
-                        kept.push(input);
-                    }
-                }
-                Err(fault) => faults.push(fault),
-            }
-            slowest = slowest.max(start.elapsed());
-        }
-        println!(
-            "{:<12} {inputs:>9} inputs, {:>8.0} a second, {taken:>8} taken, {:>5} kinds of answers, slowest {:.1} ms",
-            parser.name,
-            inputs as f64 / begin.elapsed().as_secs_f64(),
-            kinds.len(),
-            1e3 * slowest.as_secs_f64()
-        );
+    let mut config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    if std::env::var_os("PROPTEST_CASES").is_none() {
+        config.cases = SHORT_RUN;
     }
-    assert!(faults.is_empty(), "{faults:#?}");
+    for parser in parsers() {
+        parser.seeds.iter().for_each(|seed| check(&parser, seed));
+        let changes = prop::collection::vec(change(parser.words), 1..6);
+        let inputs = (select(parser.seeds.clone()), changes, any::<bool>());
+        let mut runner = TestRunner::new(config.clone());
+        let result = runner.run(&inputs, |(seed, changes, is_sealed)| {
+            let mut input = changed(&seed, &changes);
+            if is_sealed {
+                let _ = seal(&mut input);
+            }
+            check(&parser, &input);
+            Ok(())
+        });
+        result.unwrap_or_else(|error| panic!("{}: {error}", parser.name));
+    }
+}
+
+fn check(parser: &Parser, input: &[u8]) {
+    let before = MEMORY.current_usage();
+    MEMORY.reset_peak_usage();
+    let allowance = (parser.parse)(input);
+    let peak = MEMORY.peak_usage().saturating_sub(before);
+    let limit = (4 << 20) + parser.bytes_per_byte * input.len() + allowance;
+    assert!(peak <= limit, "{} takes {peak} bytes, more than {limit}", parser.name);
+}
+
+/// Fields may have ten million spheres, which take time and memory of their own.
+fn names_large_field(text: &str) -> bool {
+    text.split("field:").skip(1).any(|count| count.bytes().take_while(u8::is_ascii_digit).count() > 4)
+}
+
+fn scene(input: &[u8]) -> usize {
+    let Ok(text) = std::str::from_utf8(input) else { return 0 };
+    if names_large_field(text) {
+        return 0;
+    }
+    let Ok(recipe) = file::parse(text, "a.toml") else { return 0 };
+    let again = file::parse(&file::to_toml(&recipe), "a.toml").unwrap();
+    assert_eq!(again.job().unwrap(), recipe.job().unwrap(), "a scene is another when it is read back");
+    2000 * recipe.scene.spheres.len()
+}
+
+fn film(input: &[u8]) -> usize {
+    let read = checkpoint::read(Cursor::new(input), input.len() as u64, Path::new("a.exr"));
+    let Ok(FilmFile { film, description }) = read else { return 0 };
+    assert!(film.error().is_none_or(|error| error.rmse.is_finite()));
+    let directory = tempfile::tempdir().unwrap();
+    let copy = directory.path().join("a.exr");
+    checkpoint::save(&copy, &film, &description).unwrap();
+    assert_eq!(checkpoint::load(&copy).unwrap(), FilmFile { film, description });
+    1 << 20
+}
+
+fn picture(input: &[u8]) -> usize {
+    let encoding = Encoding::Book(Transfer::Gamma2);
+    // A chunk is read completely before it is checked.
+    let chunk = 16 << 20;
+    let Ok(picture) = decode_picture(Cursor::new(input), input.len() as u64, encoding) else { return chunk };
+    let count = picture.width as usize * picture.height as usize;
+    assert_eq!(picture.pixels.len(), count);
+    assert!(picture.steps.is_none_or(|steps| steps.len() == count));
+    chunk + 100 * count
+}
+
+fn description(input: &[u8]) -> usize {
+    let read = decode_description(Cursor::new(input), Path::new("a"));
+    let Ok(description) = read else { return 0 };
+    if names_large_field(description.recipe()) {
+        return 0;
+    }
+    let _ = file::parse(description.recipe(), "a").map(|recipe| recipe.job());
+    1000 * description.recipe().len()
+}
+
+/// Parses one argument per line.
+fn flags(input: &[u8]) -> usize {
+    let text = String::from_utf8_lossy(input);
+    if !names_large_field(&text) {
+        let words = ["weekender"].into_iter().chain(text.split('\n')).map(OsString::from);
+        let _ = weekender::cli::parse(words);
+    }
+    1 << 30
+}
+
+/// Corrects the checksum of a film's header, if there is one, so that the code after it is reached.
+fn seal(input: &mut [u8]) -> Option<()> {
+    let text_at = |name: &[u8]| {
+        let start = input.windows(name.len()).position(|window| window == name)? + name.len();
+        let length = u32::from_le_bytes(input.get(start..start + 4)?.try_into().ok()?) as usize;
+        Some((start + 4, input.get(start + 4..start + 4 + length)?))
+    };
+    let (start, head) = text_at(b"weekenderFilm\0string\0")?;
+    let (_, recipe) = text_at(b"weekenderRecipe\0string\0")?;
+    let (_, comments) = text_at(b"comments\0string\0")?;
+    let head = std::str::from_utf8(head).ok()?;
+    let table: toml::Table = head.parse().ok()?;
+    let whole = |value: &toml::Value| u64::try_from(value.as_integer()?).ok();
+    let number = |name: &str| whole(table.get(name)?);
+    let mut sum = Checksum::default();
+    for name in ["version", "width", "height", "halves", "rejected"] {
+        sum.word(number(name)?);
+    }
+    let ranges = table.get("samples")?.as_array()?;
+    sum.word(ranges.len() as u64);
+    for range in ranges {
+        range.as_array()?.iter().try_for_each(|end| whole(end).map(|end| sum.word(end)))?;
+    }
+    sum.text(recipe);
+    sum.text(comments);
+    if number("version")? > 3 {
+        sum.word(number("sample_version")?);
+        let bands = table.get("bands")?.as_array()?;
+        bands.iter().try_for_each(|band| band.as_str().map(|band| sum.text(band.as_bytes())))?;
+    }
+    let place = start + head.find("head_checksum = \"")? + "head_checksum = \"".len();
+    input.get_mut(place..place + 16)?.copy_from_slice(sum.finish().as_bytes());
+    Some(())
 }

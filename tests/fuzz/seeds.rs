@@ -14,7 +14,8 @@ use weekender::recipe::file::{to_picture_toml, to_toml};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Stage, Transfer};
 
-fn kept(name: &str) -> Vec<Vec<u8>> {
+/// The files of a directory.
+pub fn kept(name: &str) -> Vec<Vec<u8>> {
     let directory = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let files = std::fs::read_dir(directory).into_iter().flatten().map(|entry| entry.unwrap().path());
     let mut files: Vec<_> = files.filter(|path| path.is_file()).collect();
@@ -160,10 +161,6 @@ pub fn pfms() -> Vec<Vec<u8>> {
 
 pub fn descriptions() -> Vec<Vec<u8>> {
     ["exr", "png", "ppm"].into_iter().map(|ending| written(ending, &film(2, 2, 2))).collect()
-}
-
-pub fn reports() -> Vec<Vec<u8>> {
-    kept("tests/fuzz/seeds")
 }
 
 pub fn flags() -> Vec<Vec<u8>> {
