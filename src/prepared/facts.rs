@@ -1,14 +1,12 @@
 //! Properties of a scene that do not depend on the camera: spheres that others cover, and layers so thin that rounding
 //! may be visible.
 
-mod nearest;
-
 use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
 use crate::scene::{Scene, Sphere};
 use glam::DVec3;
-use nearest::{Nearest, thickness};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Two spheres form a layer if their surfaces are everywhere closer than this share of their radius.
 const LAYER_SHARE: f64 = 1e-2;
@@ -29,8 +27,8 @@ const CLOSING_RATIO: f64 = 100.0;
 /// way out of glass, or gets out of an opaque sphere, becomes a different path.
 const TRAPPING_CLOSING_RATIO: f64 = 1e4;
 
-/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with those that are
-/// nearest to it in place and size.
+/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with the two that follow
+/// it by place and size.
 const CELL_LIMIT: usize = 64;
 
 /// Covered spheres and thin layers of a scene.
@@ -114,30 +112,11 @@ impl Facts {
         let mut cells: Vec<(u64, u32)> =
             spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
         cells.par_sort_unstable();
-        let mut full: Vec<(u64, Nearest<'_>)> = Vec::new();
         for cell in cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > 1) {
-            let mut members: Vec<u32> = cell.iter().map(|(_, index)| *index).collect();
-            self.drop_covered(spheres, &mut members);
-            if members.len() <= CELL_LIMIT {
-                for (place, a) in members.iter().enumerate() {
-                    for b in &members[place + 1..] {
-                        self.note_layer(spheres, *a, *b);
-                    }
-                }
-            }
-            if cell.len() > CELL_LIMIT {
-                full.push((cell[0].0, Nearest::new(spheres, members)));
-            }
-        }
-        // What is nearest to a sphere in one of the full cells.
-        let nearest_to = |index: u32, cell: &Nearest<'_>| {
-            cell.to(index, LAYER_SHARE * spheres[index as usize].radius).into_iter().map(move |b| [index, b])
-        };
-        for (_, cell) in full.iter().filter(|(_, cell)| cell.members().len() > CELL_LIMIT) {
-            let pairs: Vec<[u32; 2]> =
-                cell.members().par_iter().flat_map_iter(|index| nearest_to(*index, cell)).collect();
-            for [a, b] in pairs {
-                self.note_layer(spheres, a, b);
+            let members = self.uncovered(spheres, cell.iter().map(|(_, index)| *index).collect());
+            let next = if members.len() <= CELL_LIMIT { CELL_LIMIT } else { 2 };
+            for (place, a) in members.iter().enumerate() {
+                members[place + 1..].iter().take(next).for_each(|b| self.note_layer(spheres, *a, *b));
             }
         }
         let occupied = Occupied::by(&cells);
@@ -146,16 +125,10 @@ impl Facts {
             .enumerate()
             .flat_map_iter(|(index, sphere)| {
                 let index = index as u32;
-                let mut pairs: Vec<[u32; 2]> = Vec::new();
-                for mark in marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark)) {
-                    match full.binary_search_by_key(&mark, |cell| cell.0) {
-                        Ok(place) => pairs.extend(nearest_to(index, &full[place].1)),
-                        Err(_) => pairs.extend(members_of(&cells, mark).map(|other| [index, other])),
-                    }
-                }
+                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
+                let others = marks.flat_map(|mark| members_of(&cells, mark).take(CELL_LIMIT));
                 // Where coordinates are huge for the radius, the next cell has the same number.
-                pairs.retain(|[a, b]| a != b);
-                pairs
+                others.filter(move |other| *other != index).map(move |other| [index, other])
             })
             .collect();
         for [a, b] in beyond_borders {
@@ -163,33 +136,33 @@ impl Facts {
         }
     }
 
-    /// Of equal spheres, keeps the first in the scene.
-    fn drop_covered(&mut self, spheres: &[Sphere], members: &mut Vec<u32>) {
+    /// The members by place and size. Of equal spheres, only the first in the scene is left; the others are covered.
+    fn uncovered(&mut self, spheres: &[Sphere], mut members: Vec<u32>) -> Vec<u32> {
         let numbers = |index: u32| {
             let Sphere { center: DVec3 { x, y, z }, radius, .. } = spheres[index as usize];
             // Adding 0 makes -0 the same as 0.
-            [radius, x, y, z].map(|number| number + 0.0)
+            [x, y, z, radius].map(|number| number + 0.0)
         };
         members.sort_by(|a, b| {
             let order = numbers(*a).into_iter().zip(numbers(*b)).map(|(a, b)| a.total_cmp(&b));
-            order.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then).then(a.cmp(b))
+            order.fold(Ordering::Equal, Ordering::then).then(a.cmp(b))
         });
         let mut kept: Vec<u32> = Vec::with_capacity(members.len());
-        for index in members.drain(..) {
+        for index in members {
             if kept.last().is_some_and(|last| numbers(*last) == numbers(index)) {
                 self.covered.push(index);
             } else {
                 kept.push(index);
             }
         }
-        *members = kept;
+        kept
     }
 
     fn note_layer(&mut self, spheres: &[Sphere], a: u32, b: u32) {
         let [first, second] = [a, b].map(|index| spheres[index as usize]);
         let spheres = [a.min(b), a.max(b)];
         let apart = first.center.distance(second.center);
-        let thickness = thickness(&first, &second);
+        let thickness = apart + (first.radius - second.radius).abs();
         // Where surfaces cross, they differ by no more than this either.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
             let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
@@ -225,7 +198,7 @@ fn worst(all: &[Unresolved]) -> Option<Unresolved> {
     all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
 }
 
-/// The spheres of the cell with this mark, which is not a full one.
+/// The spheres of the cell with this mark.
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     let first = cells.partition_point(|cell| cell.0 < mark);
     cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
@@ -311,4 +284,114 @@ fn cells_near(number: f64) -> [Option<f64>; 2] {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+
+    fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
+        let mut scene = Scene::default();
+        let material = scene.add_material("m", Material::Lambertian { albedo: DVec3::ONE });
+        spheres.into_iter().for_each(|(center, radius)| scene.add_sphere(center, radius, material));
+        scene
+    }
+
+    /// Two spheres that are close are found to be close, wherever they lie and however large they are.
+    #[test]
+    fn layers_are_found_across_borders() {
+        let random =
+            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
+        for i in 0..5000 {
+            let at = |k: u32| 10.0 * random(i, k) - 5.0;
+            let radius = (6.0 * random(i, 3) - 3.0).exp2();
+            let center = DVec3::new(at(0), at(1), at(2)).round() * f64::from(i % 2) + DVec3::X * at(4);
+            let by = DVec3::new(random(i, 5), random(i, 6), random(i, 7)) - 0.5;
+            let near = (center + by * 0.005 * radius, radius * (1.0 - 0.004 * random(i, 8)));
+            let far = (center + DVec3::X * 0.02 * radius, radius);
+            let facts = Facts::of(&scene([(center, radius), near, far, (center, radius)]));
+            assert_eq!(facts.covered, [3], "{center} {radius}");
+            assert!(facts.layers.iter().any(|layer| layer.spheres == [0, 1]), "{center} {radius}");
+            assert!(facts.layers.iter().all(|layer| layer.spheres != [0, 2]), "{center} {radius}");
+        }
+    }
+
+    #[test]
+    fn a_sphere_that_is_tiny_for_its_place_is_no_layer_with_itself() {
+        for center in [DVec3::new(4.0, 1.0, 0.0), DVec3::splat(-1e3), DVec3::X] {
+            for radius in [1e-18, 1e-16, 1e-14] {
+                let facts = Facts::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
+                assert_eq!(facts, Facts::default(), "{center} {radius}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_of_many_copies_stays() {
+        let copies = (0..10_000).map(|i| (DVec3::new(f64::from(i % 3), 0.0, -0.0), 1.0 + f64::from(i % 2)));
+        let facts = Facts::of(&scene(copies));
+        assert_eq!(facts.covered, (6..10_000).collect::<Vec<_>>());
+        assert!(facts.layers.is_empty());
+    }
+
+    #[test]
+    fn a_layer_is_as_thick_as_its_surfaces_are_apart() {
+        let layer = |a: (f64, f64), b: (f64, f64)| {
+            let facts = Facts::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
+            facts.layers.first().map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))
+        };
+        let unit = 1.0 / 1024.0;
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 4.0 * unit)), Some([4.0, 4.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + unit, 1.0 - 4.0 * unit)), Some([5.0, 3.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + 4.0 * unit, 1.0 + unit)), Some([5.0, 0.0]));
+        // A layer is thinner than a hundredth of the smaller radius.
+        assert_eq!(layer((0.5, 1.0), (0.5 + 10.2 * unit, 1.0)), Some([10.0, 0.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + 10.3 * unit, 1.0)), None);
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.2 * unit)), None);
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.1 * unit)), Some([10.0, 10.0]));
+    }
+
+    #[test]
+    fn cells_beyond_a_border_are_near_it() {
+        for (number, next) in [
+            (5.0, Some(4.0)),
+            (5.019, Some(4.0)),
+            (5.021, None),
+            (5.5, None),
+            (5.979, None),
+            (5.981, Some(6.0)),
+            (-1.01, Some(-1.0)),
+            (-1.99, Some(-3.0)),
+        ] {
+            let own = f64::floor(number);
+            assert_eq!(cells_near(number), [Some(own), next], "{number}");
+        }
+        let count = |x: f64, y: f64, z: f64, radius: f64| {
+            let sphere = Sphere { center: DVec3::new(x, y, z), radius, material: 0 };
+            marks_beyond_borders(&sphere).len()
+        };
+        assert_eq!(count(0.5, 0.5, 0.5, 1.0), 0);
+        assert_eq!(count(0.01, 0.5, 0.5, 1.0), 1);
+        assert_eq!(count(0.01, 0.99, 0.5, 1.0), 3);
+        assert_eq!(count(0.01, 0.99, 5.0, 1.0), 7);
+        // The size is near a border, too: log2(radius) + 0.37 is 0.99.
+        let radius = 0.62_f64.exp2();
+        assert_eq!(count(0.5, 0.5, 0.5, radius), 1);
+        assert_eq!(count(0.5, 0.5, 0.01, radius), 1 + 2);
+    }
+
+    /// Shells around one place, and coated balls that overlap.
+    #[test]
+    fn layers_in_a_crowd_are_found() {
+        let random =
+            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
+        for count in [2, 63, 65, 500] {
+            let has = |facts: &Facts, pair: [u32; 2]| facts.layers.iter().any(|layer| layer.spheres == pair);
+            let shells = (0..count).map(|i| (DVec3::splat(0.5), 1.0 + 1e-5 * f64::from(i)));
+            let facts = Facts::of(&scene(shells));
+            assert!((1..count).all(|i| has(&facts, [i - 1, i])) && facts.covered.is_empty(), "{count}");
+            let place = |i: u32| DVec3::new(random(i, 0), random(i, 1), random(i, 2));
+            let balls = (0..2 * count).map(|i| (place(i % count), 1.4 - 1e-7 * f64::from(i / count)));
+            let facts = Facts::of(&scene(balls));
+            assert!((0..count).all(|i| has(&facts, [i, i + count])), "{count}");
+        }
+    }
+}

@@ -71,19 +71,19 @@ pub(super) struct Groups {
 }
 
 /// The eye and the radius of its lens.
-pub(super) struct Eye {
-    pub position: DVec3,
+struct Eye {
+    position: DVec3,
     /// Rays start within this distance of the eye.
     lens_radius: f64,
 }
 
 impl Eye {
-    pub fn of(camera: &Camera) -> Self {
+    fn of(camera: &Camera) -> Self {
         Eye { position: camera.look_from, lens_radius: camera.lens_radius() }
     }
 
     /// Distance to the surface: negative inside, 0 if it is within rounding of 0.
-    pub fn height(&self, sphere: &Sphere) -> f64 {
+    fn height(&self, sphere: &Sphere) -> f64 {
         let height = self.position.distance(sphere.center) - sphere.radius;
         let size = self.position.abs().max_element() + sphere.center.abs().max_element() + sphere.radius;
         if height.abs() <= ON_SURFACE_UNITS * f64::EPSILON * size { 0.0 } else { height }
@@ -155,7 +155,7 @@ fn reaches_into(sphere: &Sphere, cavity: &Sphere) -> bool {
 }
 
 /// Whether the surfaces cross or are closer than rounding can resolve.
-pub(super) fn touch(a: &Sphere, b: &Sphere) -> bool {
+fn touch(a: &Sphere, b: &Sphere) -> bool {
     let apart = a.center.distance(b.center);
     let margin = TOUCHING_UNITS * HALF_EPSILON * a.radius.max(b.radius);
     apart <= a.radius + b.radius + margin && apart >= (a.radius - b.radius).abs() - margin

@@ -2,7 +2,6 @@
 
 mod bounded;
 mod camera;
-mod contacts;
 pub mod cwbvh;
 mod facts;
 mod groups;
@@ -212,8 +211,7 @@ impl<R: Real> PreparedScene<R> {
             self.records.push(RecordColumns::default());
         }
         self.warnings = if job.rules().surface == SurfaceRule::Exact {
-            let contact = contacts::warning(job);
-            self.facts.warnings(job, groups.origin).into_iter().chain(contact).collect()
+            self.facts.warnings(job, groups.origin)
         } else {
             Vec::new()
         };
