@@ -128,6 +128,8 @@ mod tests {
     fn times_are_short() {
         let found = [0.0, 59.4, 245.0, 7385.0, 1e7].map(seconds);
         assert_eq!(found, ["0.0 s", "59.4 s", "4 min 05 s", "2 h 03 min", "115 days"]);
+        // Rounded before it is divided into units.
+        assert_eq!([59.6, 3599.7].map(seconds), ["1 min 00 s", "1 h 00 min"]);
     }
 
     #[test]

@@ -13,73 +13,57 @@ use std::time::{Duration, Instant};
 /// A second signal within this time is an echo of the first: `timeout` and shells signal a program and then its group.
 const ECHO: Duration = Duration::from_millis(500);
 
-/// Whether Ctrl-C has been pressed.
+/// Whether an end has been requested.
 pub struct Interrupt(Arc<Shared>);
 
 #[derive(Default)]
 struct Shared {
     is_set: AtomicBool,
-    arrived: Arrived,
     state: Mutex<State>,
 }
 
-/// The signals that have arrived. None of them is set on systems without signals.
 #[derive(Default)]
-struct Arrived {
-    interrupt: Arc<AtomicBool>,
-    terminate: Arc<AtomicBool>,
-    hang_up: Arc<AtomicBool>,
+struct State {
+    /// When the first signal arrived.
+    since: Option<Instant>,
+    /// The exit code of the signals that have arrived.
+    exit_code: Option<u8>,
+    /// What is being written, in words.
+    writing: Option<String>,
 }
 
-impl Arrived {
-    /// Calls `answer` on a thread of its own whenever a signal has arrived and is noted.
-    #[cfg(unix)]
-    fn watch(&self, answer: impl Fn() + Send + 'static) -> Result<()> {
-        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-        use signal_hook::{flag, low_level::pipe};
-        use std::io::Read;
-        let (mut bell, button) = std::os::unix::net::UnixStream::pair()?;
-        let ignored = ignored_signals();
-        for (signal, arrived) in
-            [(SIGINT, &self.interrupt), (SIGTERM, &self.terminate), (SIGHUP, &self.hang_up)]
-        {
-            if ignored & (1 << (signal - 1)) == 0 {
-                // In this order: who hears the bell finds the signal noted.
-                flag::register(signal, Arc::clone(arrived))?;
-                pipe::register(signal, button.try_clone()?)?;
-            }
-        }
-        let listen = move || {
-            while bell.read_exact(&mut [0]).is_ok() {
-                answer();
-            }
-        };
-        std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
-        Ok(())
-    }
-
-    /// The same. The system does not say which signal it was.
-    #[cfg(not(unix))]
-    fn watch(&self, answer: impl Fn() + Send + 'static) -> Result<()> {
-        Ok(ctrlc::set_handler(answer)?)
-    }
-
+impl State {
     /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and end a program that takes too long with
     /// SIGKILL.
     fn hurries(&self) -> bool {
-        cfg!(not(unix)) || self.interrupt.load(Ordering::Relaxed)
+        self.exit_code == Some(INTERRUPTED)
     }
+}
 
-    /// 128 and the number of the signal. Whoever presses Ctrl-C wants the end, whatever else asks for it.
-    fn exit_code(&self) -> u8 {
-        let has = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
-        match () {
-            () if has(&self.interrupt) => INTERRUPTED,
-            () if has(&self.terminate) => TERMINATED,
-            () if has(&self.hang_up) => HUNG_UP,
-            () => INTERRUPTED,
+/// Calls `answer` with its exit code, on a thread of its own, whenever a signal has arrived.
+#[cfg(unix)]
+fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored_signals();
+    let handled = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let mut signals = signal_hook::iterator::Signals::new(handled)?;
+    let listen = move || {
+        for signal in signals.forever() {
+            answer(match signal {
+                SIGTERM => TERMINATED,
+                SIGHUP => HUNG_UP,
+                _ => INTERRUPTED,
+            });
         }
-    }
+    };
+    std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
+    Ok(())
+}
+
+/// The same. The system does not say which signal it was.
+#[cfg(not(unix))]
+fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
+    Ok(ctrlc::set_handler(move || answer(INTERRUPTED))?)
 }
 
 /// The signals that the program ignores, a bit each, the lowest for signal 1. Called before any is handled, they are those
@@ -94,14 +78,6 @@ fn ignored_signals() -> u64 {
 fn ignored_in(status: &str) -> u64 {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
-}
-
-#[derive(Default)]
-struct State {
-    /// When the first signal arrived.
-    since: Option<Instant>,
-    /// What is being written, in words.
-    writing: Option<String>,
 }
 
 /// The response to a signal.
@@ -120,15 +96,23 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn signalled(&self, now: Instant) -> Answer {
+    fn signalled(&self, exit_code: u8, now: Instant) -> Answer {
         let mut state = self.state();
         let first = *state.since.get_or_insert(now);
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
+        // Whoever presses Ctrl-C wants the end, whatever else asks for it.
+        state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
+            .into_iter()
+            .find(|code| *code == exit_code || Some(*code) == state.exit_code);
         match &state.writing {
             Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
-            None if was_set && self.arrived.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
+            None if was_set && state.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
             None => Answer::Nothing,
         }
+    }
+
+    fn exit_code(&self) -> u8 {
+        self.state().exit_code.unwrap_or(INTERRUPTED)
     }
 }
 
@@ -148,15 +132,15 @@ impl Interrupt {
     pub fn install_with(wake: impl Fn() + Send + 'static) -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);
-        let answer = move || match seen.signalled(Instant::now()) {
+        let answer = move |code| match seen.signalled(code, Instant::now()) {
             Answer::Nothing => wake(),
             Answer::Say(words) => console::note(&words),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");
-                std::process::exit(i32::from(seen.arrived.exit_code()));
+                std::process::exit(i32::from(seen.exit_code()));
             }
         };
-        shared.arrived.watch(answer).context("cannot handle Ctrl-C and other signals")?;
+        watch(answer).context("cannot handle Ctrl-C and other signals")?;
         Ok(Interrupt(shared))
     }
 
@@ -178,12 +162,12 @@ impl Interrupt {
 
     /// Whether somebody at a keyboard has asked for the end, and can ask again.
     pub fn is_by_hand(&self) -> bool {
-        self.0.arrived.hurries()
+        self.0.state().hurries()
     }
 
     /// The exit code of a program that a signal has ended in good order.
     pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.0.arrived.exit_code())
+        ExitCode::from(self.0.exit_code())
     }
 
     /// Until the result is dropped, a signal does not end the program but prints a message that names `what`.
@@ -217,22 +201,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_asks_and_a_later_one_ends() {
+    fn the_first_signal_asks_and_a_later_ctrl_c_ends() {
         let (shared, now) = (Shared::default(), Instant::now());
-        assert_eq!(shared.signalled(now), Answer::Nothing);
-        #[cfg(unix)]
-        assert_eq!(shared.signalled(now + 2 * ECHO), Answer::Nothing, "no scheduler is in a hurry");
-        shared.arrived.interrupt.store(true, Ordering::Relaxed);
-        assert!(shared.is_set.load(Ordering::Relaxed));
-        assert_eq!(shared.signalled(now + ECHO / 2), Answer::Nothing, "an echo");
-        assert_eq!(shared.signalled(now + ECHO), Answer::Exit);
+        assert_eq!(shared.exit_code(), 130);
+        assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);
+        assert_eq!((shared.is_set.load(Ordering::Relaxed), shared.exit_code()), (true, 129));
+        assert_eq!(
+            shared.signalled(TERMINATED, now + 2 * ECHO),
+            Answer::Nothing,
+            "no scheduler is in a hurry"
+        );
+        assert_eq!(shared.exit_code(), 143);
+        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO / 2), Answer::Nothing, "an echo");
+        assert_eq!(shared.exit_code(), 130);
+        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO), Answer::Exit);
+        assert_eq!(Shared::default().signalled(INTERRUPTED, now), Answer::Nothing);
     }
 
     #[cfg(unix)]
     #[test]
-    fn the_status_of_a_process_tells_what_it_ignores() {
-        let status =
-            "Name:\tsh\nSigBlk:\t0000000000000003\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000002\n";
+    fn ignored_signals_are_read_from_the_status_of_the_process() {
+        let status = "Name:\tsh\nSigBlk:\t0000000000000003\nSigIgn:\t0000000000001001\n";
         assert_eq!(ignored_in(status), 0x1001);
         for unknown in ["", "SigIgn:\tnone\n", "SigBlk:\t0000000000000001\n"] {
             assert_eq!(ignored_in(unknown), 0);
@@ -240,27 +229,16 @@ mod tests {
     }
 
     #[test]
-    fn the_exit_code_is_that_of_the_signal_and_ctrl_c_comes_first() {
-        let arrived = Arrived::default();
-        assert_eq!(arrived.exit_code(), 130, "where there are no signals, it was Ctrl-C");
-        for (flag, code) in [(&arrived.hang_up, 129), (&arrived.terminate, 143), (&arrived.interrupt, 130)] {
-            flag.store(true, Ordering::Relaxed);
-            assert_eq!(arrived.exit_code(), code);
-        }
-    }
-
-    #[test]
     fn nothing_ends_the_program_while_it_writes() {
         let interrupt = Interrupt::unheard();
-        interrupt.0.arrived.interrupt.store(true, Ordering::Relaxed);
         let now = Instant::now();
         let writing = interrupt.while_writing("film.exr");
         for late in 0..3 {
-            let answer = interrupt.0.signalled(now + late * ECHO);
+            let answer = interrupt.0.signalled(INTERRUPTED, now + late * ECHO);
             assert!(matches!(&answer, Answer::Say(words) if words.contains("film.exr")), "{answer:?}");
         }
         drop(writing);
         assert!(interrupt.is_set());
-        assert_eq!(interrupt.0.signalled(now + 3 * ECHO), Answer::Exit);
+        assert_eq!(interrupt.0.signalled(INTERRUPTED, now + 3 * ECHO), Answer::Exit);
     }
 }

@@ -19,7 +19,6 @@ pub mod compare;
 pub mod console;
 pub mod describe;
 pub mod diff;
-pub mod environment;
 pub mod explain;
 pub mod failure;
 pub mod files;

@@ -7,8 +7,7 @@ use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
 use weekender::{
-    batch, bench, check, companion, compare, diff, environment, gallery, info, interrupt, journal, merge,
-    report, stress,
+    batch, bench, check, companion, compare, diff, gallery, info, interrupt, journal, merge, report, stress,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.
@@ -20,7 +19,6 @@ const BUILD: Build = Build {
 };
 
 fn main() -> ExitCode {
-    environment::provide_runtime_directory();
     interrupt::survive_file_size_limit();
     journal::watched(BUILD.line(), || run().unwrap_or_else(|failure| failure.report()))
 }

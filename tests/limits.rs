@@ -1,5 +1,5 @@
-//! Files that are damaged, claim more than they contain, or do not fit into memory are refused with exit code 2 and the
-//! reason: no panic, no abort, no hang.
+//! Files that are damaged or claim more than they contain are refused with exit code 2 and the reason: no panic, no abort,
+//! no hang.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -27,16 +27,16 @@ fn weekender(kilobytes: Option<u64>, arguments: &[&str], directory: &Path) -> (O
 
 fn render(directory: &Path, arguments: &[&str]) {
     let usual = ["--batch", "--device", "cpu", "--progress", "off"];
-    let (code, told) = weekender(None, &[&usual[..], arguments].concat(), directory);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, message) = weekender(None, &[&usual[..], arguments].concat(), directory);
+    assert_eq!(code, Some(0), "{message}");
 }
 
 /// The run must exit with code 2 and a message that contains all `parts`.
 fn assert_refused(kilobytes: Option<u64>, arguments: &[&str], directory: &Path, parts: &[&str]) {
-    let (code, told) = weekender(kilobytes, arguments, directory);
-    assert_eq!(code, Some(2), "{arguments:?}: {told}");
+    let (code, message) = weekender(kilobytes, arguments, directory);
+    assert_eq!(code, Some(2), "{arguments:?}: {message}");
     for part in parts {
-        assert!(told.contains(part), "{arguments:?} should say {part:?}: {told}");
+        assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
     }
 }
 
@@ -57,10 +57,7 @@ fn a_damaged_film_is_refused_by_all_that_read_films() {
     // Each is a single bit in a digit, and the changed number would be believed without a checksum.
     let damages = [
         ("[[0, 4]]", "[[2, 4]]"),
-        ("rejected = 0", "rejected = 1"),
         ("vfov_degrees = 90.0", "vfov_degrees = 80.0"),
-        ("seed = 0", "seed = 1"),
-        ("max_depth = 24", "max_depth = 25"),
         ("Samples: 4", "Samples: 5"),
     ];
     let middle = good.len() / 2;
@@ -70,11 +67,9 @@ fn a_damaged_film_is_refused_by_all_that_read_films() {
     damaged.push(pixels);
     for bytes in damaged {
         fs::write(at.join("bad.exr"), bytes).unwrap();
-        let ways: [&[&str]; 6] = [
+        let ways: [&[&str]; 4] = [
             &["compare", "bad.exr", "good.exr"],
             &["compare", "good.exr", "bad.exr"],
-            &["compare", "bad.exr", "cpu"],
-            &["merge", "bad.exr", "other.exr", "--out", "sum.exr"],
             &["merge", "other.exr", "bad.exr", "--out", "sum.exr"],
             &["--batch", "--resume", "bad.exr", "--samples", "6", "--out", "more.exr"],
         ];
@@ -88,7 +83,7 @@ fn a_damaged_film_is_refused_by_all_that_read_films() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_by_all_that_read_files() {
+fn only_regular_files_are_read() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let made = Command::new("mkfifo").arg(at.join("pipe.exr")).status().unwrap();
@@ -146,62 +141,11 @@ fn a_picture_that_claims_more_than_its_file_holds_is_refused() {
 }
 
 #[test]
-fn what_does_not_fit_into_memory_is_refused_before_it_is_asked_for() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    render(at, &["--size", "1600x1000", "--samples", "1", "--scene", "two-spheres", "--out", "film.exr"]);
-    fs::copy(at.join("film.exr"), at.join("copy.exr")).unwrap();
-    let scene = "[camera]\nlook_from = [0,0,3]\nlook_at = [0,0,0]\nvfov_degrees = 40\n";
-    let sphere = "[[spheres]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"m\"\n";
-    let materials = "[materials]\nm = { kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n";
-    fs::write(at.join("many.toml"), format!("{scene}{materials}{}", sphere.repeat(400_000))).unwrap();
-    let batch = ["--batch", "--device", "cpu", "--progress", "off", "--samples", "1", "--out", "a.png"];
-    let words = ["needs", "of memory, but", "is free"];
-    let large = ["--size", "16384x16384"];
-    assert_refused(Some(4_000_000), &[&batch[..], &large].concat(), at, &words);
-    for scene in ["field:3000000", "field:10000000", "many.toml"] {
-        let arguments = [&batch[..], &["--size", "16x9", "--scene", scene]].concat();
-        assert_refused(Some(450_000), &arguments, at, &[&words[..], &[scene]].concat());
-    }
-    assert_refused(Some(4_000_000), &[&["compare", "cpu", "cpu"][..], &large].concat(), at, &words);
-    for way in [
-        &["compare", "film.exr", "copy.exr"][..],
-        &["compare", "film.exr", "cpu"],
-        &["merge", "film.exr", "copy.exr", "--out", "sum.exr"],
-        &["--batch", "--resume", "film.exr", "--samples", "2", "--out", "b.exr"],
-    ] {
-        assert_refused(Some(200_000), way, at, &words);
-    }
-}
-
-#[test]
-fn threads_that_the_system_does_not_start_are_told() {
+fn failing_to_start_threads_is_an_error() {
     let at = TempDir::new().unwrap();
     let many = ["--batch", "--device", "cpu", "--threads", "1024", "--samples", "1", "--size", "16x9"];
-    let (code, told) = weekender(Some(900_000), &[&many[..], &["--out", "a.png"]].concat(), at.path());
-    assert!(matches!(code, Some(1 | 2)), "{code:?}: {told}");
-    assert!(told.contains("cannot start 1024 threads") && told.contains("--threads"), "{told}");
-    assert!(!told.contains("panicked") && !at.path().join("a.png").exists(), "{told}");
-}
-
-#[test]
-fn with_any_limit_of_memory_the_program_ends_in_an_orderly_way() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    render(at, &["--size", "800x500", "--samples", "1", "--scene", "two-spheres", "--out", "film.exr"]);
-    let batch = ["--batch", "--device", "cpu", "--threads", "2", "--progress", "off", "--samples", "1"];
-    let field = [&batch[..], &["--size", "160x90", "--scene", "field:100000", "--out", "a.exr"]].concat();
-    let compare = ["compare", "film.exr", "film.exr"];
-    let mut refused = 0;
-    for kilobytes in (200_000..=1_400_000).step_by(200_000) {
-        for arguments in [&field[..], &compare] {
-            let (code, told) = weekender(Some(kilobytes), arguments, at);
-            assert!(matches!(code, Some(0..=2)), "{code:?} at {kilobytes} kB: {told}");
-            assert!(!told.contains("panicked"), "at {kilobytes} kB: {told}");
-            refused += usize::from(code == Some(2));
-        }
-    }
-    let (code, told) = weekender(None, &field, at);
-    assert_eq!(code, Some(0), "{told}");
-    assert!(refused > 0);
+    let (code, message) = weekender(Some(900_000), &[&many[..], &["--out", "a.png"]].concat(), at.path());
+    assert!(matches!(code, Some(1 | 2)), "{code:?}: {message}");
+    assert!(message.contains("cannot start 1024 threads") && message.contains("--threads"), "{message}");
+    assert!(!message.contains("panicked") && !at.path().join("a.png").exists(), "{message}");
 }

@@ -1,4 +1,4 @@
-//! The log, the version, and what the program prints where it has no runtime directory.
+//! The log and the version.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 mod program_common;
@@ -43,7 +43,7 @@ fn a_film_is_kept_as_often_as_was_asked_for() {
     let directory = tempfile::tempdir().unwrap();
     let written = |every: &str| {
         let picture =
-            ["--batch", "--size", "32x18", "--device", "cpu", "--threads", "1", "--time-limit", "1.5"];
+            ["--batch", "--size", "32x18", "--device", "cpu", "--threads", "1", "--time-limit", "3"];
         let flags = ["--checkpoint", "film.exr", "--every", every, "--log", "run.log"];
         let output = program(directory.path(), &[&picture[..], &flags].concat()).output().unwrap();
         assert!(output.status.success(), "{:?}", said(&output));
@@ -52,7 +52,7 @@ fn a_film_is_kept_as_often_as_was_asked_for() {
         log.lines().filter(|line| line.contains("checkpoint: ")).count()
     };
     assert_eq!(written("1h"), 0, "only the film at the end");
-    assert!((1..=5).contains(&written("0.3s")));
+    assert!((1..=10).contains(&written("0.3s")));
 }
 
 #[test]
@@ -123,20 +123,6 @@ fn the_version_tells_what_a_report_of_a_fault_needs() {
     assert!(text.contains(window), "{text}");
     let output = program(directory.path(), &["--verbose"]).output().unwrap();
     assert!(output.status.code() == Some(2) && said(&output)[1].contains("--version"), "{output:?}");
-}
-
-#[test]
-fn drivers_do_not_complain_where_there_is_no_runtime_directory() {
-    let directory = tempfile::tempdir().unwrap();
-    for value in [None, Some(""), Some("relative")] {
-        let mut command = program(directory.path(), &["--list"]);
-        match value {
-            None => command.env_remove("XDG_RUNTIME_DIR"),
-            Some(value) => command.env("XDG_RUNTIME_DIR", value),
-        };
-        let [listed, errors] = said(&command.output().unwrap());
-        assert!(listed.contains("three-spheres") && errors.is_empty(), "{value:?}: {errors}");
-    }
 }
 
 #[test]

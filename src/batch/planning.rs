@@ -89,7 +89,7 @@ fn start<W: Work>(plan: &Plan<W>, options: &PlanOptions) -> Result<ExitCode, Fai
             let lines: String =
                 (0..plan.manifest.work.count()).map(|part| commands.part_line(part) + "\n").collect();
             console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
-            console::note_whole(&format!("then: {}", commands.merge_line(&result)));
+            console::note(&format!("then: {}", commands.merge_line(&result)));
         }
         return Ok(ExitCode::SUCCESS);
     };

@@ -53,10 +53,10 @@ mod tests {
             std::fs::write(&path, &page).unwrap();
             let checked = check_page(&path).map_err(|error| error.to_string());
             assert_eq!(checked.is_ok(), is_own, "{checked:?}");
-            if let Err(told) = checked {
+            if let Err(message) = checked {
                 assert!(
-                    told.contains("index.html: there is a page that Weekender did not write; move it"),
-                    "{told}"
+                    message.contains("index.html: there is a page that Weekender did not write; move it"),
+                    "{message}"
                 );
             }
             assert_eq!(std::fs::read_to_string(&path).unwrap(), page);

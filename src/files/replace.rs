@@ -1,8 +1,7 @@
 //! Output files that are written whole or not at all: first beside their destination, then renamed.
 
-use super::identity::follow_links;
 use super::leftovers;
-use super::shown::ShownPath;
+use super::paths::ShownPath;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -21,26 +20,19 @@ pub struct WriteError {
 fn remedy(reason: &io::Error) -> &'static str {
     match reason.kind() {
         ErrorKind::NotFound => "create its directory first, or choose another place",
-        ErrorKind::NotADirectory => "what stands in its directory's place is a file: choose another place",
-        ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
-            "choose a place where you may write, or allow it"
-        }
-        ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::IsADirectory => "name a file in that directory",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "free some space, or choose another place; an existing file is left unchanged"
         }
-        ErrorKind::FileTooLarge => {
-            "allow larger files (ulimit -f), or choose another place; an existing file is left unchanged"
-        }
+        ErrorKind::FileTooLarge => "allow larger files (ulimit -f); an existing file is left unchanged",
+        ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",
     }
 }
 
 /// Writes `path` with `write`: to a new file in the same directory, which then replaces the old one. If anything
-/// fails, the old file is unchanged and the new one is deleted. Links are followed, even if their target does not
-/// exist. Devices and pipes are written directly. The file gets the usual permissions, or those of the file it
+/// fails, the old file is unchanged and the new one is deleted. Links are followed. Devices and pipes are written directly. The file gets the usual permissions, or those of the file it
 /// replaces.
 ///
 /// # Errors
@@ -152,37 +144,25 @@ impl Target {
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
-        if let Some(end) = directory_ending(named) {
-            let reason = format!("the {end} at its end stands for a directory");
-            return Err(io::Error::new(ErrorKind::InvalidFilename, reason));
+        if old.is_none() && fs::symlink_metadata(named).is_ok() {
+            return Err(io::Error::new(ErrorKind::InvalidInput, "it is a link to a file that is not there"));
         }
-        let path = if old.is_some() { fs::canonicalize(named)? } else { follow_links(named)? };
+        let text = named.to_string_lossy();
+        if text.strip_suffix('.').unwrap_or(&text).ends_with(std::path::is_separator) {
+            return Err(io::Error::new(ErrorKind::InvalidFilename, "its end stands for a directory"));
+        }
+        let path = if old.is_some() { fs::canonicalize(named)? } else { named.to_owned() };
         let directory = match path.parent() {
             Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
-            Some(parent) => parent.to_owned(),
-            None => return Err(ErrorKind::InvalidFilename.into()),
+            Some(parent) if path.file_name().is_some() => parent.to_owned(),
+            _ => return Err(ErrorKind::InvalidFilename.into()),
         };
-        if path.file_name().is_none() {
-            return Err(ErrorKind::InvalidFilename.into());
-        }
         match fs::metadata(&directory) {
             Ok(found) if found.is_dir() => Ok(Target::File { path, directory, old }),
             Ok(_) => Err(ErrorKind::NotADirectory.into()),
-            Err(error) if error.kind() == ErrorKind::NotFound && path != named => {
-                let reason = format!("it is a link to {}, whose directory is not there", path.shown());
-                Err(io::Error::new(ErrorKind::NotFound, reason))
-            }
             Err(error) => Err(error),
         }
     }
-}
-
-/// The ending of `path` that marks it as a directory, if there is one. The path need not exist.
-fn directory_ending(path: &Path) -> Option<&'static str> {
-    let bytes = path.as_os_str().as_encoded_bytes();
-    let ends = [&b"/"[..], b"/."].into_iter().zip(["/", "/."]);
-    let own = [&b"\\"[..], b"\\."].into_iter().zip(["\\", "\\."]);
-    ends.chain(own.filter(|_| cfg!(windows))).find(|(end, _)| bytes.ends_with(end)).map(|(_, end)| end)
 }
 
 #[cfg(unix)]

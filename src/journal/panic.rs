@@ -1,7 +1,7 @@
 //! What is done about a panic. A panic of a tracer ends only its pass, and another backend continues: that is a message
 //! and a line in the log. A panic that ends the program, or its render, also leaves a report in a file.
 
-use super::kept::KEPT;
+use super::kept_text;
 use crate::console;
 use crate::failure::FAILED;
 use crate::files::{state_directory, write_text};
@@ -32,7 +32,7 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
 pub fn write_report() {
     let Some(words) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     let version = VERSION.get().map_or("unknown", String::as_str);
-    let text = report(version, &command_line(), &words, &KEPT.text());
+    let text = report(version, &command_line(), &words, &kept_text());
     let name = format!("weekender-report-{}.txt", std::process::id());
     let mut reasons = Vec::new();
     for place in places() {

@@ -210,7 +210,7 @@ pub(super) fn remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) ->
 
 /// Tells the same on standard error; of many commands, only the first and how to see the others.
 pub(super) fn note_remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) {
-    console::note_whole(&remedy_lines(plan, parts, program, COMMANDS_TOLD));
+    console::note(&remedy_lines(plan, parts, program, COMMANDS_TOLD));
 }
 
 /// The remedy with `most` commands.

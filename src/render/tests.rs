@@ -80,10 +80,10 @@ fn films_the_file_and_the_spheres_need_memory() {
 }
 
 #[test]
-fn a_panic_is_told_with_its_message() {
+fn the_message_of_a_panic_is_kept() {
     assert_eq!([panic_text(&"why"), panic_text(&String::from("how"))], ["why", "how"]);
-    let told = RenderError::of_panic("gpu", &7).to_string();
-    assert_eq!(told, "gpu failed: it panicked: for no stated reason");
+    let message = RenderError::of_panic("gpu", &7).to_string();
+    assert_eq!(message, "gpu failed: it panicked: for no stated reason");
 }
 
 #[test]

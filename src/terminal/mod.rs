@@ -17,7 +17,7 @@ use std::io;
 /// # Errors
 /// If standard output cannot be written, for instance because its reader has gone away.
 pub fn print(text: &str) -> Result<()> {
-    told(console::print(text))
+    checked(console::print(text))
 }
 
 /// Prints text to standard output, or to standard error if JSON goes to standard output.
@@ -26,13 +26,13 @@ pub fn print(text: &str) -> Result<()> {
 /// As for [`print()`]. Standard error never fails.
 pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
-        console::note_painted(text);
+        console::note(text);
         return Ok(());
     }
     print(text)
 }
 
-/// As [`print_beside`], for text with colours: see [`console::print_painted`].
+/// As [`print_beside`], for text with the program's own colours.
 ///
 /// # Errors
 /// As for [`print()`].
@@ -41,7 +41,7 @@ pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()>
         console::note_painted(text);
         return Ok(());
     }
-    told(console::print_painted(text))
+    checked(console::write_out(text))
 }
 
 /// Whether standard output is reserved for JSON.
@@ -57,10 +57,10 @@ pub fn write_json(value: &impl Serialize, target: &JsonTarget) -> Result<()> {
     let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
     match target {
         JsonTarget::File(path) => Ok(write_text(path, &text)?),
-        JsonTarget::StandardOutput => told(console::write_out(&console::printable_json(&text))),
+        JsonTarget::StandardOutput => checked(console::write_out(&text)),
     }
 }
 
-fn told(written: io::Result<()>) -> Result<()> {
+fn checked(written: io::Result<()>) -> Result<()> {
     written.map_err(|error| anyhow!(output_failure(&error)))
 }

@@ -33,7 +33,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("baseline", &["scene", "render"]),
-    ("environment", &[]),
     ("failure", &["console"]),
     ("journal", &["files", "console", "failure"]),
     ("interrupt", &["console", "failure"]),
