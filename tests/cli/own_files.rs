@@ -50,10 +50,8 @@ fn no_output_replaces_a_file_of_its_command_s_own() {
         refused_in(&directory, &words, &["--out", name, "would replace a file of the plan;"]);
     }
     fs::create_dir(at.join("st")).unwrap();
-    for json in ["st/scaled-1e-3-ours.png", "st/found-0-1.toml"] {
-        let words = ["stress", "--filter", "scaled/1e-3", "--out", "st", "--json", json];
-        refused_in(&directory, &words, &["would replace a file of --out,"]);
-    }
+    let words = ["stress", "--filter", "scaled/1e-3", "--out", "st", "--json", "st/scaled-1e-3-ours.png"];
+    refused_in(&directory, &words, &["would replace a file of --out,"]);
     // What is no file of the plan may have any name, and the result has its own.
     succeeds(at, &["render-part", "q", "--part", "0", "--json", "q/part-2.exr", "--device", "cpu"]);
     succeeds(at, &["render-part", "q", "--part", "1", "--json", "q/figures.json", "--device", "cpu"]);

@@ -1,7 +1,7 @@
 //! Flags and values that are refused.
 
 use super::common::{refused, refused_in, run, temp, text};
-use weekender::cli::{ReportOptions, Request, parse};
+use weekender::cli::{Request, parse};
 
 #[test]
 fn without_batch_it_names_the_flag() {
@@ -181,8 +181,7 @@ fn a_report_has_each_target_once_and_the_chosen_one_first() {
         let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {
             panic!("{flags:?}")
         };
-        let ReportOptions { targets, .. } = *options;
-        targets
+        options.targets()
     };
     assert_eq!(targets(&[]), [0.01, 0.001]);
     assert_eq!(targets(&["--target", "0.02"]), [0.02, 0.01, 0.001]);
