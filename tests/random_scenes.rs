@@ -173,6 +173,9 @@ fn there_and_back(recipe: &Recipe, extent: f64) -> Option<[Recipe; 2]> {
     is_clear.then(|| [moved(&there, 1.0, -way), there])
 }
 
+/// Traces a recipe and what must be the same.
+type Trace<'a> = dyn Fn(&Recipe, &mut Checker) -> Result<[Traced; 2], String> + 'a;
+
 struct Checker {
     single: Vec<Candidate>,
     double: Candidate,
@@ -232,11 +235,7 @@ impl Checker {
     }
 
     /// Two pictures must be the same, if not with few samples then with many and one of two seeds.
-    fn compare(
-        &mut self,
-        recipe: &Recipe,
-        trace: &dyn Fn(&Recipe, &mut Checker) -> Result<[Traced; 2], String>,
-    ) -> Result<(), String> {
+    fn compare(&mut self, recipe: &Recipe, trace: &Trace<'_>) -> Result<(), String> {
         if same(&trace(recipe, self)?, 0.5, 1e-4).is_ok() {
             return Ok(());
         }

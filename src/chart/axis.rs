@@ -192,12 +192,4 @@ mod tests {
             assert!(is_so, "{values:?}: {:?}", ruler.range);
         }
     }
-
-    #[test]
-    fn a_position_is_a_share_of_the_pixels() {
-        let axis = Axis { limits: Some([0.0, 10.0]), ..Axis::new("", Scale::Linear) };
-        let ruler = axis.ruler(std::iter::empty());
-        // Pixels are counted from above.
-        assert_eq!([0.0, 2.5, 10.0].map(|position| ruler.map(&position, (100, 0))), [100, 75, 0]);
-    }
 }

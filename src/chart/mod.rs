@@ -66,6 +66,14 @@ pub struct Series {
     pub look: Look,
 }
 
+impl Series {
+    /// Points without a spread.
+    pub fn new(name: impl Into<String>, look: Look, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let points = points.into_iter().map(|(x, y)| Point { x, y, spread: None }).collect();
+        Series { name: name.into(), points, look }
+    }
+}
+
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {

@@ -242,12 +242,4 @@ mod tests {
         assert_eq!(samples("--size 1800x1700 --quick --samples 9", 5), 9);
         assert_eq!(samples("--features", 5), SAMPLE_LIMIT);
     }
-
-    #[test]
-    fn a_picture_keeps_its_shape_when_it_is_narrowed() {
-        for (own, height) in [((400, 225), 113), ((400, 224), 112), ((200, 7), 7), ((100, 7), 14)] {
-            assert_eq!(scaled_height(own), height, "{own:?}");
-        }
-        assert_eq!([scaled_height((SIZE_LIMIT, 1)), scaled_height((1, SIZE_LIMIT))], [1, SIZE_LIMIT]);
-    }
 }

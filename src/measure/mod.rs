@@ -14,9 +14,10 @@ pub use candidate::{Candidate, Source, Stop, Traced};
 
 use crate::cli::JsonTarget;
 use crate::terminal;
-use anyhow::Result;
+use anyhow::{Context, Result};
 use machine::Machine;
 use serde::Serialize;
+use std::path::Path;
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
 pub const SCHEMA: u32 = 1;
@@ -33,4 +34,11 @@ struct Envelope<'a, T> {
 
 fn write_json(target: &JsonTarget, machine: &Machine, figures: &impl Serialize) -> Result<()> {
     terminal::write_json(&Envelope { schema: SCHEMA, version: machine.version, machine, figures }, target)
+}
+
+/// Creates the directory that `--out` names.
+fn make_directory(directory: &Path) -> Result<()> {
+    std::fs::create_dir_all(directory).with_context(|| {
+        format!("cannot create the directory {}; choose another with --out", directory.display())
+    })
 }

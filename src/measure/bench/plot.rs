@@ -51,8 +51,7 @@ fn millions(Spread { median, min, max }: Spread) -> [f64; 3] {
 fn scale(rows: &[ScaleFigures], about: String) -> Figure {
     let series = |name: &str, value: &dyn Fn(&ScaleFigures) -> Option<f64>| {
         let points = rows.iter().filter_map(|row| Some((row.spheres as f64, value(row)?)));
-        let points = points.map(|(x, y)| Point { x, y, spread: None }).collect();
-        Series { name: name.to_owned(), points, look: Look::Measured }
+        Series::new(name, Look::Measured, points)
     };
     let chart = |title: &str, unit: &str, series: Vec<Series>, legend| {
         Panel::Lines(LineChart {
@@ -96,10 +95,6 @@ fn scale(rows: &[ScaleFigures], about: String) -> Figure {
 
 /// A guide in proportion to x, through the first point of a series and a little above it.
 fn in_proportion(series: &Series) -> Series {
-    let law = |point: &Point| {
-        let first = series.points[0];
-        Point { x: point.x, y: 3.0 * first.y * point.x / first.x, spread: None }
-    };
-    let points = series.points.iter().map(law).collect();
-    Series { name: "in proportion".to_owned(), points, look: Look::Guide }
+    let law = |point: &Point| (point.x, 3.0 * series.points[0].y * point.x / series.points[0].x);
+    Series::new("in proportion", Look::Guide, series.points.iter().map(law))
 }

@@ -62,9 +62,8 @@ fn measured(curve: &CurveSummary, bottom: f64) -> Series {
     }
 }
 
-fn line(name: String, points: &[[f64; 2]]) -> Series {
-    let points = points.iter().map(|[x, y]| Point { x: *x, y: *y, spread: None }).collect();
-    Series { name, points, look: Look::Guide }
+fn guide(name: &str, ends: [(f64, f64); 2]) -> Series {
+    Series::new(name, Look::Guide, ends)
 }
 
 /// Guides: the slope of independent samples, the target, and when each curve reaches it.
@@ -79,13 +78,13 @@ fn guides(
     // From the upper left corner down to the edge of the chart.
     let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
     let at = |time: f64| errors[1] * (times[0] / time).sqrt();
-    guides.push(line("4x the time, half the error".to_owned(), &[[times[0], at(times[0])], [end, at(end)]]));
+    guides.push(guide("4x the time, half the error", [(times[0], at(times[0])), (end, at(end))]));
     if target > bottom && target < errors[1] {
-        guides.push(line(format!("target: {target}"), &[[times[0], target], [times[1], target]]));
+        guides.push(guide(&format!("target: {target}"), [(times[0], target), (times[1], target)]));
         for crossing in
             curves.iter().filter_map(|c| c.times.first().copied().flatten()).filter(|c| !c.is_extrapolated)
         {
-            guides.push(line(String::new(), &[[crossing.time, target], [crossing.time, bottom]]));
+            guides.push(guide("", [(crossing.time, target), (crossing.time, bottom)]));
         }
     }
     guides
@@ -95,67 +94,5 @@ fn guides(
 fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Series> {
     let of_scene = data.rounding.iter().filter(|row| row.scene == scene);
     let floor = of_scene.filter_map(|row| row.floor).fold(0.0, f64::max);
-    (floor > bottom).then(|| line("rounding".to_owned(), &[[times[0], floor], [times[1], floor]]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::data::Rounding;
-    use super::super::tests::data as no_data;
-    use super::*;
-    use crate::measure::report::Curve;
-    use crate::statistics::fit::Crossing;
-
-    fn data(floor: Option<f64>) -> Data {
-        let (scene, backend) = ("book".to_owned(), "cpu".to_owned());
-        let rounding =
-            Rounding { scene, backend, samples: 64, bias: 0.0, rms: 0.125, floor, floor_limit: 0.5 };
-        Data { rounding: vec![rounding], ..no_data() }
-    }
-
-    fn point(wall_seconds: f64, rmse: f64) -> CurvePoint {
-        CurvePoint {
-            samples: 16,
-            trace_seconds: wall_seconds,
-            wall_seconds,
-            device_seconds: None,
-            rmse,
-            range: [0.5 * rmse, 2.0 * rmse],
-            rel_mse: 0.0,
-            flip: 0.0,
-            estimate_ratio: None,
-        }
-    }
-
-    fn curve(scene: &str) -> CurveSummary {
-        let [scene, backend, sampler] = [scene, "cpu", "sobol"].map(str::to_owned);
-        CurveSummary {
-            curve: Curve { scene, backend, sampler },
-            about: String::new(),
-            points: vec![point(1.0, 1.0), point(4.0, 0.25)],
-            slope: None,
-            efficiency: 1.0,
-            times: vec![Some(Crossing { time: 2.0, is_extrapolated: false })],
-        }
-    }
-
-    #[test]
-    fn a_target_or_floor_outside_the_chart_is_not_drawn() {
-        let names = |floor: Option<f64>, curves: &[CurveSummary], target: f64| -> Vec<String> {
-            let chart = chart("book", &data(floor), curves, target);
-            chart.series.into_iter().map(|series| series.name).collect()
-        };
-        let curves = [curve("book")];
-        let all = ["4x the time, half the error", "target: 0.5", "", "rounding", "cpu, sobol"];
-        assert_eq!(names(Some(0.25), &curves, 0.5), all);
-        // The chart goes from 0.175 to 1.4.
-        for target in [0.17, 1.0, 2.0] {
-            assert_eq!(names(Some(0.25), &curves, target), [all[0], all[3], all[4]], "{target}");
-        }
-        assert_eq!(names(Some(0.17), &curves, 0.5), [all[0], all[1], all[2], all[4]]);
-        // A time that is only expected is not marked.
-        let mut expected = curve("book");
-        expected.times[0] = Some(Crossing { time: 9.0, is_extrapolated: true });
-        assert_eq!(names(None, &[expected], 0.5), [all[0], all[1], all[4]]);
-    }
+    (floor > bottom).then(|| guide("rounding", [(times[0], floor), (times[1], floor)]))
 }

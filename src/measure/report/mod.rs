@@ -12,7 +12,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, SCHEMA, Source, Stop, write_json};
+use super::{Candidate, SCHEMA, Source, Stop, make_directory, write_json};
 use crate::backends;
 use crate::chart;
 use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
@@ -24,7 +24,7 @@ use crate::interrupt::Interrupt;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, RenderSettings, SamplerKind, Stats};
 use crate::terminal::print;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use data::{Measured, Run};
 use reference::{ReferencePicture, film_means};
 use std::path::Path;
@@ -87,9 +87,7 @@ impl<'a> Report<'a> {
             }
         }
         let out = &options.out;
-        std::fs::create_dir_all(out).with_context(|| {
-            format!("cannot create the directory {}; choose another with --out", out.display())
-        })?;
+        make_directory(out)?;
         check_writable(&out.join("report.json"))?;
         let settings = settings(options, &reference);
         let data = resumed(&out.join("report.json"), &settings).unwrap_or_else(|| Data::new(settings));

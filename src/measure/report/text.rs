@@ -237,9 +237,8 @@ pub fn csv(data: &Data) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::data::Rounding;
     use super::super::summary::CurvePoint;
-    use super::super::tests::{curve as key, data};
+    use super::super::tests::curve as key;
     use super::*;
 
     fn curve(backend: &str, sampler: &str, seconds: f64) -> CurveSummary {
@@ -284,22 +283,5 @@ mod tests {
                 "| cpu | independent | -0.50 ± 0.01 | 2.00 | ~50.0 s | ~0.40 |",
             ]
         );
-    }
-
-    #[test]
-    fn a_floor_that_is_too_low_to_tell_has_a_limit() {
-        let row = |floor| Rounding {
-            scene: "s".to_owned(),
-            backend: "cpu".to_owned(),
-            samples: 64,
-            bias: -2e-6,
-            rms: 3e-5,
-            floor,
-            floor_limit: 5e-6,
-        };
-        let data = Data { rounding: vec![row(Some(4e-6)), row(None)], ..data() };
-        let text = rounding(&data, &[curve("cpu", "sobol", 1.0)]);
-        assert!(text.contains("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | 4.0e-6 | ~4e8 |\n"), "{text}");
-        assert!(text.ends_with("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | < 5.0e-6 | ~> 3e8 |\n"), "{text}");
     }
 }

@@ -112,9 +112,10 @@ fn pixel_count(film: &Film) -> usize {
 }
 
 /// The verdict on a case on one backend.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(tag = "verdict", content = "reason", rename_all = "lowercase")]
 pub enum Verdict {
+    #[default]
     Right,
     /// Not as expected, but the backend warned about it and said what to do.
     Warned(String),

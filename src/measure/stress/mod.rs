@@ -19,7 +19,7 @@ pub use suite::{Suite, by_the_book, trace};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, write_json};
+use super::{Candidate, make_directory, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::{JsonTarget, StressOptions};
 use crate::failure::Failure;
@@ -27,8 +27,7 @@ use crate::files::{check_page, check_writable};
 use crate::interrupt::Interrupt;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::terminal;
-use anyhow::{Context, Result, anyhow};
-use std::path::Path;
+use anyhow::{Result, anyhow};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -42,7 +41,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
         check_writable(path).map_err(Failure::input)?;
     }
     if let Some(directory) = &options.out {
-        make(directory).map_err(Failure::Input)?;
+        make_directory(directory).map_err(Failure::Input)?;
         check_page(&directory.join("index.html")).map_err(Failure::input)?;
     }
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
@@ -61,12 +60,6 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
         (true, _) => interrupt.exit_code(),
         (false, true) => ExitCode::SUCCESS,
         (false, false) => ExitCode::FAILURE,
-    })
-}
-
-fn make(directory: &Path) -> Result<()> {
-    std::fs::create_dir_all(directory).with_context(|| {
-        format!("cannot create the directory {}; choose another with --out", directory.display())
     })
 }
 

@@ -42,7 +42,7 @@ pub struct CaseReport {
 }
 
 /// The result of a case on one backend, in one form.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Measured {
     pub backend: String,
     /// "plain", or "+40" with 40 distant spheres, which switch the hierarchy on.
@@ -231,13 +231,11 @@ mod tests {
         Measured {
             backend: "cpu".to_owned(),
             form: "plain",
-            mean: None,
             offset,
-            deviation: None,
             rounding: offset.map(|bias| Paired { bias, ..Paired::default() }),
             seconds: Some(seconds),
             tame_seconds,
-            verdict: Verdict::Right,
+            ..Measured::default()
         }
     }
 

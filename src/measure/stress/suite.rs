@@ -143,17 +143,8 @@ impl CaseRun<'_> {
     }
 
     fn measure(&mut self, tracer: usize, form: Form, traced: Result<Traced, String>) -> Measured {
-        let mut measured = Measured {
-            backend: self.suite.tracers[tracer].name.clone(),
-            form: form.name(),
-            mean: None,
-            offset: None,
-            deviation: None,
-            rounding: None,
-            seconds: None,
-            tame_seconds: None,
-            verdict: Verdict::Right,
-        };
+        let backend = self.suite.tracers[tracer].name.clone();
+        let mut measured = Measured { backend, form: form.name(), ..Measured::default() };
         let traced = match traced {
             Ok(traced) => traced,
             Err(reason) => return Measured { verdict: Verdict::None(reason), ..measured },
