@@ -160,7 +160,10 @@ fn a_path_is_compared_by_the_sides_and_at_the_place_that_are_named() {
     for (flags, sides) in [
         ("--pixel 0,0", [cpu(None), BackendChoice::Gpu(GpuOptions::default())]),
         ("--pixel 0,0 --sides gpu,portable --adapter some", [BackendChoice::Gpu(some_gpu()), portable()]),
-        ("--pixel 0,0 --sides reference,cpu --isa portable", [BackendChoice::Reference { threads: None }, portable()]),
+        (
+            "--pixel 0,0 --sides reference,cpu --isa portable",
+            [BackendChoice::Reference { threads: None }, portable()],
+        ),
     ] {
         assert_eq!(compared(flags).sides, sides, "{flags}");
     }

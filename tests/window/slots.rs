@@ -8,11 +8,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::time::Duration;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
-use weekender::pictures::Picture;
-use weekender::pictures::compare::{compare_sides, text};
 use weekender::film::{key, to_byte};
 use weekender::heat::HeatScale;
 use weekender::output::{Encoding, OutputFormat, read_description};
+use weekender::pictures::Picture;
+use weekender::pictures::compare::{compare_sides, text};
 use weekender::progressive::{Phase, luminance};
 use weekender::stages::Transfer;
 
