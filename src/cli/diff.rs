@@ -81,9 +81,7 @@ pub enum PathChoice {
         sample: u64,
     },
     /// The path that differs most among samples `0 .. samples` of all pixels.
-    Find {
-        samples: u64,
-    },
+    Find { samples: u64 },
 }
 
 /// Largest width of a picture that is searched if no size is given, pixels.

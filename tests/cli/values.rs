@@ -1,6 +1,6 @@
 //! Flags and values that are refused.
 
-use super::common::{refused, refused_in, run, temp, text};
+use super::common::{refused, run, temp, text};
 use weekender::cli::{Request, parse};
 
 #[test]

@@ -5,6 +5,7 @@ use super::*;
 use crate::film::{Description, FIXED_POINT_SCALE, PixelSum, checkpoint, fixed_point};
 use crate::heat::HeatScale;
 use crate::output::Encoding;
+use crate::recipe::Recipe;
 use crate::recipe::file::to_picture_toml;
 use crate::render_cpu::CpuOptions;
 use crate::sampling::pcg4d;
@@ -284,7 +285,6 @@ fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
     compare(
         &floats(value),
         &floats(|pixel| value(pixel) + if is_changed(pixel % 80, pixel / 80) { by } else { 0.0 }),
-        None,
     )
 }
 
