@@ -1,5 +1,6 @@
 //! Formulas: LaTeX becomes MathML when the page is built, so that no reader needs a script or the network for it.
 
+use anyhow::{Result, anyhow, bail};
 use math_core::{LatexToMathML, MathCoreConfig, MathDisplay};
 use maud::{Markup, PreEscaped};
 
@@ -9,20 +10,20 @@ pub struct Formulas(LatexToMathML);
 impl Formulas {
     /// # Errors
     /// Never with the built-in settings.
-    pub fn new() -> anyhow::Result<Self> {
+    pub fn new() -> Result<Self> {
         let converter = LatexToMathML::new(MathCoreConfig::default());
-        Ok(Formulas(converter.map_err(|error| anyhow::anyhow!("cannot convert formulas: {error:?}"))?))
+        Ok(Formulas(converter.map_err(|error| anyhow!("cannot convert formulas: {error:?}"))?))
     }
 
     /// A formula in a line of text or, if `is_block`, on a line of its own.
     ///
     /// # Errors
     /// If the LaTeX is not understood.
-    pub fn convert(&self, latex: &str, is_block: bool) -> Result<Markup, String> {
+    pub fn convert(&self, latex: &str, is_block: bool) -> Result<Markup> {
         let display = if is_block { MathDisplay::Block } else { MathDisplay::Inline };
         match self.0.convert_with_local_state(latex.trim(), display) {
             Ok(converted) => Ok(PreEscaped(converted.mathml)),
-            Err(error) => Err(format!("the formula {:?} is not understood: {error}", latex.trim())),
+            Err(error) => bail!("the formula {:?} is not understood: {error}", latex.trim()),
         }
     }
 }

@@ -184,6 +184,7 @@ mod tests {
         let entries: Vec<Entry<BTreeMap<String, u32>>> = library.entries("a.toml").unwrap();
         let found: Vec<_> = entries.iter().map(|entry| (entry.key.as_str(), entry.line)).collect();
         assert_eq!(found, [("z", 2), ("b", 5)]);
+        std::fs::write(directory.path().join("a.toml"), "# A\n[z]\nx = 1\n").unwrap();
         let fault = library.entries::<BTreeMap<String, bool>>("a.toml").unwrap_err();
         assert_eq!((fault.file.as_str(), fault.line), ("a.toml", 3));
         std::fs::write(directory.path().join("b.md"), b"a\xff").unwrap();

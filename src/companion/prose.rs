@@ -5,6 +5,7 @@ use super::chapter::Chapter;
 use super::directive;
 use super::fault::{Fault, line_of};
 use super::site::{Site, Uses};
+use anyhow::{Context, Result, bail, ensure};
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{
     BrokenLink, CodeBlockKind, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as writer,
@@ -76,11 +77,13 @@ fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses) -> Result<Markup, Fa
     };
     let parser = Parser::new_with_broken_link_callback(place.text, options, Some(&mut citation));
     let events: Vec<(Event<'_>, Range<usize>)> = parser.into_offset_iter().collect();
-    let mut converter = Converter { site, place, uses, closing: Vec::new() };
+    let mut converter = Converter { site, place, uses, line: 0, closing: Vec::new() };
     let mut events = events.into_iter().peekable();
     let mut out = Vec::new();
     while let Some((event, range)) = events.next() {
-        converter.convert(event, &range, &mut events, &mut out)?;
+        converter.line = place.lines_before + line_of(place.text, range.start);
+        let converted = converter.convert(event, &range, &mut events, &mut out);
+        converted.map_err(|error| Fault::new(place.file, converter.line, format!("{error:#}")))?;
     }
     let mut html = String::new();
     writer::push_html(&mut html, out.into_iter());
@@ -91,6 +94,8 @@ struct Converter<'a> {
     site: &'a Site,
     place: &'a Place<'a>,
     uses: &'a mut Uses,
+    /// Line in the file.
+    line: usize,
     /// What closes each open link.
     closing: Vec<Markup>,
 }
@@ -109,27 +114,19 @@ fn inline<'e>(markup: Markup) -> Event<'e> {
 }
 
 impl Converter<'_> {
-    fn fault(&self, range: &Range<usize>, message: impl std::fmt::Display) -> Fault {
-        Fault::new(self.place.file, self.line(range), message)
-    }
-
-    fn line(&self, range: &Range<usize>) -> usize {
-        self.place.lines_before + line_of(self.place.text, range.start)
-    }
-
     fn convert<'e>(
         &mut self,
         event: Event<'e>,
         range: &Range<usize>,
         rest: &mut Events<'e>,
         out: &mut Vec<Event<'e>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<()> {
         match event {
             Event::Start(Tag::Paragraph) => out.push(self.paragraph(range, rest)?),
             Event::Start(Tag::Heading { level, .. }) => {
                 out.push(block(self.heading(level as usize, range, rest)?));
             }
-            Event::Start(Tag::CodeBlock(kind)) => out.push(block(self.code(&kind, range, rest)?)),
+            Event::Start(Tag::CodeBlock(kind)) => out.push(block(self.code(&kind, rest)?)),
             Event::Start(Tag::Table(columns)) => {
                 let open = "<div class=\"scroll\" tabindex=\"0\" role=\"group\" aria-label=\"Table\">\n";
                 out.extend([Event::Html(open.into()), Event::Start(Tag::Table(columns))]);
@@ -140,48 +137,41 @@ impl Converter<'_> {
             Event::Start(Tag::Link { dest_url, .. }) if dest_url.starts_with(CITATION) => {
                 // The numbers replace the keys.
                 skip_to(rest, TagEnd::Link);
-                out.push(inline(self.citation(&dest_url, range)?));
+                out.push(inline(self.citation(&dest_url)?));
             }
             Event::Start(Tag::Link { link_type, dest_url, .. }) => {
-                let (open, close) = self.link(link_type, &dest_url, range)?;
+                let (open, close) = self.link(link_type, &dest_url)?;
                 self.closing.push(close);
                 out.push(inline(open));
             }
             Event::End(TagEnd::Link) => out.extend(self.closing.pop().map(inline)),
             Event::InlineMath(latex) => {
-                let formula = self.formula(&latex, false, range)?;
+                let formula = self.site.formulas.convert(&latex, false)?;
                 out.push(inline(with_punctuation(&formula, rest)));
             }
             Event::DisplayMath(latex) => {
-                let formula = self.formula(&latex, true, range)?;
+                let formula = self.site.formulas.convert(&latex, true)?;
                 out.push(inline(
                     html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
                 ));
             }
             Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::Image { .. }) => {
-                let message = "HTML and pictures are not allowed in the text; use Markdown or a directive";
-                return Err(self.fault(range, message));
+                bail!("HTML and pictures are not allowed in the text; use Markdown or a directive");
             }
             Event::Text(text) if text.contains("{{") => {
-                let message = "a directive stands alone in its paragraph: leave a blank line above and below";
-                return Err(self.fault(range, message));
+                bail!("a directive stands alone in its paragraph: leave a blank line above and below");
             }
             event => out.push(event),
         }
         Ok(())
     }
 
-    fn formula(&self, latex: &str, is_block: bool, range: &Range<usize>) -> Result<Markup, Fault> {
-        self.site.formulas.convert(latex, is_block).map_err(|message| self.fault(range, message))
-    }
-
     /// The beginning of a paragraph, or the directive that it consists of.
-    fn paragraph<'e>(&mut self, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Event<'e>, Fault> {
+    fn paragraph<'e>(&mut self, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Event<'e>> {
         let text = self.place.text[range.clone()].trim();
         if let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) {
             skip_to(rest, TagEnd::Paragraph);
-            let html = directive::html(self.site, inside.trim(), self.uses);
-            return html.map(block).map_err(|error| self.fault(range, format!("{error:#}")));
+            return directive::html(self.site, inside.trim(), self.uses).map(block);
         }
         // A formula alone may be wider than the text.
         let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
@@ -189,12 +179,7 @@ impl Converter<'_> {
         Ok(if is_formula { wide } else { Event::Start(Tag::Paragraph) })
     }
 
-    fn heading<'e>(
-        &mut self,
-        level: usize,
-        range: &Range<usize>,
-        rest: &mut Events<'e>,
-    ) -> Result<Markup, Fault> {
+    fn heading<'e>(&mut self, level: usize, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Markup> {
         let mut inner = Vec::new();
         let mut words = String::new();
         while let Some((event, at)) = rest.next() {
@@ -207,13 +192,11 @@ impl Converter<'_> {
         }
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str()).unwrap_or_default();
         let anchor = format!("{chapter}-{}", slug(&words));
-        if !self.uses.anchors.insert(anchor.clone()) {
-            let message = format!("another heading has the anchor #{anchor}; choose other words");
-            return Err(self.fault(range, message));
-        }
+        let is_new = self.uses.anchors.insert(anchor.clone());
+        ensure!(is_new, "another heading has the anchor #{anchor}; choose other words");
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();
         let title = match split_heading(source) {
-            Some((number, words)) => self.book_heading(number, words, range)?,
+            Some((number, words)) => self.book_heading(number, words)?,
             None => {
                 let mut title = String::new();
                 writer::push_html(&mut title, inner.into_iter());
@@ -226,35 +209,25 @@ impl Converter<'_> {
             2 => Ok(html! { h3 id=(anchor) { (title) (link) } }),
             3 => Ok(html! { h4 id=(anchor) { (title) (link) } }),
             4 => Ok(html! { h5 id=(anchor) { (title) (link) } }),
-            _ => {
-                Err(self.fault(range, "headings in a chapter have two to four #; the title is in the facts"))
-            }
+            _ => bail!("headings in a chapter have two to four #; the title is in the facts"),
         }
     }
 
     /// The title of a section of the book, with a link to it.
-    fn book_heading(&self, number: &str, words: &str, range: &Range<usize>) -> Result<Markup, Fault> {
+    fn book_heading(&self, number: &str, words: &str) -> Result<Markup> {
         let book = &self.site.book;
-        match (book.heading(number), book.url(number)) {
-            (Some(heading), Some(url)) if heading == words => Ok(html! {
-                span .number { (number) } " " (typographic(heading)) " "
-                a .book href=(url) title={ "Section " (number) " in the book" } {
-                    "book" span .hidden { ", section " (number) }
-                }
-            }),
-            (Some(heading), _) => {
-                Err(self.fault(range, format!("section {number} of the book is called {heading:?}")))
+        let section = book.heading(number).zip(book.url(number));
+        let (heading, url) = section.with_context(|| format!("the book has no section {number}"))?;
+        ensure!(heading == words, "section {number} of the book is called {heading:?}");
+        Ok(html! {
+            span .number { (number) } " " (typographic(heading)) " "
+            a .book href=(url) title={ "Section " (number) " in the book" } {
+                "book" span .hidden { ", section " (number) }
             }
-            _ => Err(self.fault(range, format!("the book has no section {number}"))),
-        }
+        })
     }
 
-    fn code(
-        &self,
-        kind: &CodeBlockKind<'_>,
-        range: &Range<usize>,
-        rest: &mut Events<'_>,
-    ) -> Result<Markup, Fault> {
+    fn code(&self, kind: &CodeBlockKind<'_>, rest: &mut Events<'_>) -> Result<Markup> {
         let mut code = String::new();
         for (event, _) in rest.by_ref() {
             match event {
@@ -267,17 +240,17 @@ impl Converter<'_> {
             CodeBlockKind::Fenced(language) if !language.is_empty() => language,
             _ => "text",
         };
-        let code = self.site.highlighter.html(language, &code).map_err(|error| self.fault(range, error))?;
+        let code = self.site.highlighter.html(language, &code)?;
         Ok(html! { pre .block tabindex="0" role="group" aria-label={ "Code" } { code { (code) } } })
     }
 
-    fn citation(&self, target: &str, range: &Range<usize>) -> Result<Markup, Fault> {
-        let keys = target.trim_start_matches(CITATION).split(';');
+    fn citation(&self, target: &str) -> Result<Markup> {
         let mut links = Vec::new();
-        for key in keys.map(|key| key.trim().trim_start_matches('@')) {
-            let Some((number, entry)) = self.site.reference(key) else {
-                return Err(self.fault(range, format!("references.toml has no entry {key:?}")));
-            };
+        for key in target.trim_start_matches(CITATION).split(';') {
+            let key = key.trim().trim_start_matches('@');
+            let reference = self.site.reference(key);
+            let (number, entry) =
+                reference.with_context(|| format!("references.toml has no entry {key:?}"))?;
             let title = format!("{}: {}", entry.value.authors, entry.value.title);
             links.push((number, html! { a href={ "#ref-" (key) } title=(title) { (number) } }));
         }
@@ -290,34 +263,28 @@ impl Converter<'_> {
     }
 
     /// What opens and what closes a link.
-    fn link(
-        &mut self,
-        link_type: LinkType,
-        target: &str,
-        range: &Range<usize>,
-    ) -> Result<(Markup, Markup), Fault> {
+    fn link(&mut self, link_type: LinkType, target: &str) -> Result<(Markup, Markup)> {
         let site = self.site;
         let (scheme, rest) = target.split_once(':').unwrap_or(("", target));
         let open = match scheme {
             "glossary" => {
-                if !site.terms.iter().any(|entry| entry.key == rest) {
-                    return Err(self.fault(range, format!("the glossary has no term {rest:?}")));
-                }
-                let id = self.first_use(rest).then(|| format!("use-{rest}"));
+                ensure!(
+                    site.terms.iter().any(|entry| entry.key == rest),
+                    "the glossary has no term {rest:?}"
+                );
+                let id = self.is_first_use(rest).then(|| format!("use-{rest}"));
                 opened("term", &format!("#term-{rest}"), "", id)
             }
             "book" => {
-                let Some((url, title)) = site.book.url(rest).zip(site.book.heading(rest)) else {
-                    return Err(self.fault(range, format!("the book has no section {rest:?}")));
-                };
+                let section = site.book.url(rest).zip(site.book.heading(rest));
+                let (url, title) = section.with_context(|| format!("the book has no section {rest:?}"))?;
                 let kind = if rest.contains('.') { "section" } else { "chapter" };
                 opened("book", &url, &format!("The book, {kind} {rest}: {title}"), None)
             }
             "page" => {
                 let (name, fragment) = rest.split_once('#').unwrap_or((rest, ""));
-                let Some(chapter) = site.chapters.iter().find(|chapter| chapter.id == name) else {
-                    return Err(self.fault(range, format!("the page has no chapter {name:?}")));
-                };
+                let chapter = site.chapters.iter().find(|chapter| chapter.id == name);
+                let chapter = chapter.with_context(|| format!("the page has no chapter {name:?}"))?;
                 let heading = site.book.heading(fragment).map(|heading| format!("{fragment} {heading}"));
                 let anchor = match &heading {
                     Some(heading) => format!("{name}-{}", slug(heading)),
@@ -329,7 +296,7 @@ impl Converter<'_> {
                     (None, Some(number)) => format!("Chapter {number}: {}", chapter.facts.title),
                     (None, None) => chapter.facts.title.clone(),
                 };
-                self.linked(&anchor, range);
+                self.note_target(&anchor);
                 opened("", &format!("#{anchor}"), &title, None)
             }
             "source" => {
@@ -338,32 +305,30 @@ impl Converter<'_> {
             }
             "https" | "mailto" => opened("", target, "", None),
             "" if target.starts_with('#') => {
-                self.linked(&rest[1..], range);
+                self.note_target(&rest[1..]);
                 opened("", target, "", None)
             }
             _ => {
                 let kinds =
                     "glossary:TERM, book:SECTION, page:CHAPTER, source:PATH, [@REFERENCE] or https://";
-                let form =
-                    if link_type == LinkType::Inline { target.to_owned() } else { format!("[{target}]") };
-                return Err(self.fault(range, format!("{form:?} is no link of the page; use {kinds}")));
+                let is_inline = link_type == LinkType::Inline;
+                let form = if is_inline { target.to_owned() } else { format!("[{target}]") };
+                bail!("{form:?} is no link of the page; use {kinds}");
             }
         };
         Ok((open, PreEscaped("</a>".to_owned())))
     }
 
     /// Notes a link to a term; returns whether it is the first in a chapter.
-    fn first_use(&mut self, term: &str) -> bool {
+    fn is_first_use(&mut self, term: &str) -> bool {
         let Some(chapter) = self.place.chapter else { return false };
         let is_first = !self.uses.terms.contains_key(term);
-        if is_first {
-            self.uses.terms.insert(term.to_owned(), chapter.short().to_owned());
-        }
+        self.uses.terms.entry(term.to_owned()).or_insert_with(|| chapter.short().to_owned());
         is_first
     }
 
-    fn linked(&mut self, anchor: &str, range: &Range<usize>) {
-        self.uses.targets.push((anchor.to_owned(), self.place.file.to_owned(), self.line(range)));
+    fn note_target(&mut self, anchor: &str) {
+        self.uses.targets.push((anchor.to_owned(), self.place.file.to_owned(), self.line));
     }
 }
 

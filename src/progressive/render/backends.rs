@@ -33,11 +33,14 @@ fn make(factory: &Mutex<Factory>, choice: &BackendChoice) -> Result<Box<dyn Rend
     made.map_err(|error| RenderError::Backend { backend: choice.name(), reason: error.to_string() })
 }
 
+/// A prepared renderer, and the time that preparing took.
+type Prepared = Result<(Box<dyn Renderer>, Duration), RenderError>;
+
 /// A backend that is prepared on its own thread and takes over when it is ready, while the old one continues.
 pub(super) struct Pending {
     choice: BackendChoice,
-    /// Delivers one result: the prepared renderer, and the time this took.
-    outcome: Receiver<Result<(Box<dyn Renderer>, Duration), RenderError>>,
+    /// Delivers one result.
+    outcome: Receiver<Prepared>,
 }
 
 impl Pending {
