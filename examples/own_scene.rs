@@ -11,15 +11,10 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use weekender::describe::describe;
-use weekender::files::write_text;
-use weekender::output::write_image;
-use weekender::progressive::Status;
-use weekender::recipe::{Recipe, file};
-use weekender::render::{RenderSettings, Renderer};
-use weekender::render_cpu::{CpuOptions, CpuRenderer};
-use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::Rules;
+use weekender::{
+    Camera, CpuOptions, CpuRenderer, Material, Recipe, RenderSettings, Renderer, Rules, Scene, Sky, Status,
+    describe, scene_file, write_image, write_text,
+};
 
 /// Number of balls in the spiral.
 const BALLS: usize = 48;
@@ -79,7 +74,7 @@ pub fn render(recipe: &Recipe, directory: &Path) -> Result<()> {
     let description = describe(recipe, None, &film, &Status::default(), None);
     let [picture, scene] = ["png", "toml"].map(|ending| directory.join(format!("{}.{ending}", recipe.name)));
     write_image(&picture, &film, recipe.rules.transfer, &description)?;
-    write_text(&scene, &file::to_toml(recipe))?;
+    write_text(&scene, &scene_file::to_toml(recipe))?;
     println!("wrote {} and {}", picture.display(), scene.display());
     Ok(())
 }

@@ -10,13 +10,9 @@
 use anyhow::{Context, Result};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use weekender::describe::describe;
-use weekender::film::{ErrorEstimate, Film};
-use weekender::output::write_image;
-use weekender::progressive::Status;
-use weekender::recipe::{Recipe, file};
-use weekender::render::Renderer;
-use weekender::render_cpu::{CpuOptions, CpuRenderer};
+use weekender::{
+    CpuOptions, CpuRenderer, ErrorEstimate, Film, Recipe, Renderer, Status, describe, scene_file, write_image,
+};
 
 /// Samples per pixel.
 const SAMPLES: u64 = 64;
@@ -28,7 +24,7 @@ fn main() -> Result<()> {
 
     // A recipe is what a scene file says: scene, camera, settings and the wanted samples. Nothing is checked yet.
     let mut recipe = match scene.strip_suffix(".toml") {
-        Some(_) => file::load(Path::new(&scene))?,
+        Some(_) => scene_file::load(Path::new(&scene))?,
         None => Recipe::find(&scene)?,
     };
     recipe.settings.width = 400;

@@ -1,51 +1,57 @@
 //! Weekender: the path tracer of *Ray Tracing in One Weekend* as a viewer, a headless renderer and a lesson.
+//!
+//! What is re-exported here is the library: a [`Recipe`] describes a picture, a [`RenderJob`] is a checked recipe, a
+//! [`Renderer`] adds its samples to a [`Film`], and [`write_image`] writes it. The examples use nothing else. The rooms
+//! are public for the program, its tests and its benchmarks only, and change without notice.
 
 // See clippy.toml. Tests and examples may print.
 #![warn(clippy::disallowed_macros)]
 
-pub mod about;
-pub mod animation;
+#[doc(hidden)]
 #[cfg(feature = "window")]
 pub mod app;
+#[doc(hidden)]
 pub mod backends;
+#[doc(hidden)]
 pub mod batch;
-pub mod chart;
+#[doc(hidden)]
 pub mod cli;
-pub mod companion;
-pub mod console;
-pub mod describe;
-pub mod explain;
-pub mod failure;
-pub mod files;
+#[doc(hidden)]
 pub mod film;
-pub mod gallery;
-pub mod heat;
-pub mod info;
-pub mod interrupt;
-pub mod journal;
+#[doc(hidden)]
+pub mod job;
+#[doc(hidden)]
 pub mod kernel;
-pub mod layers;
+#[doc(hidden)]
 pub mod measure;
-pub mod memory;
-pub mod merge;
-mod number;
-pub mod output;
+#[doc(hidden)]
+pub mod numbers;
+#[doc(hidden)]
+pub mod page;
+#[doc(hidden)]
 pub mod pictures;
-pub mod plan;
+#[doc(hidden)]
 pub mod prepared;
+#[doc(hidden)]
 pub mod progressive;
-pub mod recipe;
-pub mod record;
-pub mod render;
+#[doc(hidden)]
 pub mod render_cpu;
+#[doc(hidden)]
 pub mod render_gpu;
-pub mod sampling;
-pub mod saved;
+#[doc(hidden)]
 pub mod scene;
-pub mod shell;
+#[doc(hidden)]
 pub mod stages;
-pub mod statistics;
-mod suggest;
-pub mod terminal;
-mod threads;
-pub mod web;
+#[doc(hidden)]
+pub mod system;
+
+pub use film::{ErrorEstimate, Film};
+pub use job::output::write_image;
+pub use job::recipe::{Recipe, file as scene_file};
+pub use job::render::{RenderJob, RenderSettings, Renderer};
+pub use progressive::Status;
+pub use progressive::describe::describe;
+pub use render_cpu::{CpuOptions, CpuRenderer};
+pub use scene::{Camera, Material, Scene, Sky};
+pub use stages::Rules;
+pub use system::files::write_text;

@@ -3,14 +3,14 @@
 #![warn(clippy::disallowed_macros)]
 
 use std::process::ExitCode;
-use weekender::about::Build;
+use weekender::batch::{self, info, merge};
+use weekender::cli::about::Build;
 use weekender::cli::{self, Request};
-use weekender::failure::Failure;
 use weekender::measure::{bench, report, stress};
+use weekender::page::{companion, gallery};
 use weekender::pictures::{check, compare, diff};
-use weekender::{
-    batch, companion, gallery, info, interrupt, journal, merge,
-};
+use weekender::system::failure::Failure;
+use weekender::system::{interrupt, journal};
 
 /// Here, and not in the library, so that a commit does not compile the library again.
 const BUILD: Build = Build {

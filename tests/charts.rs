@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
-use weekender::chart::{
+use weekender::numbers::chart::{
     Axis, Bar, BarChart, ChartError, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series, save,
 };
 

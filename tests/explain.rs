@@ -3,9 +3,9 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use glam::DVec3;
-use weekender::explain::{Event, Lobe, Step, steps};
-use weekender::recipe::Recipe;
-use weekender::render::RenderJob;
+use weekender::backends::explain::{Event, Lobe, Step, steps};
+use weekender::job::recipe::Recipe;
+use weekender::job::render::RenderJob;
 use weekender::render_cpu::{PathRecord, record_path};
 use weekender::stages::Stage;
 
@@ -91,4 +91,3 @@ fn paths_end_for_the_reason_that_is_given() {
         assert_eq!(steps[0].event, if steps[0].hit.is_some() { Event::Shown } else { Event::Sky });
     });
 }
-

@@ -4,7 +4,7 @@
 use glam::DVec3;
 use std::sync::atomic::AtomicBool;
 use weekender::film::ErrorEstimate;
-use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::job::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::Rules;

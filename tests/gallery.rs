@@ -10,9 +10,9 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::gallery::Figure;
-use weekender::output::read_description;
-use weekender::saved::Saved;
+use weekender::job::output::read_description;
+use weekender::job::saved::Saved;
+use weekender::page::gallery::Figure;
 use weekender::stages::Stage;
 
 fn command(at: &Path, arguments: &[&str]) -> Command {

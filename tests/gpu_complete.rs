@@ -9,7 +9,7 @@ use gpu_common::{cpu, go_on, gpu, job_of, rendered};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use weekender::film::Film;
-use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind, Stats};
+use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind, Stats};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};

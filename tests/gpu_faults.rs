@@ -6,8 +6,8 @@ mod gpu_common;
 use gpu_common::{gpu, job_of};
 use std::time::Duration;
 use weekender::backends::BackendChoice;
+use weekender::job::render::{RenderJob, SamplerKind};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Status};
-use weekender::render::{RenderJob, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use weekender::scene::builtin::BuiltinScene;
 

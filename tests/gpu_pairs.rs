@@ -7,7 +7,7 @@ mod gpu_common;
 use gpu_common::{cpu, gpu, job_of, jobs};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::job::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;

@@ -7,8 +7,8 @@ use glam::DVec3;
 use gpu_common::{cpu, go_on, gpu, job_of, rendered};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
+use weekender::job::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::prepared::PreparedScene;
-use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::render_gpu::{
     Fault, FaultInjection, GpuError, GpuOptions, GpuRenderer, HierarchyKind, InjectionPoint, adapters,
 };

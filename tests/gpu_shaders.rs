@@ -6,8 +6,8 @@ mod gpu_common;
 use gpu_common::say_loudly;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use weekender::job::render::SamplerKind;
 use weekender::kernel::{CameraTable, Features, RecordColumns, ShadingRecord, records, words_of};
-use weekender::render::SamplerKind;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::stages::{DielectricLaws, Shading, SurfaceRule};
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 use gpu_common::gpu;
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::render::{RenderJob, RenderSettings, Renderer};
+use weekender::job::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::{GpuOptions, HierarchyKind};
 use weekender::scene::{Camera, Material, Scene, Sky};

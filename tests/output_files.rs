@@ -9,13 +9,13 @@ use program_common::names;
 use std::fs;
 use std::io;
 use std::path::Path;
-use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
-use weekender::output::{
+use weekender::job::output::{
     Description, OutputError, OutputFormat, RECIPE_LIMIT, check_frame, key, read_description,
     recipe_in_picture, write_image,
 };
 use weekender::stages::Transfer;
+use weekender::system::files::{check_writable, replace_file};
 
 fn film() -> Film {
     let (width, height) = (13, 7);

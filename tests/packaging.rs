@@ -15,7 +15,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 use weekender::film::checkpoint;
-use weekender::recipe::{Recipe, file};
+use weekender::job::recipe::{Recipe, file};
 
 const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/package");
 

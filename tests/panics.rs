@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use weekender::film::checkpoint;
-use weekender::journal;
+use weekender::system::journal;
 
 /// Runs the program in `directory`, which is also the place for temporary files.
 fn weekender(directory: &Path, arguments: &[&str]) -> Output {

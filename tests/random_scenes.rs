@@ -13,10 +13,10 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
+use weekender::job::recipe::{Recipe, file};
 use weekender::measure::stress::families::build::{Ball, eye, matte, moved, of_scene, scene, sized};
 use weekender::measure::stress::{Level, Paired, trace, with_far_spheres};
 use weekender::measure::{Candidate, Traced};
-use weekender::recipe::{Recipe, file};
 use weekender::render_cpu::{CpuOptions, Isa};
 use weekender::scene::{Material, Scene, Sky};
 

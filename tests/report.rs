@@ -230,7 +230,7 @@ mod interrupted {
     use tempfile::TempDir;
     use weekender::backends::{BackendChoice, create};
     use weekender::film::{FilmFile, PixelSum, checkpoint};
-    use weekender::recipe::file::parse;
+    use weekender::job::recipe::file::parse;
 
     /// A reference with many samples, and little else.
     fn long() -> Vec<&'static str> {

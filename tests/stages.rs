@@ -1,7 +1,7 @@
 //! The registry of stages: complete, in order, valid, and each with everything that a lesson needs.
 
 use std::sync::Arc;
-use weekender::recipe::Recipe;
+use weekender::job::recipe::Recipe;
 use weekender::stages::{DielectricLaws, Means, Rules, Shading, Stage, SurfaceRule, Transfer};
 
 fn stage(id: &str) -> &'static Stage {

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weekender::app::Device;
 use weekender::film::checkpoint;
-use weekender::output::read_description;
+use weekender::job::output::read_description;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 

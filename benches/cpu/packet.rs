@@ -4,8 +4,8 @@ use crate::widths::widths;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use std::sync::atomic::AtomicBool;
-use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 
 /// Side of the picture, pixels: a tile.

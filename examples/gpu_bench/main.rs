@@ -18,14 +18,14 @@ use kernel_count::Counted;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::numbers::statistics;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::wide_bvh::{CwBvhNode, WideBvh};
 use weekender::progressive::{Plan, Progressive, RenderRequest};
-use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind};
 use weekender::stages::Shading;
-use weekender::statistics;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -4,12 +4,12 @@ use super::{Comparison, Mapping, Options, SIZE, Traced, compare, job, timed};
 use anyhow::{Context, anyhow};
 use std::rc::Rc;
 use weekender::film::PixelSum;
+use weekender::job::render::RenderJob;
+use weekender::kernel::sampling::SampleBlock;
 use weekender::kernel::{GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, WORKGROUP_SIZE};
-use weekender::render::RenderJob;
 use weekender::render_gpu::layout::tile_size;
 use weekender::render_gpu::shader_source::shared;
 use weekender::render_gpu::{Exported, TURN_LIMIT};
-use weekender::sampling::SampleBlock;
 use wgpu::{BufferUsages, PollType};
 
 const ENTRIES: &str = include_str!("mappings.wgsl");

@@ -10,9 +10,9 @@ mod packets;
 use serde::Serialize;
 use std::time::Instant;
 use weekender::film::PixelSum;
-use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, RenderSettings};
-use weekender::statistics;
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderJob, RenderSettings};
+use weekender::numbers::statistics;
 
 /// Width and height of the picture.
 const SIZE: [u32; 2] = [400, 225];

@@ -8,9 +8,10 @@ use fearless_simd::Level;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
 use weekender::film::PixelSum;
+use weekender::job::render::{RenderJob, Renderer};
+use weekender::kernel::sampling::{HalfKey, SampleBlock};
 use weekender::kernel::{Columns, GROUP, LoadShading, NONE, RECORD_COLUMNS};
 use weekender::prepared::PreparedScene;
-use weekender::render::{RenderJob, Renderer};
 use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::camera::{pinhole_ray, screen};
 use weekender::render_cpu::lanes::{
@@ -21,7 +22,6 @@ use weekender::render_cpu::material::{incidence_of, scatter, surface_of};
 use weekender::render_cpu::rng::{numbers, sampler_key};
 use weekender::render_cpu::sphere::{Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
-use weekender::sampling::{HalfKey, SampleBlock};
 use weekender::stages::DielectricLaws;
 
 pub fn measure(options: &Options) -> anyhow::Result<Comparison> {

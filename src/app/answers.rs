@@ -1,7 +1,7 @@
 //! Answers of background threads. Each asker owns the slot in which its answers arrive. Whoever asks with a substitute for
 //! the answer gets one in any case: work that panics, or that no thread can be started for, must not be waited for.
 
-use crate::render::panic_text;
+use crate::job::render::panic_text;
 use eframe::egui::Context;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};

@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use crate::companion::{Excerpt, excerpts_between};
+use crate::page::companion::{Excerpt, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::{self, Align2, FontId, RichText, Ui};
 

@@ -1,8 +1,8 @@
 //! Flights of the camera: to another camera, or from bookmark to bookmark as an animation goes from keyframe to keyframe.
 
 use super::model::remembered::Bookmark;
-use crate::animation::{CameraPath, Keyframe};
 use crate::scene::Camera;
+use crate::scene::animation::{CameraPath, Keyframe};
 use eframe::egui::emath::easing;
 use glam::{DMat3, DQuat, DVec3};
 

@@ -197,12 +197,12 @@ fn compare_ui(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::Keyframe;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::{Origin, Source};
+    use crate::scene::animation::Keyframe;
 
     use crate::app::tests::{dressed, facts_of};
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

@@ -4,8 +4,8 @@ use super::answers::Answers;
 use super::kept::{FilmId, Subject};
 use super::model::document::Document;
 use super::widgets::compact;
+use crate::backends::layers::Layer;
 use crate::film::to_byte;
-use crate::layers::Layer;
 use crate::progressive::standard_error;
 use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
@@ -218,7 +218,7 @@ mod tests {
 
     use crate::app::model::origin::{Origin, Source};
 
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;

@@ -3,10 +3,10 @@
 use super::answers::caught;
 use super::model::document::Document;
 use super::texture::Texture;
+use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
-use crate::heat::HeatScale;
-use crate::layers::{Layer, LayerImage};
-use crate::render::{JobError, RenderJob, RenderSettings};
+use crate::job::render::{JobError, RenderJob, RenderSettings};
+use crate::numbers::heat::HeatScale;
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Transfer;
 use eframe::egui::Context;

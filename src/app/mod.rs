@@ -89,8 +89,8 @@ pub use model::viewpoint::Viewpoint;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
-use crate::files::{cache_directory, state_directory};
-use crate::interrupt::Interrupt;
+use crate::system::files::{cache_directory, state_directory};
+use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow, bail};
 use eframe::egui;
 use std::process::ExitCode;

@@ -4,7 +4,7 @@ use super::answers::Answers;
 use super::command::Command;
 use super::model::document::Document;
 use super::theme;
-use crate::explain::{Activity, Timeline, timeline};
+use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use eframe::egui::{self, Align2, Color32, Rect, RichText, Sense, TextStyle, Ui, WidgetInfo, vec2};
 

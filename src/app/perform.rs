@@ -18,7 +18,7 @@ use super::theme;
 use super::title_bar;
 use super::window::Window;
 use super::wording::lower_first;
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use eframe::egui::{self, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

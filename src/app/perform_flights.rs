@@ -3,9 +3,9 @@
 use super::command::Command;
 use super::flight::{self, Flight};
 use super::window::Window;
-use crate::animation::Keyframe;
-use crate::recipe::Recipe;
+use crate::job::recipe::Recipe;
 use crate::scene::Camera;
+use crate::scene::animation::Keyframe;
 use eframe::egui::{self, Event};
 use std::path::PathBuf;
 use std::sync::Arc;

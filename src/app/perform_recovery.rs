@@ -8,10 +8,10 @@ use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
 use super::recovery::{Arrival, Choice, Left, Part, Recovery, RecoveryFiles, Saved, write_film};
 use super::window::Window;
-use crate::describe::counted;
-use crate::interrupt::Interrupt;
+use crate::job::saved::{Content, Opened, SavedFilm};
+use crate::progressive::describe::counted;
 use crate::progressive::{Phase, Stop};
-use crate::saved::{Content, Opened, SavedFilm};
+use crate::system::interrupt::Interrupt;
 use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use std::path::Path;
 use std::sync::Arc;
@@ -278,10 +278,10 @@ impl Window {
         if document.job(1).is_ok()
             && let Err(reason) = files.write_note(&session.with_film(has_film))
         {
-            crate::console::note(&format!("weekender: what the window showed is not kept: {reason}"));
+            crate::system::console::note(&format!("weekender: what the window showed is not kept: {reason}"));
         }
         if let Err(error) = files.leave_session() {
-            crate::console::note(&format!("weekender: what the window showed is not kept: {error}"));
+            crate::system::console::note(&format!("weekender: what the window showed is not kept: {error}"));
         }
     }
 
@@ -309,7 +309,7 @@ impl Window {
             .take_film()
             .map(|film| write_film(files.film(), &film, (document, &status), self.seconds_before));
         if let Some(Err(reason)) = &outcome {
-            crate::console::note(&format!("weekender: the film is not kept: {reason}"));
+            crate::system::console::note(&format!("weekender: the film is not kept: {reason}"));
         }
         // What was written before is still there.
         matches!(outcome, Some(Ok(_))) || saved.is_some()

@@ -5,7 +5,7 @@ use super::model::device::{self, Device};
 use super::model::origin::Source;
 use super::scene_file::{Holds, Reread};
 use super::window::Window;
-use crate::files::FileIdentity;
+use crate::system::files::FileIdentity;
 use eframe::egui::Context;
 use std::path::Path;
 use std::sync::Arc;
@@ -118,7 +118,7 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::tests::{until, window};
-    use crate::recipe::file;
+    use crate::job::recipe::file;
     use crate::stages::Stage;
     use std::path::PathBuf;
 

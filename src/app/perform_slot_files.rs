@@ -4,7 +4,7 @@ use super::model::slots::{BYTES_LIMIT, Coming, SlotNumber};
 use super::recovery::RecoveryFiles;
 use super::slot_files::{Arrival, Entry, Keeper, Listing, News};
 use super::window::Window;
-use crate::describe::counted;
+use crate::progressive::describe::counted;
 use eframe::egui::Context;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -7,9 +7,9 @@ use super::model::view::{Mode, With};
 use super::slots::{Copied, Reopened};
 use super::window::Window;
 use super::wording::lower_first;
-use crate::describe::counted;
 use crate::film::Film;
-use crate::memory::words;
+use crate::progressive::describe::counted;
+use crate::system::memory::words;
 use eframe::egui;
 
 impl Window {

@@ -6,8 +6,8 @@ use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
 use super::widgets::{compact, number};
+use crate::numbers::statistics::fit::{Point, Prediction};
 use crate::progressive::{HistoryPoint, Status, Stop};
-use crate::statistics::fit::{Point, Prediction};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, Pos2, Rangef, Rect, RichText, Sense, Ui, Vec2, WidgetInfo,
 };

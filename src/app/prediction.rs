@@ -1,7 +1,7 @@
 //! Predicts when a render will reach its target, from its error so far.
 
+use crate::numbers::statistics::fit::{Point, Prediction, predict};
 use crate::progressive::{NOISE_TARGET_FIRST_SAMPLES, Status};
-use crate::statistics::fit::{Point, Prediction, predict};
 
 /// Predictions more than this many seconds ahead are not shown.
 pub const FARTHEST: f64 = 1e6;

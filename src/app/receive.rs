@@ -8,8 +8,8 @@ use super::model::origin::{Origin, Source};
 use super::model::show::Show;
 use super::window::Window;
 use super::wording::in_window_words;
+use crate::job::saved::{Content, Opened};
 use crate::progressive::{ReferenceMeans, Status, Stop};
-use crate::saved::{Content, Opened};
 use eframe::egui;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -187,9 +187,9 @@ mod tests {
 
     use crate::app::tests::window;
     use crate::film::Film;
-    use crate::recipe::Recipe;
-    use crate::render::BackendInfo;
-    use crate::saved::SavedFilm;
+    use crate::job::recipe::Recipe;
+    use crate::job::render::BackendInfo;
+    use crate::job::saved::SavedFilm;
     use eframe::egui::Context;
 
     #[test]

@@ -3,9 +3,9 @@
 use super::model::session::Session;
 use super::recovery::write_film;
 use super::window::Window;
-use crate::console;
-use crate::describe::{counted, describe};
-use crate::saved;
+use crate::job::saved;
+use crate::progressive::describe::{counted, describe};
+use crate::system::console;
 
 impl Drop for Window {
     fn drop(&mut self) {
@@ -58,7 +58,7 @@ mod tests {
     use crate::app::tests::{until, window};
     use crate::film::checkpoint::FilmFile;
     use crate::film::{Film, checkpoint, key};
-    use crate::recipe::{Recipe, file};
+    use crate::job::recipe::{Recipe, file};
     use eframe::egui::Context;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::path::Path;

@@ -4,7 +4,7 @@
 
 use super::answers::Answers;
 use super::model::remembered::Remembered;
-use crate::files::{free_name, lock_path, write_text};
+use crate::system::files::{free_name, lock_path, write_text};
 use eframe::egui::Context;
 use serde_json::{Map, Value};
 use std::fs::{self, File};

@@ -1,7 +1,7 @@
 //! The present speed of a render, as opposed to its average.
 
+use crate::job::render::BackendInfo;
 use crate::progressive::Status;
-use crate::render::BackendInfo;
 use std::collections::VecDeque;
 
 /// The speed is that of the last seconds of tracing, this many.
@@ -43,7 +43,7 @@ impl Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::Stats;
+    use crate::job::render::Stats;
     use std::time::Duration;
 
     fn status(name: &'static str, seconds: f64, paths: u64) -> Status {

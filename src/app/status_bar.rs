@@ -5,8 +5,8 @@ use super::facts::Facts;
 use super::model::device::Device;
 use super::prediction::{prediction, prediction_words};
 use super::theme;
+use crate::job::render::BackendInfo;
 use crate::progressive::{Contribution, Phase, Status, Stop};
-use crate::render::BackendInfo;
 use eframe::egui::{self, Align, Layout, RichText, Ui};
 use std::borrow::Cow;
 

@@ -10,7 +10,7 @@ use super::stage_list;
 use super::theme;
 use super::thumbnails::Thumbnails;
 use super::tips::{self, Side};
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use eframe::egui::{self, Align, Button, Layout, RichText, Shape, Stroke, TextStyle, Ui, vec2};
 
 /// Between the menus and the stage, points.

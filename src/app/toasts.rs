@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::theme;
-use crate::console;
+use crate::system::console;
 use eframe::egui::{self, Align2, Color32, RichText};
 use std::time::{Duration, Instant};
 

@@ -42,10 +42,10 @@ use super::tracer::Tracer;
 use super::viewport::Viewport;
 use crate::cli::WindowOptions;
 use crate::film::Film;
-use crate::output::OutputFormat;
-use crate::recipe::Recipe;
-use crate::render::RenderJob;
-use crate::saved::SavedFilm;
+use crate::job::output::OutputFormat;
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderJob;
+use crate::job::saved::SavedFilm;
 use crate::stages::Stage;
 use anyhow::{Context as _, Result};
 use eframe::egui::{Context, Event};
@@ -247,7 +247,7 @@ impl Window {
     pub(super) fn finish_settings(&mut self) {
         let Some(mut file) = self.settings.take() else { return };
         if let Err(reason) = file.finish(&self.model.remembered) {
-            crate::console::note(&format!("weekender: the settings are not kept: {reason}"));
+            crate::system::console::note(&format!("weekender: the settings are not kept: {reason}"));
         }
     }
 

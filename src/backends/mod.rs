@@ -1,11 +1,14 @@
 //! The list of backends and their factory. A new backend needs a variant of [`BackendChoice`] and an arm of
 //! [`create`]; the command line, the window and the reports read everything else from here.
 
+pub mod explain;
+pub mod layers;
+
 mod together;
 
 pub use together::Together;
 
-use crate::render::Renderer;
+use crate::job::render::Renderer;
 use crate::render_cpu::{CpuError, CpuOptions, CpuRenderer, Isa};
 use crate::render_gpu::{AdapterInfo, GpuError, GpuOptions, GpuRenderer, adapters};
 use std::sync::mpsc;

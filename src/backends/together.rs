@@ -2,8 +2,10 @@
 
 use super::close;
 use crate::film::{Film, FilmError};
-use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
-use crate::threads::shared;
+use crate::job::render::{
+    BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy,
+};
+use crate::system::threads::shared;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};

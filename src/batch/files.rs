@@ -1,15 +1,15 @@
 //! The films and the picture of a render: locked and looked at before it begins, and written at its end.
 
 use crate::cli::RenderOptions;
-use crate::describe::describe;
-use crate::failure::Failure;
-use crate::files::ShownPath;
 use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
-use crate::output::{Forms, OutputFormat, write_image_as};
+use crate::job::output::{Forms, OutputFormat, write_image_as};
+use crate::job::recipe::file;
+use crate::job::render::panic_text;
+use crate::job::saved::{Replaced, rescue};
 use crate::progressive::Status;
-use crate::recipe::file;
-use crate::render::panic_text;
-use crate::saved::{Replaced, rescue};
+use crate::progressive::describe::describe;
+use crate::system::failure::Failure;
+use crate::system::files::ShownPath;
 use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};

@@ -1,5 +1,8 @@
 //! Rendering without a window: pictures go to files, progress goes to standard error, and figures come at the end.
 
+pub mod info;
+pub mod merge;
+
 mod files;
 mod frames;
 mod keeping;
@@ -16,16 +19,16 @@ pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
+use crate::cli::terminal::{print, print_beside, write_json};
 use crate::cli::{BatchOptions, JsonTarget, SaveSceneOptions};
-use crate::console;
-use crate::failure::Failure;
-use crate::files::{ShownPath, check_replaceable, check_writable, write_text};
-use crate::interrupt::Interrupt;
-use crate::recipe::file;
-use crate::saved;
+use crate::job::recipe::file;
+use crate::job::saved;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
-use crate::terminal::{print, print_beside, write_json};
+use crate::system::console;
+use crate::system::failure::Failure;
+use crate::system::files::{ShownPath, check_replaceable, check_writable, write_text};
+use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use picture::Picture;
 use std::path::Path;

@@ -6,13 +6,13 @@ use super::progress::Progress;
 use super::studio::{Event, Studio};
 use super::summary::Summary;
 use crate::cli::{BatchOptions, RenderOptions};
-use crate::failure::Failure;
-use crate::files::ShownPath;
 use crate::film::Film;
-use crate::interrupt::Interrupt;
-use crate::journal;
+use crate::job::saved::SavedFilm;
 use crate::progressive::{Phase, Status};
-use crate::saved::SavedFilm;
+use crate::system::failure::Failure;
+use crate::system::files::ShownPath;
+use crate::system::interrupt::Interrupt;
+use crate::system::journal;
 use anyhow::anyhow;
 use files::Written;
 use std::time::Instant;
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::batch::tests::{batch, options};
     use crate::film::checkpoint;
-    use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;
     use std::sync::atomic::AtomicBool;
 

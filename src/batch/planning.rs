@@ -1,16 +1,16 @@
 //! `weekender plan`: writes a plan and makes the commands for its parts.
 
 use super::create_directory;
+use crate::cli::terminal::write_json;
 use crate::cli::{JsonTarget, PlanOptions};
-use crate::console;
-use crate::describe::counted;
-use crate::failure::{Failure, output_failure};
-use crate::files::ShownPath;
 use crate::film::Film;
-use crate::memory;
-use crate::plan::{Commands, Format, Manifest, Plan, Work, scripts};
-use crate::shell;
-use crate::terminal::write_json;
+use crate::job::plan::{Commands, Format, Manifest, Plan, Work, scripts};
+use crate::progressive::describe::counted;
+use crate::system::console;
+use crate::system::failure::{Failure, output_failure};
+use crate::system::files::ShownPath;
+use crate::system::memory;
+use crate::system::shell;
 use anyhow::anyhow;
 use serde::Serialize;
 use std::process::ExitCode;

@@ -1,10 +1,10 @@
 //! The progress of a picture: samples, speed and remaining time.
 
+use crate::cli::terminal::Display;
 use crate::cli::{ProgressChoice, RenderOptions};
-use crate::describe::seconds;
-use crate::files::ShownPath;
+use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Plan, Status};
-use crate::terminal::Display;
+use crate::system::files::ShownPath;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -110,7 +110,8 @@ mod tests {
         };
         let mut plan = Plan::samples(1100);
         assert_eq!(seconds_left(&plan, &status), None);
-        let info = crate::render::BackendInfo { name: "cpu", device: String::new(), lanes: 1, threads: 1 };
+        let info =
+            crate::job::render::BackendInfo { name: "cpu", device: String::new(), lanes: 1, threads: 1 };
         status.contributions =
             vec![crate::progressive::Contribution { backend: info, samples_per_pixel: 100 }];
         assert_eq!(seconds_left(&plan, &status), Some(100.0));

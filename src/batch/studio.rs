@@ -1,11 +1,11 @@
 //! The one loop in which the command line watches a render: pictures, frames of animations, and figures.
 
 use crate::backends::{self, BackendChoice};
-use crate::failure::Failure;
 use crate::film::Film;
-use crate::interrupt::Interrupt;
+use crate::job::render::{RenderJob, Renderer, panic_text};
 use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
-use crate::render::{RenderJob, Renderer, panic_text};
+use crate::system::failure::Failure;
+use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

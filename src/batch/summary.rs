@@ -1,10 +1,10 @@
 //! The final figures of a picture, as text and as JSON.
 
 use crate::cli::RenderOptions;
-use crate::console::printable;
-use crate::describe::{counted, seconds};
-use crate::files::{JsonPath, ShownPath};
+use crate::progressive::describe::{counted, seconds};
 use crate::progressive::{Contribution, Phase, Status};
+use crate::system::console::printable;
+use crate::system::files::{JsonPath, ShownPath};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt;
@@ -176,8 +176,8 @@ mod tests {
     use super::*;
     use crate::batch::tests::options;
     use crate::film::ErrorEstimate;
+    use crate::job::render::BackendInfo;
     use crate::progressive::EndReason;
-    use crate::render::BackendInfo;
 
     #[test]
     fn text_and_json_have_the_same_figures() {

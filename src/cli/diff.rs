@@ -8,7 +8,7 @@ use super::values::{
     JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance, whole,
 };
 use crate::backends::BackendChoice;
-use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::job::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 use clap::Args;

@@ -1,7 +1,7 @@
 //! Errors on the command line.
 
-use crate::recipe::{SceneNameError, file};
-use crate::render::JobError;
+use crate::job::recipe::{SceneNameError, file};
+use crate::job::render::JobError;
 
 /// Why the flags cannot be carried out.
 #[derive(Debug, thiserror::Error)]
@@ -15,15 +15,15 @@ pub enum CliError {
     #[error(transparent)]
     Job(#[from] JobError),
     #[error(transparent)]
-    Memory(#[from] crate::memory::MemoryError),
+    Memory(#[from] crate::system::memory::MemoryError),
     #[error(transparent)]
-    Open(#[from] crate::saved::OpenError),
+    Open(#[from] crate::job::saved::OpenError),
     #[error(transparent)]
-    Output(#[from] crate::output::OutputError),
+    Output(#[from] crate::job::output::OutputError),
     #[error(transparent)]
     Backend(#[from] crate::backends::BackendError),
     #[error(transparent)]
-    Chart(#[from] crate::chart::ChartError),
+    Chart(#[from] crate::numbers::chart::ChartError),
     /// Two flags exclude each other.
     #[error("{flag} cannot be used with {other}: {reason}")]
     Together { flag: &'static str, other: &'static str, reason: &'static str },

@@ -1,5 +1,8 @@
 //! The command line, parsed and validated.
 
+pub mod about;
+pub mod terminal;
+
 mod backend;
 mod bench;
 mod check;
@@ -34,8 +37,8 @@ pub use sources::DEFAULT_SCENE;
 pub use stress::StressOptions;
 pub use values::JsonTarget;
 
-use crate::failure::{EXIT_CODES, Failure};
-use crate::shell;
+use crate::system::failure::{EXIT_CODES, Failure};
+use crate::system::shell;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -198,9 +201,7 @@ fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
         Some(RawCommand::Info(options)) => Request::Info(options),
         Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
         Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(compare::compare(*raw)?)),
-        Some(RawCommand::Report(raw)) => {
-            Request::Report(Box::new(raw.check(line.command.clone())?))
-        }
+        Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
         Some(RawCommand::Stress(raw)) => Request::Stress(Box::new(raw.check()?)),
         Some(RawCommand::Companion(options)) => Request::Companion(options),
         Some(RawCommand::Gallery(options)) => Request::Gallery(options),

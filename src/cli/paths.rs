@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::values::JsonTarget;
-use crate::files::ShownPath;
+use crate::system::files::ShownPath;
 use std::path::{Path, PathBuf};
 
 /// The files that a command reads and writes, each with its flag or with what it is.

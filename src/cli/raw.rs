@@ -1,9 +1,9 @@
 //! The flags of a picture, which rendering, planning and comparing share, and the values that several commands take.
 
 use super::values::{finite_number, parse_size, parse_vector, whole};
-use crate::output::PpmForm;
-use crate::recipe::Recipe;
-use crate::render::{DEPTH_LIMIT, SamplerKind};
+use crate::job::output::PpmForm;
+use crate::job::recipe::Recipe;
+use crate::job::render::{DEPTH_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, ValueHint};

@@ -9,11 +9,11 @@ use super::values::{
 };
 use super::{Line, Paths, Request, backend, frames};
 use crate::backends::BackendChoice;
-use crate::output::{OutputFormat, PpmForm};
+use crate::job::output::{OutputFormat, PpmForm};
+use crate::job::recipe::{Recipe, plain_name};
+use crate::job::render::RenderJob;
+use crate::job::saved;
 use crate::progressive::{Plan, Stop};
-use crate::recipe::{Recipe, plain_name};
-use crate::render::RenderJob;
-use crate::saved;
 use crate::stages::Stage;
 use clap::Args;
 use std::path::PathBuf;

@@ -6,8 +6,8 @@ use super::raw::{ProgressChoice, RawSwitch};
 use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
-use crate::recipe::{Recipe, plain_name};
-use crate::render::{SAMPLE_LIMIT, SamplerKind};
+use crate::job::recipe::{Recipe, plain_name};
+use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -3,9 +3,9 @@
 use super::error::CliError;
 use super::raw::{self, RawPicture, RawSwitch};
 use super::values::{range, whole};
-use crate::recipe::{Recipe, file};
-use crate::render::{RenderJob, SAMPLE_LIMIT};
-use crate::saved::Saved;
+use crate::job::recipe::{Recipe, file};
+use crate::job::render::{RenderJob, SAMPLE_LIMIT};
+use crate::job::saved::Saved;
 use crate::stages::Stage;
 use clap::Args;
 use std::ops::Range;

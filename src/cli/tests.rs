@@ -1,12 +1,12 @@
 //! Command lines and the requests that they make.
 
 use super::*;
-use crate::animation::Turn;
 use crate::backends::BackendChoice;
-use crate::output::FrameRate;
-use crate::plan::{Format, Work};
+use crate::job::output::FrameRate;
+use crate::job::plan::{Format, Work};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
+use crate::scene::animation::Turn;
 use std::time::Duration;
 
 fn request(line: &str) -> Result<Request, Failure> {

@@ -1,14 +1,14 @@
 //! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
 use super::error::CliError;
-use crate::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use crate::backends::BackendError;
-use crate::files::ShownPath;
 use crate::film::ROUNDING_LIMIT;
-use crate::output::FrameRate;
-use crate::render::SIZE_LIMIT;
+use crate::job::output::FrameRate;
+use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
+use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
+use crate::system::files::ShownPath;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
 use std::fmt::Display;

@@ -1,7 +1,7 @@
 //! A film file that one run writes again and again, and no other run meanwhile.
 
 use super::{Description, Film, SampleRanges, checkpoint};
-use crate::files::{FileLock, LockedError, ShownPath, WriteError};
+use crate::system::files::{FileLock, LockedError, ShownPath, WriteError};
 use std::io;
 use std::path::{Path, PathBuf};
 

@@ -3,7 +3,7 @@
 use super::{
     CheckpointError, Description, Film, FilmError, FilmFile, FilmHead, SampleRanges, checkpoint, key,
 };
-use crate::files::ShownPath;
+use crate::system::files::ShownPath;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

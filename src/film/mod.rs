@@ -30,7 +30,7 @@ pub use merge::{FilmSum, MergeError, merge_files};
 pub use ranges::SampleRanges;
 pub use resolve::to_byte;
 
-use crate::memory::{self, MemoryError};
+use crate::system::memory::{self, MemoryError};
 use std::ops::Range;
 
 /// Every sample index in a film is below this limit. A pixel's sum over all halves, and over any films that can be

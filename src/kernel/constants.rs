@@ -1,7 +1,7 @@
 //! Numeric constants that host and shaders share.
 
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
+use crate::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
 use crate::stages::BOOK_T_MIN;
 use std::fmt::Write;
 

@@ -2,7 +2,7 @@
 //! kernels implements it, its pipeline override on the GPU, and its name in summaries.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
-use crate::render::{RenderJob, SamplerKind};
+use crate::job::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule};
 

@@ -9,6 +9,9 @@
 //!
 //! [`wgsl`] passes all of these declarations to the shaders as text.
 
+pub mod path_record;
+pub mod sampling;
+
 pub mod constants;
 pub mod features;
 pub mod packed;

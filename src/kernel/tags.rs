@@ -1,7 +1,7 @@
 //! Enumerations that shaders represent as numbers.
 
 use super::ROOTS_MASK;
-use crate::render::SamplerKind;
+use crate::job::render::SamplerKind;
 use crate::stages::{DielectricLaws, Shading, SurfaceRule, Transfer};
 use std::fmt::Write;
 

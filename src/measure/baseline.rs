@@ -1,8 +1,8 @@
 //! The control: a plain C89 program that renders the same picture. It is compiled on demand.
 
 use crate::film::{FIXED_POINT_SCALE, Film, PixelSum};
-use crate::output::{Encoding, read_picture};
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::job::output::{Encoding, read_picture};
+use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use crate::scene::{Camera, Parameter, Scene};
 use anyhow::{Context, Result, anyhow, bail};
 use glam::DVec3;

@@ -3,7 +3,7 @@
 use super::baseline::Baseline;
 use crate::backends::{self, BackendChoice};
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use anyhow::Result;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -13,7 +13,7 @@ mod table;
 pub use candidate::{Candidate, Source, Stop, Traced};
 
 use crate::cli::JsonTarget;
-use crate::terminal;
+use crate::cli::terminal;
 use anyhow::{Context, Result};
 use machine::Machine;
 use serde::Serialize;

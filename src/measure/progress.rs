@@ -1,7 +1,7 @@
 //! The progress of a measurement, on standard error.
 
 use crate::cli::ProgressChoice;
-use crate::terminal::Display;
+use crate::cli::terminal::Display;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 

@@ -1,9 +1,9 @@
 //! What a program about pictures answers: lines for people, JSON for other programs, and an exit code.
 
 use crate::cli::JsonTarget;
-use crate::failure::{BAD_INPUT, FAILED};
-use crate::files::check_writable;
-use crate::terminal::{print_beside, write_json};
+use crate::cli::terminal::{print_beside, write_json};
+use crate::system::failure::{BAD_INPUT, FAILED};
+use crate::system::files::check_writable;
 use anyhow::Result;
 use serde::Serialize;
 use std::fmt::Write;

@@ -1,11 +1,11 @@
 //! A picture of any kind, in linear radiance: a film, a file of any program, or what a backend has rendered.
 
 use crate::film::{Film, key};
-use crate::memory;
-use crate::output::{Encoding, read_picture};
-use crate::recipe::Recipe;
-use crate::render::RenderJob;
-use crate::saved::{OpenError, Saved};
+use crate::job::output::{Encoding, read_picture};
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderJob;
+use crate::job::saved::{OpenError, Saved};
+use crate::system::memory;
 use anyhow::Result;
 use std::path::Path;
 use std::sync::Arc;

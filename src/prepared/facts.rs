@@ -1,8 +1,8 @@
 //! Properties of a scene that do not depend on the camera: spheres that others cover, and layers so thin that rounding
 //! may be visible.
 
+use crate::job::render::RenderJob;
 use crate::kernel::HALF_EPSILON;
-use crate::render::RenderJob;
 use crate::scene::{Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -299,7 +299,7 @@ mod tests {
     #[test]
     fn layers_are_found_across_borders() {
         let random =
-            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
+            |i: u32, k: u32| f64::from(crate::kernel::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
         for i in 0..5000 {
             let at = |k: u32| 10.0 * random(i, k) - 5.0;
             let radius = (6.0 * random(i, 3) - 3.0).exp2();
@@ -382,7 +382,7 @@ mod tests {
     #[test]
     fn layers_in_a_crowd_are_found() {
         let random =
-            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
+            |i: u32, k: u32| f64::from(crate::kernel::sampling::pcg4d([i, k, 2, 0])[0]) / f64::from(u32::MAX);
         for count in [2, 63, 65, 500] {
             let has = |facts: &Facts, pair: [u32; 2]| facts.layers.iter().any(|layer| layer.spheres == pair);
             let shells = (0..count).map(|i| (DVec3::splat(0.5), 1.0 + 1e-5 * f64::from(i)));

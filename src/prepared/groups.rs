@@ -2,8 +2,8 @@
 //! before anything is rounded.
 
 use super::facts::Facts;
+use crate::job::render::RenderJob;
 use crate::kernel::{HALF_EPSILON, Roots};
-use crate::render::RenderJob;
 use crate::scene::{Camera, Sphere};
 use crate::stages::SurfaceRule;
 use glam::DVec3;

@@ -10,11 +10,11 @@ mod validate;
 pub mod wide_bvh;
 
 use crate::film::FIXED_POINT_SCALE;
+use crate::job::render::{RenderJob, RenderSettings};
 use crate::kernel::{
     AnchoredSphere, CameraTable, Features, Real, RecordColumns, Roots, ShadingRecord, SortedSpheres,
     UNDER_EYE,
 };
-use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Material, Scene, Sphere};
 use crate::stages::SurfaceRule;
 use facts::Facts;

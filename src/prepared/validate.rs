@@ -3,8 +3,8 @@
 
 use super::PreparedScene;
 use super::hierarchy::Hierarchy;
+use crate::job::render::RenderJob;
 use crate::kernel::{COUNT_MASK, EYE, Features, LoadShading, Node, Real, STACK_SIZE};
-use crate::render::RenderJob;
 
 /// Returns from the function with a message unless a condition holds.
 macro_rules! ensure {
@@ -140,7 +140,7 @@ fn holds<R: Real>(node: &Node<R>, low: [R; 3], high: [R; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
     use crate::scene::builtin::BuiltinScene;
     use crate::stages::Stage;
     use glam::DVec3;

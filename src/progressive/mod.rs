@@ -5,6 +5,8 @@
 //! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`], [`Progressive::finish`] and dropping
 //! the handle wait for the renderer; no other call blocks.
 
+pub mod describe;
+
 mod passes;
 mod plan;
 mod render;
@@ -21,7 +23,7 @@ pub use view::{FilmIdentity, ReferenceMeans, View, luminance, standard_error};
 
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
-use crate::render::{RenderJob, Renderer};
+use crate::job::render::{RenderJob, Renderer};
 use render::Cancel;
 use shared::Shared;
 use std::io;

@@ -1,6 +1,6 @@
 //! The plan of a progressive render: what to render, and when to stop.
 
-use crate::render::SAMPLE_LIMIT;
+use crate::job::render::SAMPLE_LIMIT;
 use std::ops::Range;
 use std::time::Duration;
 

@@ -2,7 +2,7 @@
 
 use super::EndReason;
 use crate::film::{ErrorEstimate, Film};
-use crate::render::{BackendInfo, Stats};
+use crate::job::render::{BackendInfo, Stats};
 use serde::Serialize;
 use std::time::Duration;
 

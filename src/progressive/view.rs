@@ -1,8 +1,8 @@
 //! What is shown of a film: the picture itself, or a heat map of one of its properties.
 
 use crate::film::Film;
-use crate::heat::HeatScale;
-use crate::render::TileOccupancy;
+use crate::job::render::TileOccupancy;
+use crate::numbers::heat::HeatScale;
 use crate::stages::Transfer;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;

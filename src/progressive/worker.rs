@@ -5,7 +5,7 @@ use super::shared::Shared;
 use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::render::RenderError;
+use crate::job::render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};

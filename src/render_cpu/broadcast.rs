@@ -3,9 +3,9 @@
 
 use super::lanes::{MAX_LANES, Wide, WideU};
 use super::sphere::BroadcastSphere;
+use crate::kernel::sampling::stream_stride;
 use crate::kernel::{CameraTable, RECORD_COLUMNS, Real};
 use crate::prepared::PreparedScene;
-use crate::sampling::stream_stride;
 
 /// A prepared scene, with broadcast copies of the parts that are read in every step.
 #[derive(Clone, Debug)]

@@ -19,7 +19,7 @@ pub mod sphere;
 mod tiles;
 pub mod work;
 
-pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
+pub use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
 pub use options::{CpuError, CpuOptions};
 pub use priority::give_way;

@@ -4,9 +4,9 @@
 //! better one. It is taken between two passes and finds the same hits, so the film stays the same to the bit.
 
 use super::priority::give_way;
-use crate::memory;
+use crate::job::render::RenderJob;
 use crate::prepared::PreparedScene;
-use crate::render::RenderJob;
+use crate::system::memory;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -105,8 +105,8 @@ impl Rebuild {
 mod tests {
     use super::*;
     use crate::film::Film;
-    use crate::recipe::Recipe;
-    use crate::render::Renderer;
+    use crate::job::recipe::Recipe;
+    use crate::job::render::Renderer;
     use crate::render_cpu::pass::Prepared;
     use crate::render_cpu::{CpuOptions, CpuRenderer};
     use glam::DVec3;

@@ -8,10 +8,10 @@ use super::path::SinglePath;
 use super::sphere::NONE;
 use super::work::{RefillBlock, RefillOrder, Work};
 use crate::film::PixelSum;
+use crate::job::render::RenderJob;
 use crate::kernel::Real;
+use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::prepared::PreparedScene;
-use crate::record::{PathRecord, RecordedHit, RecordedRay};
-use crate::render::RenderJob;
 use fearless_simd::{Level, Simd};
 
 /// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as `isa` traces it, or in `f64` if
@@ -127,8 +127,8 @@ fn first_lane<L: Lanes>(v: V3<L::F>) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
-    use crate::render::Renderer;
+    use crate::job::recipe::Recipe;
+    use crate::job::render::Renderer;
     use crate::render_cpu::{CpuOptions, CpuRenderer};
     use std::sync::atomic::AtomicBool;
 

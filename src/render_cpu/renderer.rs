@@ -10,9 +10,11 @@ use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
 use crate::film::{Film, FilmError};
+use crate::job::render::{
+    BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy,
+};
 use crate::kernel::{Real, parts};
 use crate::prepared::PreparedScene;
-use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};

@@ -1,10 +1,10 @@
-//! The numbers of a sample, lane by lane: [`crate::sampling`] for packets.
+//! The numbers of a sample, lane by lane: [`crate::kernel::sampling`] for packets.
 //!
 //! Twin: shaders/rng.wgsl
 
 use super::lanes::Lanes;
-use crate::render::{RenderSettings, SamplerKind};
-use crate::sampling::{GOLDEN_RATIO, HalfKey, LENS_BLOCK};
+use crate::job::render::{RenderSettings, SamplerKind};
+use crate::kernel::sampling::{GOLDEN_RATIO, HalfKey, LENS_BLOCK};
 
 /// Hashes 32 bits to 32 bits; a bijection.
 #[inline(always)]
@@ -75,7 +75,7 @@ pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
 }
 
 /// Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`. `counter` selects the sample,
-/// `stream` the pixel, half and ray: see [`crate::sampling::stream_stride`].
+/// `stream` the pixel, half and ray: see [`crate::kernel::sampling::stream_stride`].
 #[inline(always)]
 pub fn numbers<L: Lanes>(
     l: L,

@@ -3,8 +3,8 @@
 use super::lanes::{Lanes, MAX_LANES, Mask, WideU};
 use super::rng;
 use crate::film::PixelSum;
-use crate::render::RenderSettings;
-use crate::sampling::{HalfKey, SampleBlock};
+use crate::job::render::RenderSettings;
+use crate::kernel::sampling::{HalfKey, SampleBlock};
 
 /// The film's rows within a tile: those of the first half, then those of the second.
 pub type TileRows<'film> = Vec<&'film mut [PixelSum]>;

@@ -2,7 +2,7 @@
 
 use super::failed;
 use crate::film::Film;
-use crate::render::RenderError;
+use crate::job::render::RenderError;
 use rayon::prelude::*;
 
 /// 64-bit words per pixel, one per channel.

@@ -3,9 +3,9 @@
 use super::HierarchyKind;
 use super::scene::SceneData;
 use super::turns::turns_over_lists;
+use crate::job::render::RenderJob;
 use crate::kernel::Features;
 use crate::prepared::PreparedScene;
-use crate::render::RenderJob;
 use glam::DVec3;
 
 /// The contents of a job's buffers, and what a host must know to run its kernel.
@@ -49,8 +49,8 @@ impl Exported {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
-    use crate::render::RenderSettings;
+    use crate::job::recipe::Recipe;
+    use crate::job::render::RenderSettings;
     use crate::scene::{Camera, Material, Scene};
     use crate::stages::Rules;
 

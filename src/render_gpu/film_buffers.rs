@@ -7,7 +7,7 @@ use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, tile_size};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, SampleRanges};
-use crate::render::{RenderError, RenderSettings, Stats};
+use crate::job::render::{RenderError, RenderSettings, Stats};
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
@@ -291,7 +291,7 @@ impl FilmBuffers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{RenderJob, Renderer};
+    use crate::job::render::{RenderJob, Renderer};
     use crate::render_gpu::{GpuError, GpuOptions, GpuRenderer};
     use crate::scene::builtin::{BOOK_CAMERA, field};
     use crate::stages::Rules;

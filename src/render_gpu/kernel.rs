@@ -4,8 +4,8 @@
 use super::device::Gpu;
 use super::failed;
 use super::shader_source::{EntryPoint, source};
+use crate::job::render::RenderError;
 use crate::kernel::Features;
-use crate::render::RenderError;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};

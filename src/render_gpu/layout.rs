@@ -1,5 +1,6 @@
 //! Fills the device's records, which are declared in [`crate::kernel::records`].
 
+use crate::job::render::RenderSettings;
 use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 pub use crate::kernel::{
     GpuAside, GpuBlock, GpuCounters, GpuCwbvhNode, GpuDispatch, GpuDispatchCounters, GpuJob, GpuPixelSum,
@@ -7,7 +8,6 @@ pub use crate::kernel::{
 };
 use crate::prepared::PreparedScene;
 use crate::prepared::wide_bvh::CwBvhNode;
-use crate::render::RenderSettings;
 
 impl GpuJob {
     /// The parameters of a job whose hierarchy has `node_count` nodes.
@@ -62,7 +62,7 @@ impl From<&CwBvhNode> for GpuCwbvhNode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     #[test]
     fn tiles_are_square_where_the_picture_has_room() {

@@ -32,7 +32,7 @@ pub use options::{
 pub use turns::TURN_LIMIT;
 
 use crate::film::Film;
-use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};
 use device::Gpu;
 use dispatches::{Broken, Dispatches};
 use kernel::Kernels;

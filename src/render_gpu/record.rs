@@ -3,8 +3,8 @@
 //! Twin: shaders/record.wgsl
 
 use crate::film::PixelSum;
+use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::kernel::{GpuAside, GpuRecordHead, GpuRecordedRay, NONE, word_count};
-use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 

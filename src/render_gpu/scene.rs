@@ -2,10 +2,10 @@
 
 use super::HierarchyKind;
 use super::layout::{GpuCwbvhNode, GpuJob};
+use crate::job::render::RenderJob;
 use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use crate::prepared::wide_bvh::WideBvh;
-use crate::render::RenderJob;
 use std::borrow::Cow;
 
 /// The contents of a scene's buffers.
@@ -97,7 +97,7 @@ impl SceneData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     #[test]
     fn each_sphere_has_its_record_and_its_rank() {

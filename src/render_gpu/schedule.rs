@@ -1,8 +1,8 @@
 //! Sizes dispatches in blocks of samples and tiles of the picture, by measured time.
 
 use super::layout::GpuBlock;
-use crate::render::RenderSettings;
-use crate::sampling::SampleBlock;
+use crate::job::render::RenderSettings;
+use crate::kernel::sampling::SampleBlock;
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::time::Duration;

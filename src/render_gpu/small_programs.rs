@@ -9,9 +9,9 @@ use super::schedule::Blocks;
 use super::shader_source::{EntryPoint, Probe};
 use super::{GpuRenderer, TURN_LIMIT, failed, readback, record};
 use crate::film::Film;
+use crate::job::render::{RenderError, RenderJob};
+use crate::kernel::path_record::PathRecord;
 use crate::kernel::{Features, PROBE_STRIDE, Tag};
-use crate::record::PathRecord;
-use crate::render::{RenderError, RenderJob};
 use crate::stages::Transfer;
 use std::sync::atomic::AtomicBool;
 

@@ -7,7 +7,7 @@ use super::options::InjectionPoint;
 use super::schedule::Blocks;
 use super::{Fault, GpuRenderer, failed};
 use crate::film::Film;
-use crate::render::{RenderError, Stats};
+use crate::job::render::{RenderError, Stats};
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

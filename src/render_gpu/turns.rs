@@ -21,7 +21,7 @@ pub(super) fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
     use crate::stages::Rules;
 
     #[test]

@@ -167,7 +167,7 @@ fn unit(v: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Numbers;
+    use crate::system::number::Numbers;
 
     fn assert_orthonormal(camera: &Camera) {
         let CameraBasis { u, v, w } = camera.basis();

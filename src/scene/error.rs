@@ -1,6 +1,6 @@
 //! Errors in scenes, worded so that the reader can fix them.
 
-use crate::number::{Number, Numbers};
+use crate::system::number::{Number, Numbers};
 use glam::DVec3;
 use std::borrow::Cow;
 use thiserror::Error;
@@ -10,10 +10,7 @@ use thiserror::Error;
 pub enum SceneError {
     /// A value is NaN or infinite.
     #[error("{what} is {value}, but must be a finite number")]
-    NotFinite {
-        what: String,
-        value: f64,
-    },
+    NotFinite { what: String, value: f64 },
     /// A number is outside its range.
     #[error("{what} is {}, but must be {limit}; {remedy}", Number(*value))]
     OutOfRange {
@@ -46,9 +43,7 @@ pub enum SceneError {
     },
     /// Two materials have the same name.
     #[error("two materials are called {name:?}; rename one")]
-    DuplicateMaterial {
-        name: String,
-    },
+    DuplicateMaterial { name: String },
     /// The camera's position equals the point that it looks at.
     #[error(
         "look_from and look_at are both {}, so there is no direction to look in; move one of them",

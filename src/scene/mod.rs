@@ -4,6 +4,8 @@
 //! work in radians), and colours are linear RGB. All numbers are `f64`, so a scene that is written to a file and read
 //! back is the same to the bit. The renderers round once, when they prepare the scene.
 
+pub mod animation;
+
 pub mod builtin;
 mod camera;
 mod error;

@@ -46,7 +46,7 @@ impl Sphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Number;
+    use crate::system::number::Number;
 
     fn refusal(center: DVec3, radius: f64, material: usize) -> String {
         let sphere = Sphere { center, radius, material };

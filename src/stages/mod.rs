@@ -11,7 +11,7 @@ pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, SurfaceRule
 pub use sight::{Means, Sight};
 
 use crate::scene::{Camera, Scene};
-use crate::suggest::{or_nearest, similar_names};
+use crate::system::suggest::{or_nearest, similar_names};
 use std::fmt;
 use thiserror::Error;
 

@@ -6,8 +6,8 @@ use std::io::BufReader;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use weekender::output::{key, read_description};
-use weekender::recipe::file::parse;
+use weekender::job::output::{key, read_description};
+use weekender::job::recipe::file::parse;
 
 fn temp() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();

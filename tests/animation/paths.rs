@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use std::f64::consts::TAU;
-use weekender::animation::{CameraPath, FrameNames, Keyframe, Turn};
 use weekender::cli::{self, Request};
 use weekender::scene::Camera;
+use weekender::scene::animation::{CameraPath, FrameNames, Keyframe, Turn};
 
 fn camera() -> Camera {
     Camera {

@@ -2,8 +2,8 @@
 
 use super::common::SCENE;
 use glam::DVec3;
-use weekender::recipe::Recipe;
-use weekender::recipe::file::{parse, to_picture_toml, to_toml};
+use weekender::job::recipe::Recipe;
+use weekender::job::recipe::file::{parse, to_picture_toml, to_toml};
 
 fn with(before: &str, after: &str) -> Result<Recipe, String> {
     assert!(SCENE.contains(before));

@@ -5,9 +5,9 @@ use proptest::prelude::*;
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
-use weekender::files::InputError;
 use weekender::film::{CheckpointError, Film, checkpoint};
-use weekender::output::decode_description;
+use weekender::job::output::decode_description;
+use weekender::system::files::InputError;
 
 proptest! {
     #[test]

@@ -14,8 +14,8 @@ use std::ffi::OsString;
 use std::io::Cursor;
 use std::path::Path;
 use weekender::film::{Checksum, FilmFile, checkpoint};
-use weekender::output::{Encoding, decode_description, decode_picture};
-use weekender::recipe::file;
+use weekender::job::output::{Encoding, decode_description, decode_picture};
+use weekender::job::recipe::file;
 use weekender::stages::Transfer;
 
 #[global_allocator]

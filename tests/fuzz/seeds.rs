@@ -8,9 +8,9 @@ use image::{DynamicImage, ImageFormat};
 use std::io::Cursor;
 use std::path::Path;
 use weekender::film::{Description, Film, checkpoint, fixed_point, key};
-use weekender::output::write_image;
-use weekender::recipe::Recipe;
-use weekender::recipe::file::{to_picture_toml, to_toml};
+use weekender::job::output::write_image;
+use weekender::job::recipe::Recipe;
+use weekender::job::recipe::file::{to_picture_toml, to_toml};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Stage, Transfer};
 

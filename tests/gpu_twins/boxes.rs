@@ -3,12 +3,12 @@
 use super::gpu_common::gpu;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
+use weekender::kernel::sampling::pcg4d;
 use weekender::kernel::{BOX_WIDENING, NONE, Node};
 use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_gpu::GpuOptions;
 use weekender::render_gpu::shader_source::Probe;
-use weekender::sampling::pcg4d;
 use weekender::stages::DielectricLaws;
 
 /// A ray, a box that it hits in about half of the cases, the length of the ray, and the largest coordinate.

@@ -11,8 +11,11 @@ mod surfaces;
 use glam::DVec3;
 use gpu_common::gpu;
 use weekender::film::FIXED_POINT_MAX;
+use weekender::job::render::{RenderJob, RenderSettings};
+use weekender::kernel::sampling::{
+    GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
+};
 use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
-use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, Single, V3, Wide, Word};
 use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
@@ -22,9 +25,6 @@ use weekender::render_cpu::sphere::{
 };
 use weekender::render_gpu::shader_source::Probe;
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
-use weekender::sampling::{
-    GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
-};
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
 
@@ -75,7 +75,7 @@ fn uniform(i: u32, stream: u32) -> [f32; 4] {
 
 fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
     let [a, b, ..] = uniform(i, stream);
-    weekender::sampling::unit_sphere(a, b)
+    weekender::kernel::sampling::unit_sphere(a, b)
 }
 
 /// The bits of floats, followed by zeros.

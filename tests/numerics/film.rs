@@ -3,9 +3,9 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::film::Film;
+use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::kernel::parts;
 use weekender::prepared::PreparedScene;
-use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::trace;

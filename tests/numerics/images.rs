@@ -3,8 +3,8 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::film::FIXED_POINT_SCALE;
-use weekender::render::{RenderJob, RenderSettings};
-use weekender::sampling::{numbers, unit_float};
+use weekender::job::render::{RenderJob, RenderSettings};
+use weekender::kernel::sampling::{numbers, unit_float};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres, touching_spheres};
 use weekender::scene::{Camera, Scene, Sky};
 use weekender::stages::{Rules, Stage};
@@ -79,7 +79,7 @@ fn case_12_single_against_double() {
 fn samples_are_those_of_the_oracle() {
     let (width, height) = (24, 16);
     let sky = Sky::default();
-    for sampler in weekender::render::SamplerKind::ALL {
+    for sampler in weekender::job::render::SamplerKind::ALL {
         for estimate_error in [false, true] {
             let settings = RenderSettings { sampler, estimate_error, seed: 77, ..size(width, height) };
             let job = job(&empty(), Camera::BOOK, settings);

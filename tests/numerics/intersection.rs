@@ -2,9 +2,9 @@
 
 use crate::common::*;
 use glam::DVec3;
+use weekender::job::render::RenderJob;
 use weekender::kernel::Real;
 use weekender::prepared::PreparedScene;
-use weekender::render::RenderJob;
 use weekender::render_cpu::lanes::{Lanes, Mask, Reference, Scalar};
 use weekender::render_cpu::material::{Surface, incidence_of, scatter};
 use weekender::render_cpu::sphere::{

@@ -3,8 +3,8 @@
 use crate::common::*;
 use crate::stiff::*;
 use glam::DVec3;
+use weekender::job::render::RenderSettings;
 use weekender::prepared::PreparedScene;
-use weekender::render::RenderSettings;
 use weekender::scene::{Camera, Scene, Sky};
 
 /// Details close to the eye are resolved, even where a small ball lies near the far side of the same planet.

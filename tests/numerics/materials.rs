@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use glam::DVec3;
-use weekender::render::{RenderSettings, SamplerKind};
+use weekender::job::render::{RenderSettings, SamplerKind};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
 use weekender::render_cpu::material::{Surface, incidence_of, incidence_of_sine2, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
@@ -163,7 +163,7 @@ fn grazing<const FUSED: bool>() {
                 f0,
             };
             // The largest random number below 1.
-            let coin = l.splat(weekender::sampling::unit_float(u32::MAX));
+            let coin = l.splat(weekender::kernel::sampling::unit_float(u32::MAX));
             let zero = v3(l, DVec3::ZERO);
             let scattered = |laws: DielectricLaws| {
                 let (direction, normal) = (v3(l, direction), v3(l, normal));

@@ -7,8 +7,8 @@
 use crate::common::*;
 use std::collections::BTreeMap;
 use weekender::film::Film;
-use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::Stage;

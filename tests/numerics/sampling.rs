@@ -3,10 +3,10 @@
 use crate::common::{Random, first};
 use proptest::prelude::*;
 use std::collections::HashSet;
-use weekender::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
+use weekender::job::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
+use weekender::kernel::sampling::{self, GOLDEN_RATIO, LENS_BLOCK, SampleBlock};
 use weekender::render_cpu::lanes::{Double, Lanes, MAX_LANES, Reference, Scalar, Single, Wide, unit_float};
 use weekender::render_cpu::rng;
-use weekender::sampling::{self, GOLDEN_RATIO, LENS_BLOCK, SampleBlock};
 
 fn settings(sampler: SamplerKind, estimate_error: bool, seed: u32) -> RenderSettings {
     RenderSettings { sampler, estimate_error, seed, ..RenderSettings::default() }
@@ -105,7 +105,7 @@ fn assert_twins<L: Lanes>(l: L) {
         for (which, found) in first_pair.into_iter().chain(lens_pair).enumerate() {
             same(found, "numbers", &|i| sampling::numbers(&settings, pixel(i), index(i), bounce)[which]);
         }
-        const { assert!(LENS_BLOCK > weekender::render::DEPTH_LIMIT) };
+        const { assert!(LENS_BLOCK > weekender::job::render::DEPTH_LIMIT) };
     }
 }
 

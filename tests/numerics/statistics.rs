@@ -4,10 +4,10 @@ use crate::common::*;
 use glam::DVec3;
 use std::sync::OnceLock;
 use weekender::film::Film;
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::pictures::Picture;
 use weekender::pictures::compare::compare;
-use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::scene::Camera;
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 

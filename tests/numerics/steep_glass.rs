@@ -5,7 +5,7 @@
 use crate::common::*;
 use crate::stiff::{Ball, under_white_sky};
 use glam::DVec3;
-use weekender::render::{RenderJob, RenderSettings};
+use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{DielectricLaws, Rules};
 

@@ -4,9 +4,9 @@ use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::film::Film;
+use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
-use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::builtin::{LeftSphere, field, three_spheres};
 use weekender::scene::{Camera, Material, Scene, Sky};
 

@@ -9,9 +9,9 @@ use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use weekender::backends::BackendError;
+use weekender::job::recipe::Recipe;
+use weekender::job::render::{RenderError, RenderSettings, Renderer};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
-use weekender::recipe::Recipe;
-use weekender::render::{RenderError, RenderSettings, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::GpuError;
 

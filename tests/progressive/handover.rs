@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use weekender::backends::BackendError;
 use weekender::film::Film;
+use weekender::job::render::Renderer;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Stop, View};
-use weekender::render::Renderer;
 use weekender::render_gpu::GpuError;
 use weekender::stages::Transfer;
 

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 use weekender::film::{Film, PixelSum};
+use weekender::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Status, Stop};
-use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
 fn to_noise(noise: f64) -> Plan {
     Plan::until(Stop { noise: Some(noise), ..Stop::default() })

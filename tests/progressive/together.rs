@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::channel;
 use weekender::backends::Together;
 use weekender::film::Film;
-use weekender::render::{BackendInfo, RenderError, Renderer, Stats};
+use weekender::job::render::{BackendInfo, RenderError, Renderer, Stats};
 
 fn fake(name: &'static str, fails_at: Option<u64>) -> Box<dyn Renderer> {
     Box::new(Fake { fails_at, ..Fake::new(name) })

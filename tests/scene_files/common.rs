@@ -1,8 +1,8 @@
 //! Scene files of few lines, and the round trip.
 
 use glam::DVec3;
-use weekender::recipe::Recipe;
-use weekender::recipe::file::{parse, to_toml};
+use weekender::job::recipe::Recipe;
+use weekender::job::recipe::file::{parse, to_toml};
 use weekender::scene::Parameter;
 
 /// The least that a file must contain.

@@ -3,10 +3,10 @@
 use super::common::{ONE_SPHERE, assert_round_trip};
 use glam::DVec3;
 use proptest::prelude::*;
-use weekender::animation::{FRAME_LIMIT, Keyframe};
-use weekender::recipe::Recipe;
-use weekender::recipe::file::parse;
-use weekender::render::{RenderSettings, SamplerKind};
+use weekender::job::recipe::Recipe;
+use weekender::job::recipe::file::parse;
+use weekender::job::render::{RenderSettings, SamplerKind};
+use weekender::scene::animation::{FRAME_LIMIT, Keyframe};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
 

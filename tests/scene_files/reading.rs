@@ -2,8 +2,8 @@
 
 use super::common::{CAMERA, ONE_SPHERE, assert_round_trip};
 use glam::DVec3;
-use weekender::recipe::file::parse;
-use weekender::render::RenderSettings;
+use weekender::job::recipe::file::parse;
+use weekender::job::render::RenderSettings;
 use weekender::scene::{Material, Scene, Sky};
 use weekender::stages::{Rules, SurfaceRule};
 

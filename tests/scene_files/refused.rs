@@ -2,8 +2,8 @@
 
 use super::common::{CAMERA, ONE_SPHERE};
 use std::path::Path;
-use weekender::files::InputError;
-use weekender::recipe::file::{FileError, load, parse};
+use weekender::job::recipe::file::{FileError, load, parse};
+use weekender::system::files::InputError;
 
 /// The message for `text`, which must begin with the file's name and `line`.
 fn refusal(text: &str, line: usize) -> String {

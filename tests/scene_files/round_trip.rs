@@ -3,9 +3,9 @@
 use super::common::{CAMERA, assert_round_trip};
 use std::path::Path;
 use std::sync::Arc;
-use weekender::recipe::Recipe;
-use weekender::recipe::file::{load, parse, to_picture_toml};
-use weekender::render::{RenderSettings, SamplerKind, SettingValue};
+use weekender::job::recipe::Recipe;
+use weekender::job::recipe::file::{load, parse, to_picture_toml};
+use weekender::job::render::{RenderSettings, SamplerKind, SettingValue};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
 

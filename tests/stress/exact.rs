@@ -10,8 +10,8 @@
 
 use glam::DVec3;
 use std::ops::{Add, Mul, Sub};
+use weekender::job::recipe::Recipe;
 use weekender::measure::stress::cases;
-use weekender::recipe::Recipe;
 use weekender::render_cpu::{Isa, PathRecorder};
 use weekender::scene::{Material, Scene, Sphere};
 

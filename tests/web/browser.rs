@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 use weekender::film::{Film, PixelSum};
-use weekender::recipe::{Recipe, file::to_toml};
-use weekender::saved::open_film;
+use weekender::job::recipe::{Recipe, file::to_toml};
+use weekender::job::saved::open_film;
 use weekender::stages::Stage;
 
 /// The program that drives the browser, and the package that it needs.

@@ -8,14 +8,14 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::process::{Command, Stdio};
+use weekender::job::render::RenderJob;
+use weekender::kernel::sampling::{SampleBlock, pcg4d};
 use weekender::kernel::{CameraTable, words_of};
-use weekender::render::RenderJob;
+use weekender::page::web;
 use weekender::render_gpu::Exported;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
-use weekender::sampling::{SampleBlock, pcg4d};
 use weekender::scene::{Camera, Material, Scene};
 use weekender::stages::Stage;
-use weekender::web;
 
 /// Random numbers that are the same in each run.
 struct Draws(u32);

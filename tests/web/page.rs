@@ -2,9 +2,9 @@
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use weekender::render::{RenderJob, RenderSettings, Renderer};
+use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::page::web;
 use weekender::stages::{Setup, Stage};
-use weekender::web;
 
 /// A stage in a smaller picture of fewer samples.
 pub fn small(id: &str, [width, height]: [u32; 2], samples_per_pixel: u64) -> Stage {

@@ -3,7 +3,7 @@
 use crate::common::{has_samples, open, save, until};
 use weekender::app::Command;
 use weekender::film::{Film, checkpoint};
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --device cpu --samples 40";
 

@@ -6,9 +6,9 @@ use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use weekender::app::Command;
-use weekender::output::{OutputFormat, read_description};
+use weekender::job::output::{OutputFormat, read_description};
+use weekender::job::recipe::file;
 use weekender::progressive::{Plan, Progressive, RenderRequest};
-use weekender::recipe::file;
 use weekender::stages::Stage;
 
 /// The pixels that the recipe in a file gives with the number of samples that the file states.

@@ -5,7 +5,7 @@ use eframe::egui::{self, Key};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use weekender::app::{Command, Device, Window};
-use weekender::render::RenderSettings;
+use weekender::job::render::RenderSettings;
 
 #[test]
 fn sliders_change_the_picture_and_reset_brings_it_back() {

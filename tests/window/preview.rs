@@ -6,8 +6,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
-use weekender::output::{OutputFormat, read_description};
-use weekender::recipe::file;
+use weekender::job::output::{OutputFormat, read_description};
+use weekender::job::recipe::file;
 
 /// Large enough for previews to be coarser.
 const LARGE: &str = "--size 1600x900 --device cpu --samples 4";

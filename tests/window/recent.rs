@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;
 use std::time::Duration;
 use weekender::app::{Command, Window};
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
 use weekender::stages::Stage;
 
 /// A window whose picture was saved under these names, one after the other, and that then shows another stage.

@@ -4,7 +4,7 @@ use crate::common::{has_samples, open, save, until};
 use std::path::Path;
 use weekender::app::Command;
 use weekender::film::checkpoint;
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
 use weekender::progressive::Stop;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";

@@ -10,7 +10,7 @@ use std::time::Duration;
 use weekender::app::{Command, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::{Film, checkpoint};
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
 
 /// A picture that never ends by itself.
 pub const ENDLESS: &str = "--stage glass-schlick --size 32x18 --samples 4000000000 --device cpu";

@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Show, Window};
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
 
 /// A cheap picture that follows the viewport.
 const FOLLOWING: &str = "--stage normals --samples 2";

@@ -6,10 +6,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::film::to_byte;
+use weekender::job::output::{Encoding, OutputFormat};
+use weekender::numbers::heat::HeatScale;
 use weekender::pictures::Picture;
 use weekender::pictures::compare::{compare_sides, text as text_of};
-use weekender::heat::HeatScale;
-use weekender::output::{Encoding, OutputFormat};
 use weekender::progressive::{Phase, luminance};
 use weekender::stages::Transfer;
 

@@ -6,8 +6,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, Window};
 use weekender::film::to_byte;
-use weekender::heat::HeatScale;
-use weekender::output::OutputFormat;
+use weekender::job::output::OutputFormat;
+use weekender::numbers::heat::HeatScale;
 use weekender::progressive::{Phase, luminance};
 
 const AT: [u32; 2] = [3, 2];

@@ -3,7 +3,7 @@
 use super::super::model::show::Show;
 use super::Command;
 use super::shortcut::{DIGITS, ctrl, ctrl_shift, key};
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use eframe::egui::{Context, Key, KeyboardShortcut};
 
 impl Command {

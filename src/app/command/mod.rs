@@ -15,8 +15,8 @@ use super::model::remembered::Theme;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::viewpoint::Viewpoint;
+use crate::job::output::OutputFormat;
 use crate::measure::stress::{Case, shown_cases};
-use crate::output::OutputFormat;
 use crate::stages::Stage;
 
 /// A command that the user can give.

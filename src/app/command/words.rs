@@ -2,7 +2,7 @@
 
 use super::Command;
 use crate::app::model::sizing::Sizing;
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 
 impl Command {
     /// The name in menus and in the palette.

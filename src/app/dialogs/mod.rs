@@ -114,7 +114,7 @@ impl Dialogs {
 mod tests {
     use super::*;
     use crate::app::tests::{facts_of, part, rest_at};
-    use crate::output::OutputFormat;
+    use crate::job::output::OutputFormat;
     use eframe::egui;
 
     const PNG: Purpose = Purpose::Save(OutputFormat::Png);

@@ -3,8 +3,8 @@
 use super::outcome::Outcome;
 use super::purpose::Purpose;
 use crate::app::answers::Answers;
-use crate::files::home_directory;
-use crate::recipe::plain_name;
+use crate::job::recipe::plain_name;
+use crate::system::files::home_directory;
 use eframe::egui::{self, Key, RichText, Ui};
 use std::path::{Path, PathBuf, is_separator};
 use std::sync::{Arc, Weak};

@@ -1,6 +1,6 @@
 //! The purposes for which the user chooses files.
 
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use std::path::PathBuf;
 
 /// What the chosen file is for.

@@ -9,8 +9,8 @@ use crate::app::model::slots::Slot;
 use crate::app::model::view::ViewState;
 use crate::film::Film;
 
+use crate::job::recipe::Recipe;
 use crate::progressive::{EndReason, HistoryPoint, Phase, ReferenceMeans, Stop};
-use crate::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
 
 /// A window with this view in which nothing has been traced yet.

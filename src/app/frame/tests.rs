@@ -7,7 +7,7 @@ use crate::app::model::kept_view::ShownSlots;
 use crate::app::model::slots::{Slot, SlotNumber};
 use crate::app::tests::{until, window};
 use crate::film::Film;
-use crate::interrupt::Interrupt;
+use crate::system::interrupt::Interrupt;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 

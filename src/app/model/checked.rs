@@ -1,9 +1,9 @@
 //! A scene that is checked once, for any number of cameras and sizes.
 
-use crate::files::Stamp;
-use crate::render::{JobError, RenderJob, RenderSettings};
+use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::Rules;
+use crate::system::files::Stamp;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 

@@ -2,9 +2,9 @@
 
 use super::document::Document;
 use super::origin::Source;
-use crate::recipe::plain_name;
-use crate::render::RenderSettings;
-use crate::shell::{self, quoted};
+use crate::job::recipe::plain_name;
+use crate::job::render::RenderSettings;
+use crate::system::shell::{self, quoted};
 use std::fmt::Write;
 
 impl Document {
@@ -94,13 +94,13 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::animation::Keyframe;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::Origin;
     use crate::cli::{Request, parse};
-    use crate::recipe::{Recipe, file};
-    use crate::render::{RenderJob, SamplerKind};
+    use crate::job::recipe::{Recipe, file};
+    use crate::job::render::{RenderJob, SamplerKind};
     use crate::scene::Camera;
+    use crate::scene::animation::Keyframe;
     use crate::stages::Stage;
     use glam::DVec3;
     use std::sync::Arc;
@@ -130,7 +130,7 @@ mod tests {
             document.settings.width = 31;
             document.settings.max_depth = 7;
             document.settings.seed = 9;
-            document.settings.sampler = crate::render::SamplerKind::Independent;
+            document.settings.sampler = crate::job::render::SamplerKind::Independent;
             document.settings.estimate_error = false;
             for (defocus, focus) in [(0.0, Some(3.0)), (2.5, Some(3.0)), (2.5, None)] {
                 document.camera.defocus_angle_degrees = defocus;

@@ -2,10 +2,10 @@
 
 use super::checked::CheckedScene;
 use super::origin::{Origin, Source};
+use crate::job::recipe::Recipe;
+use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::measure::stress::Case;
 use crate::progressive::Stop;
-use crate::recipe::Recipe;
-use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::{Rules, Shading, Stage};
 use std::sync::Arc;

@@ -127,7 +127,7 @@ pub fn first_difference(before: &Scene, after: &Scene) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     fn scene() -> Scene {
         let mut scene = Scene::default();

@@ -1,8 +1,8 @@
 //! How a render that has ended can go on.
 
 use super::document::Document;
+use crate::job::render::SAMPLE_LIMIT;
 use crate::progressive::{EndReason, Phase, Status, Stop};
-use crate::render::SAMPLE_LIMIT;
 use crate::stages::Shading;
 
 /// A later end of a render.

@@ -2,11 +2,11 @@
 
 use super::checked::{CheckedScene, stamp_of};
 use crate::cli::DEFAULT_SCENE;
-use crate::files::Stamp;
+use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
-use crate::recipe::Recipe;
 use crate::stages::{Shading, Stage, SurfaceRule};
+use crate::system::files::Stamp;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 

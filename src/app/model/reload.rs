@@ -2,8 +2,8 @@
 
 use super::document::Document;
 use super::origin::Origin;
-use crate::recipe::Recipe;
-use crate::render::RenderSettings;
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderSettings;
 
 impl Document {
     /// The document of what its scene file holds now. Camera, settings, size and stop conditions that differ from those of

@@ -1,8 +1,8 @@
 //! The views of a film.
 
 use super::tone::Tone;
-use crate::heat::HeatScale;
-use crate::layers::Layer;
+use crate::backends::layers::Layer;
+use crate::numbers::heat::HeatScale;
 use crate::progressive::{ReferenceMeans, View};
 use crate::stages::Means;
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::origin::{Origin, Source};
-use crate::render::{RenderSettings, SIZE_LIMIT};
+use crate::job::render::{RenderSettings, SIZE_LIMIT};
 use crate::stages::Shading;
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@ pub use super::slot_number::SlotNumber;
 
 use super::kept::Kept;
 use crate::film::Film;
-use crate::memory::words;
+use crate::system::memory::words;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! How bright the picture is shown. Files are saved without it.
 
-use crate::heat::HeatScale;
+use crate::numbers::heat::HeatScale;
 use crate::progressive::View;
 
 /// The exposure of the picture, and the range of the luminance view.

@@ -7,8 +7,8 @@ use crate::app::model::document::Document;
 use crate::app::model::sizing::Sizing;
 use crate::app::tips;
 use crate::app::widgets::{About, explained, whole_number};
-use crate::output::OutputFormat;
-use crate::render::SIZE_LIMIT;
+use crate::job::output::OutputFormat;
+use crate::job::render::SIZE_LIMIT;
 use eframe::egui::{self, Ui, vec2};
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };

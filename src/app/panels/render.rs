@@ -7,7 +7,7 @@ use crate::app::model::document::Document;
 use crate::app::model::remembered::Remembered;
 use crate::app::tips;
 use crate::app::widgets::{About, check, choice, control, whole};
-use crate::render::{DEPTH_LIMIT, RenderSettings, SamplerKind};
+use crate::job::render::{DEPTH_LIMIT, RenderSettings, SamplerKind};
 use crate::stages::Shading;
 use eframe::egui::{self, ComboBox, Ui};
 

@@ -4,8 +4,8 @@ use super::reset::Reset;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::widgets::{About, check, explained, number, whole_number};
+use crate::job::render::SAMPLE_LIMIT;
 use crate::progressive::Stop;
-use crate::render::SAMPLE_LIMIT;
 use eframe::egui::{Response, Ui, Vec2, vec2};
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };

@@ -5,7 +5,7 @@ use crate::app::model::remembered::Bookmark;
 use crate::app::model::sizing::Sizing;
 use crate::app::spheres::Spheres;
 use crate::app::tests::{dressed, facts_of};
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use crate::progressive::Stop;
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};

@@ -5,7 +5,7 @@ mod paint;
 
 use super::answers::Answers;
 use super::model::document::Document;
-use crate::explain::{Step, steps};
+use crate::backends::explain::{Step, steps};
 use crate::render_cpu::{Isa, PathRecord, PathRecorder};
 use eframe::egui;
 

@@ -3,7 +3,7 @@
 use super::{Path, Paths};
 use crate::app::model::document::Document;
 use crate::app::theme;
-use crate::explain::{Event, Lobe, Step};
+use crate::backends::explain::{Event, Lobe, Step};
 use crate::scene::Camera;
 use eframe::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, vec2,

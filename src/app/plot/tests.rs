@@ -3,8 +3,8 @@
 use super::*;
 use crate::app::tests::{dressed, rest_at};
 use crate::film::ErrorEstimate;
+use crate::job::render::BackendInfo;
 use crate::progressive::Phase;
-use crate::render::BackendInfo;
 use eframe::egui::{Event, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

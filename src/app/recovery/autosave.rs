@@ -2,10 +2,10 @@
 
 use crate::app::model::document::Document;
 use crate::app::tracer::Tracer;
-use crate::describe::describe;
 use crate::film::{Film, checkpoint};
+use crate::job::recipe::Recipe;
 use crate::progressive::Status;
-use crate::recipe::Recipe;
+use crate::progressive::describe::describe;
 use crate::stages::Stage;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};

@@ -9,7 +9,7 @@ use super::paths::{PREFIX, Paths, may_exist};
 use super::turn::turn;
 use crate::app::model::session::Session;
 use crate::app::slot_files::Folder;
-use crate::files::{check_writable, read, write_text};
+use crate::system::files::{check_writable, read, write_text};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};

@@ -3,8 +3,8 @@
 use super::files::RecoveryFiles;
 use crate::app::model::session::Session;
 use crate::app::slot_files::Entry;
-use crate::describe::counted;
 use crate::film::{checkpoint, key};
+use crate::progressive::describe::counted;
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};

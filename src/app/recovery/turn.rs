@@ -1,6 +1,6 @@
 //! Windows take and leave a session one after the other.
 
-use crate::files::lock_path;
+use crate::system::files::lock_path;
 use std::fs::File;
 use std::path::Path;
 use std::time::Duration;

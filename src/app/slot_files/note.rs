@@ -4,8 +4,8 @@ use crate::app::model::device::Device;
 use crate::app::model::kept::Kept;
 use crate::app::model::session::Session;
 use crate::app::model::view::ViewState;
+use crate::job::render::BackendInfo;
 use crate::progressive::{Contribution, Status};
-use crate::render::BackendInfo;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 

@@ -7,8 +7,8 @@ use crate::app::model::slots::{Coming, Slot, SlotNumber, Slots};
 use crate::app::texture::Texture;
 use crate::app::theme;
 use crate::app::tips::{self, Side};
-use crate::memory::words;
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
+use crate::system::memory::words;
 use eframe::egui::{
     self, Align2, Button, Color32, CornerRadius, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, TextEdit,
     TextStyle, TextureOptions, Ui, UiBuilder, pos2, vec2,

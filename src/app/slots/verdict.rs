@@ -5,8 +5,8 @@ use crate::app::kept::Subject;
 use crate::app::model::kept::Kept;
 use crate::app::theme;
 use crate::film::Film;
+use crate::job::recipe::Recipe;
 use crate::pictures::{self, compare};
-use crate::recipe::Recipe;
 use eframe::egui::{self, Align2, RichText, Sense, TextStyle, vec2};
 use std::sync::Arc;
 

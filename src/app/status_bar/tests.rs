@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::film::ErrorEstimate;
-use crate::render::Stats;
+use crate::job::render::Stats;
 use egui_kittest::Harness;
 use std::time::Duration;
 

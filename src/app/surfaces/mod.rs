@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use crate::app::model::origin::{Origin, Source};
 
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     use std::time::{Duration, Instant};
 

@@ -2,10 +2,10 @@
 
 use crate::app::answers::Answer;
 use crate::film::Description;
-use crate::gallery::{fingerprint, is_about_pixels};
-use crate::output::{read_rgb8, write_image};
-use crate::recipe::Recipe;
-use crate::render::Renderer;
+use crate::job::output::{read_rgb8, write_image};
+use crate::job::recipe::Recipe;
+use crate::job::render::Renderer;
+use crate::page::gallery::{fingerprint, is_about_pixels};
 use crate::render_cpu::{CpuOptions, CpuRenderer, give_way};
 use crate::stages::Stage;
 use anyhow::Result;

@@ -6,7 +6,7 @@ pub use make::SIZE;
 
 use super::answers::Answers;
 use super::texture::Texture;
-use crate::gallery::is_about_pixels;
+use crate::page::gallery::is_about_pixels;
 use crate::stages::Stage;
 use eframe::egui::{Color32, Context, Rect, TextureOptions, Ui, pos2};
 use make::{Request, Thumbnail};

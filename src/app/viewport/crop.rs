@@ -4,7 +4,7 @@ use super::badge::badge;
 use crate::app::command::Command;
 use crate::app::model::crop::Crop;
 use crate::app::theme;
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use eframe::egui::{
     Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextStyle,
     Ui, pos2, vec2,

@@ -1,6 +1,6 @@
 //! The legend of a heat map.
 
-use crate::heat::{HeatScale, colour_at};
+use crate::numbers::heat::{HeatScale, colour_at};
 use eframe::egui::{Align2, Color32, CornerRadius, Painter, Rect, TextStyle, Ui, pos2, vec2};
 
 /// The size of the letters for which the legend was laid out, in points.

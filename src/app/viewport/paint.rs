@@ -13,7 +13,7 @@ use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::heat::HeatScale;
+use crate::numbers::heat::HeatScale;
 use crate::progressive::Phase;
 use eframe::egui::{self, Align2, Color32, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2, vec2};
 

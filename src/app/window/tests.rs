@@ -3,8 +3,8 @@
 use super::*;
 use crate::app::tests::window;
 use crate::cli::{Request, parse};
+use crate::job::recipe::file;
 use crate::progressive::Stop;
-use crate::recipe::file;
 
 #[test]
 fn a_picture_comes_from_what_the_flags_name() {

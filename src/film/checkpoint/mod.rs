@@ -28,8 +28,8 @@ pub use write::save;
 pub(crate) use write::write;
 
 use super::{Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
-use crate::files::{InputError, ShownPath};
-use crate::memory::MemoryError;
+use crate::system::files::{InputError, ShownPath};
+use crate::system::memory::MemoryError;
 use std::path::PathBuf;
 
 /// The version of the layout of film files.

@@ -7,7 +7,7 @@ use super::{
     CheckpointError, Description, FILM_ATTRIBUTE, MAGIC, RECIPE_ATTRIBUTE, SAMPLE_VERSION, SampleRanges,
     VERSION,
 };
-use crate::files::{self, InputError};
+use crate::system::files::{self, InputError};
 use exr::block::reader::Reader;
 use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, MetaData};

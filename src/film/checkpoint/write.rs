@@ -3,8 +3,8 @@
 use super::head::{Head, Texts};
 use super::planes::{self, Plane};
 use super::{Description, FILM_ATTRIBUTE, Film, RECIPE_ATTRIBUTE, SOFTWARE, threads};
-use crate::files::{WriteError, replace_file};
-use crate::threads::shared;
+use crate::system::files::{WriteError, replace_file};
+use crate::system::threads::shared;
 use exr::block::chunk::Chunk;
 use exr::block::writer::ChunksWriter;
 use exr::block::{BlockIndex, UncompressedBlock};

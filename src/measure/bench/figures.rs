@@ -1,8 +1,8 @@
 //! The measured figures, as the JSON has them.
 
 use super::super::{Candidate, Traced};
-use crate::render::RenderJob;
-use crate::statistics::median;
+use crate::job::render::RenderJob;
+use crate::numbers::statistics::median;
 use serde::Serialize;
 
 /// Everything that was measured.
@@ -241,7 +241,7 @@ impl SceneFigures {
 mod tests {
     use super::*;
     use crate::backends::BackendChoice;
-    use crate::recipe::Recipe;
+    use crate::job::recipe::Recipe;
 
     fn row(kind: Kind, runs: Vec<Run>) -> Row {
         let choice = BackendChoice::Reference { threads: Some(1) };

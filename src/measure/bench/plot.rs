@@ -2,7 +2,9 @@
 
 use super::super::machine::Machine;
 use super::figures::{BenchFigures, Kind, ScaleFigures, SceneFigures, Spread};
-use crate::chart::{Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
+use crate::numbers::chart::{
+    Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series,
+};
 
 /// Height of a bar's row and of everything around the rows, points.
 const ROW_HEIGHT: u32 = 36;

@@ -3,8 +3,8 @@
 use super::super::machine::{forget_peak_memory, peak_memory};
 use super::figures::{Kind, ScaleFigures};
 use super::{Bench, cpu};
+use crate::job::recipe::Recipe;
 use crate::prepared::PreparedScene;
-use crate::recipe::Recipe;
 use crate::scene::Sphere;
 use anyhow::{Result, bail};
 use std::time::Instant;

@@ -2,7 +2,7 @@
 
 use super::data::Data;
 use super::summary::{CurvePoint, CurveSummary, distinct};
-use crate::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
+use crate::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
 
 /// One chart per scene, with the times to `target` marked.
 pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {

@@ -2,12 +2,12 @@
 
 use super::data::ReferenceUsed;
 use crate::film::{Description, Film, checkpoint, key};
+use crate::job::recipe::{Recipe, file};
+use crate::job::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
+use crate::job::saved;
+use crate::numbers::statistics::flip::Appearance;
 use crate::progressive::PassSizer;
-use crate::recipe::{Recipe, file};
-use crate::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
-use crate::saved;
 use crate::stages::Transfer;
-use crate::statistics::flip::Appearance;
 use anyhow::{Context, Result, anyhow, bail};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;

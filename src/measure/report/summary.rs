@@ -1,8 +1,8 @@
 //! What follows from the measurements: curves, comparisons of the samplers, and whether the error estimates are accurate.
 
 use super::data::{Curve, Data, Measured, Run};
-use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
-use crate::statistics::median;
+use crate::numbers::statistics::fit::{Crossing, Point, PowerLaw, time_to};
+use crate::numbers::statistics::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

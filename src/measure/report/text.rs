@@ -3,7 +3,7 @@
 use super::super::table::{markdown_table, or_dash};
 use super::data::{Data, Measured};
 use super::summary::{Calibration, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
-use crate::statistics::fit::Crossing;
+use crate::numbers::statistics::fit::Crossing;
 
 /// Backends that others are compared with, if they were measured.
 const BASES: [&str; 2] = ["c89", "scalar"];

@@ -1,6 +1,6 @@
 //! A case of the suite: a scene, what is stiff about it, and the expected result.
 
-use crate::recipe::{Recipe, plain_name};
+use crate::job::recipe::{Recipe, plain_name};
 use crate::scene::{Material, Scene};
 use glam::DVec3;
 use std::fmt;

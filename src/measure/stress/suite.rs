@@ -5,7 +5,7 @@ use super::case::{Case, Expected, Form};
 use super::judge::{Against, Level, Paired, Verdict, judge, judge_time, offset};
 use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
-use crate::recipe::Recipe;
+use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
     use crate::backends::BackendChoice;
     use crate::film::fixed_point;
-    use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+    use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use crate::render_cpu::{CpuOptions, Isa};
     use std::ops::Range;
 

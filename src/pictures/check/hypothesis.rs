@@ -2,12 +2,12 @@
 
 use super::Mine;
 use super::tracer::{Steps, Tracer};
-use crate::recipe::Recipe;
-use crate::render::{RenderSettings, Renderer, SamplerKind};
+use crate::job::recipe::Recipe;
+use crate::job::render::{RenderSettings, Renderer, SamplerKind};
+use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
 use crate::scene::{Camera, Material, Scene};
 use crate::stages::{Rules, Transfer};
-use crate::statistics::blocks::{BlockTest, Differences, Noise};
 use anyhow::Result;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;

@@ -3,7 +3,7 @@
 use super::Mine;
 use super::hypothesis::{Change, Compared, Hypothesis, Making, Mistake, Studio, compare};
 use super::mistakes::{MISTAKES, applying_to};
-use crate::recipe::Recipe;
+use crate::job::recipe::Recipe;
 use crate::stages::Stage;
 use anyhow::Result;
 

@@ -1,8 +1,8 @@
 //! Reads 8-bit pictures that readers' programs wrote, also those with damages that can be repaired.
 
-use crate::files;
-use crate::output::{Encoding, ReadPicture, decode_picture};
+use crate::job::output::{Encoding, ReadPicture, decode_picture};
 use crate::stages::Transfer;
+use crate::system::files;
 use anyhow::{Result, anyhow};
 use std::borrow::Cow;
 use std::io::Cursor;

@@ -4,8 +4,8 @@
 use super::bytes::{is_times_255, is_truncated};
 use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
 use super::tracer::Random;
-use crate::recipe::Recipe;
-use crate::render::RenderSettings;
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderSettings;
 use crate::scene::{Material, Scene};
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule, Transfer};
 

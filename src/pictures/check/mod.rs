@@ -18,10 +18,10 @@ pub use mistakes::MISTAKES;
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use crate::cli::CheckOptions;
-use crate::failure::Failure;
-use crate::files::replace_file;
-use crate::heat::HeatScale;
+use crate::numbers::heat::HeatScale;
 use crate::stages::Shading;
+use crate::system::failure::Failure;
+use crate::system::files::replace_file;
 use anyhow::{Context, Result, bail};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;

@@ -6,10 +6,10 @@ use super::judge::at_edges;
 use super::mistakes::{MISTAKES, bubble};
 use super::tracer::Steps;
 use super::*;
-use crate::recipe::Recipe;
+use crate::job::recipe::Recipe;
+use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::scene::Material;
 use crate::stages::{Stage, SurfaceRule, Transfer};
-use crate::statistics::blocks::{BlockTest, Differences, Noise};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -162,7 +162,7 @@ fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
     let (_, found) = compared([16, 16], Transfer::LinearAboveGamma2, halves, |_, _| [0.25; 3]);
     assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
     // Noise is no error, and more than noise is one.
-    let noise = |x: u32, y: u32, c: u32| (crate::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
+    let noise = |x: u32, y: u32, c: u32| (crate::kernel::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
     for (more, is_noise) in [(0, true), (12, false)] {
         let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| 100 + more + noise(x, y, c));
         let (_, found) = compared([48, 32], Transfer::Linear, bytes, |_, _| [116.0 / 256.0; 3]);

@@ -2,8 +2,8 @@
 //! steps that readers get wrong are functions, which a mistake replaces. What the book leaves to a rule of the stage is a
 //! rule here, too.
 
-use crate::recipe::Recipe;
-use crate::sampling::pcg4d;
+use crate::job::recipe::Recipe;
+use crate::kernel::sampling::pcg4d;
 use crate::scene::{Look, Scene, Sphere};
 use crate::stages::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;

@@ -1,9 +1,9 @@
 //! A heat map of the difference between two pictures.
 
 use super::verdict::Relation;
-use crate::heat::HeatScale;
+use crate::numbers::heat::HeatScale;
+use crate::numbers::statistics::blocks::{Block, BlockTest};
 use crate::pictures::Picture;
-use crate::statistics::blocks::{Block, BlockTest};
 use image::{ImageFormat, Rgb, RgbImage};
 use std::io::{self, Seek, Write};
 

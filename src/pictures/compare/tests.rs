@@ -3,15 +3,15 @@
 use super::verdict::Relation;
 use super::*;
 use crate::film::{Description, FIXED_POINT_SCALE, PixelSum, checkpoint, fixed_point};
-use crate::heat::HeatScale;
-use crate::output::Encoding;
-use crate::recipe::Recipe;
-use crate::recipe::file::to_picture_toml;
+use crate::job::output::Encoding;
+use crate::job::recipe::Recipe;
+use crate::job::recipe::file::to_picture_toml;
+use crate::kernel::sampling::pcg4d;
+use crate::numbers::heat::HeatScale;
+use crate::numbers::statistics::blocks::{BlockTest, CHANCE, Differences, Noise};
+use crate::numbers::statistics::normal::largest_of;
 use crate::render_cpu::CpuOptions;
-use crate::sampling::pcg4d;
 use crate::stages::{Diffuse, Transfer};
-use crate::statistics::blocks::{BlockTest, CHANCE, Differences, Noise};
-use crate::statistics::normal::largest_of;
 use std::io::Cursor;
 use std::sync::Arc;
 

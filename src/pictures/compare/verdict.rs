@@ -1,10 +1,10 @@
 //! Decides whether two pictures are the same except for noise and rounding.
 
 use crate::film::{Film, PixelSum};
+use crate::numbers::statistics::blocks::{Block, BlockTest, CHANCE, Differences, Noise, SUM_DEVIATIONS};
+use crate::numbers::statistics::normal::largest_of;
 use crate::pictures::Picture;
 use crate::pictures::answer::Verdict;
-use crate::statistics::blocks::{Block, BlockTest, CHANCE, Differences, Noise, SUM_DEVIATIONS};
-use crate::statistics::normal::largest_of;
 use serde::Serialize;
 
 /// The largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.

@@ -8,8 +8,8 @@ pub use paths::{Difference, Pair, PathComparison, Quantity};
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use crate::cli::{DiffOptions, PathChoice};
-use crate::failure::Failure;
-use crate::render::{RenderError, RenderJob};
+use crate::job::render::{RenderError, RenderJob};
+use crate::system::failure::Failure;
 use anyhow::Result;
 use paths::radiance_amount;
 use serde_json::json;

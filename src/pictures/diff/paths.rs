@@ -1,11 +1,11 @@
 //! Compares two records of the same path: where they differ, in which quantity, and by how much.
 
-use crate::console::printable;
 use crate::film::FIXED_POINT_SCALE;
-use crate::record::{PathRecord, RecordedRay};
-use crate::render::RenderJob;
+use crate::job::render::RenderJob;
+use crate::kernel::path_record::{PathRecord, RecordedRay};
 use crate::scene::Look;
 use crate::stages::Shading;
+use crate::system::console::printable;
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;

@@ -2,8 +2,8 @@
 
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::record::PathRecord;
-use crate::render::{RenderError, RenderJob, Renderer};
+use crate::job::render::{RenderError, RenderJob, Renderer};
+use crate::kernel::path_record::PathRecord;
 use crate::render_cpu::{CpuRenderer, Isa, record_path};
 use crate::render_gpu::GpuRenderer;
 use anyhow::{Result, anyhow, bail};

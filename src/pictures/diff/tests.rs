@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::backends::BackendChoice;
-use crate::recipe::Recipe;
-use crate::record::{PathRecord, RecordedHit, RecordedRay};
+use crate::job::recipe::Recipe;
+use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::scene::{Material, Sphere};
 use crate::stages::Shading;

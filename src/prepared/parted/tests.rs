@@ -24,7 +24,7 @@ fn shells(count: u32) -> impl Iterator<Item = Sphere> {
 /// So many balls here and there, away from the origin.
 fn strewn(count: u32) -> impl Iterator<Item = Sphere> {
     (0..count).map(|index| {
-        let [x, y, z, _] = crate::sampling::pcg4d([index, 0, 0, 0]).map(|k| f64::from(k >> 8));
+        let [x, y, z, _] = crate::kernel::sampling::pcg4d([index, 0, 0, 0]).map(|k| f64::from(k >> 8));
         Sphere { center: 10.0 + DVec3::new(x, y, z) / 1e4, radius: 0.1, material: 0 }
     })
 }

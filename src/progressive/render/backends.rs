@@ -2,8 +2,8 @@
 
 use super::{Cancel, Render};
 use crate::backends::{BackendChoice, close};
+use crate::job::render::{RenderError, RenderJob, Renderer};
 use crate::progressive::{Factory, Phase};
-use crate::render::{RenderError, RenderJob, Renderer};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
-use crate::render::{RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{RenderError, RenderJob, Renderer, Stats};
 use backends::Pending;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};

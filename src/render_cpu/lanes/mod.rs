@@ -247,7 +247,7 @@ pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
     L::float_of(u >> 8) * l.constant(UNIT_FLOAT_SCALE)
 }
 
-/// Evaluates the polynomial of [`crate::sampling::sin_cos_turns`].
+/// Evaluates the polynomial of [`crate::kernel::sampling::sin_cos_turns`].
 #[inline(always)]
 fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
     let quarter = l.constant(0.25);
@@ -259,7 +259,7 @@ fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
 
 #[inline(always)]
 fn sine_of_quarter<L: Lanes>(l: L, x: L::F) -> L::F {
-    let c = crate::sampling::sine_coefficients();
+    let c = crate::kernel::sampling::sine_coefficients();
     let y = x * x;
     let p = y.mul_add(l.constant(c[4]), l.constant(c[3]));
     let p = y.mul_add(p, l.constant(c[2]));

@@ -1,7 +1,7 @@
 //! Tests of the renderer on the CPU.
 
 use super::*;
-use crate::recipe::Recipe;
+use crate::job::recipe::Recipe;
 #[cfg(target_os = "linux")]
 use crate::render_cpu::priority::NICENESS;
 use crate::scene::{Material, Sphere};

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::app::tests::dressed;
-use crate::output::OutputFormat;
+use crate::job::output::OutputFormat;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 

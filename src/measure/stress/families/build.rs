@@ -2,8 +2,8 @@
 
 pub use crate::measure::table::{counted, grouped};
 
-use crate::recipe::Recipe;
-use crate::render::RenderSettings;
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderSettings;
 use crate::scene::{Camera, Material, Scene, Sky};
 use crate::stages::Rules;
 use glam::DVec3;

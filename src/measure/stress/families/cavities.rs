@@ -1,8 +1,8 @@
 //! Closed rooms, which no light may leave or enter, and the eye on a surface or next to it.
 
 use super::build::{Ball, deep, eye, glass, matte, metal, moved, picture, sized};
+use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::recipe::Recipe;
 use crate::scene::Material;
 use glam::DVec3;
 

@@ -3,8 +3,8 @@
 use super::build::{
     Ball, around, grouped, in_front, matte, named, of_scene, one_ball, picture, scene, sized,
 };
+use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::recipe::Recipe;
 use crate::scene::{Material, Scene, Sky};
 use glam::DVec3;
 use std::sync::Arc;
@@ -75,7 +75,8 @@ pub fn copies() -> Vec<Case> {
 
 /// Ball `index` of a cloud, in a cube around the origin.
 fn scattered(index: u32, half_width: f64) -> Ball {
-    let [a, b, c, d] = crate::sampling::pcg4d([index, 1, 2, 3]).map(|word| f64::from(word) / 4_294_967_296.0);
+    let [a, b, c, d] =
+        crate::kernel::sampling::pcg4d([index, 1, 2, 3]).map(|word| f64::from(word) / 4_294_967_296.0);
     let place = DVec3::new(a, b, c) * 2.0 - DVec3::ONE;
     (half_width * place, 0.004 + 0.004 * d, matte(0.5))
 }

@@ -1,8 +1,8 @@
 //! Scene files that are worth looking at.
 
 use super::build::sized;
+use crate::job::recipe::file;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::recipe::file;
 
 /// Scenes in files.
 pub const FILES: Family = Family {

@@ -4,8 +4,8 @@ use super::build::{
     Ball, WHITE_SKY, around, counted, deep, eye, glass, in_front, matte, metal, named, of_scene, picture,
     scene, sized, tame,
 };
+use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::recipe::Recipe;
 use crate::scene::Sky;
 use glam::DVec3;
 

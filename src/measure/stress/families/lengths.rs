@@ -1,8 +1,8 @@
 //! The whole scene moved or scaled, and extreme cameras.
 
 use super::build::{eye, glass, matte, moved, of_scene, scene, sized, tame};
+use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::recipe::Recipe;
 use crate::scene::{Camera, Material, Sky};
 use glam::DVec3;
 

@@ -1,0 +1,296 @@
+//! A path step by step: what each ray meets, and how the next ray's direction was chosen.
+
+use crate::job::render::RenderJob;
+use crate::kernel::path_record::{PathRecord, RecordedRay};
+use crate::kernel::sampling::{numbers, unit_float};
+use crate::scene::{Look, Material, Sphere};
+use crate::stages::{DielectricLaws, Diffuse, Rules, Shading};
+use glam::DVec3;
+
+/// One ray of a path and what happens at its end.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Start of the ray, scene units.
+    pub origin: DVec3,
+    pub direction: DVec3,
+    /// Factor by which light that arrives along the ray contributes to the pixel, linear RGB.
+    pub throughput: DVec3,
+    /// Where and what the ray hits; `None` if it leaves the scene.
+    pub hit: Option<Hit>,
+    pub event: Event,
+}
+
+/// The end of a ray on a sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    pub sphere: usize,
+    /// The point, scene units.
+    pub point: DVec3,
+    /// Unit normal on the side that the ray comes from.
+    pub normal: DVec3,
+    /// Whether the ray comes from outside the sphere.
+    pub is_outside: bool,
+}
+
+/// What happens at the end of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The ray leaves the scene, and the path collects light of the sky.
+    Sky,
+    /// The surface is shown by a colour, and the path ends: stages before light is transported.
+    Shown,
+    /// The path has as many rays as it may have, and ends without light.
+    Limit,
+    /// The fuzzy reflection points into the metal, which absorbs it.
+    Absorbed(Lobe),
+    /// The path goes on in a direction drawn from the lobe.
+    Scattered(Lobe),
+}
+
+/// The directions that the next ray was chosen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// A uniform direction on the side of the normal.
+    Hemisphere,
+    /// The normal plus a uniform unit vector.
+    Lambertian,
+    /// The mirrored direction plus `fuzz` times a uniform unit vector.
+    Metal {
+        mirrored: DVec3,
+        /// Length of the random part, `0..=1`.
+        fuzz: f64,
+    },
+    /// One of two directions.
+    Glass {
+        mirrored: DVec3,
+        /// The refracted unit direction; `None` where Snell's law has no solution.
+        refracted: Option<DVec3>,
+        /// The probability of reflection: 1 where Snell's law has no solution, as far as the rules know it.
+        reflectance: f64,
+        /// The random number in `[0, 1)`; the ray is reflected if it is less than `reflectance`.
+        coin: f64,
+        refracts: bool,
+    },
+}
+
+/// Explains the path of sample `index` of a pixel, ray by ray. `record` must be that path of `job`.
+pub fn steps(job: &RenderJob, [x, y]: [u32; 2], index: u64, record: &PathRecord) -> Vec<Step> {
+    let step = |(bounce, ray): (usize, &RecordedRay)| {
+        let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
+        let hit = ray.hit.map(|hit| {
+            let sphere = job.scene().spheres[hit.sphere];
+            let point = hit.position.map_or(origin + direction * hit.distance, DVec3::from);
+            hit_of(&sphere, hit.sphere, point, direction)
+        });
+        let numbers = numbers(job.settings(), x | y << 16, index as u32, bounce as u32 + 1);
+        let next = record.rays.get(bounce + 1).map(|next| DVec3::from(next.direction));
+        let event = match hit {
+            None => Event::Sky,
+            Some(hit) => event_of(job, &hit, direction, next, bounce, f64::from(unit_float(numbers[0]))),
+        };
+        Step { origin, direction, throughput: DVec3::from(ray.throughput), hit, event }
+    };
+    record.rays.iter().enumerate().map(step).collect()
+}
+
+fn hit_of(sphere: &Sphere, number: usize, point: DVec3, direction: DVec3) -> Hit {
+    let outward = (point - sphere.center).normalize_or_zero();
+    let is_outside = direction.dot(outward) < 0.0;
+    Hit { sphere: number, point, normal: if is_outside { outward } else { -outward }, is_outside }
+}
+
+/// What happens at a hit. `next` is the direction of the path's next ray, if it has one.
+fn event_of(
+    job: &RenderJob,
+    hit: &Hit,
+    direction: DVec3,
+    next: Option<DVec3>,
+    bounce: usize,
+    coin: f64,
+) -> Event {
+    if job.rules().shading != Shading::Path {
+        return Event::Shown;
+    }
+    let material = job.scene().material_of(&job.scene().spheres[hit.sphere]);
+    let lobe = lobe_of(material, job.rules(), hit, direction, next, coin);
+    match next {
+        Some(_) => Event::Scattered(lobe),
+        None if bounce + 1 >= job.settings().max_depth as usize => Event::Limit,
+        None => Event::Absorbed(lobe),
+    }
+}
+
+fn lobe_of(
+    material: &Material,
+    rules: &Rules,
+    hit: &Hit,
+    direction: DVec3,
+    next: Option<DVec3>,
+    coin: f64,
+) -> Lobe {
+    let cosine = (-direction.dot(hit.normal)).clamp(0.0, 1.0);
+    let mirrored = (direction + hit.normal * (2.0 * cosine)).normalize_or_zero();
+    match material.look() {
+        Look::Matte if rules.diffuse == Diffuse::Hemisphere => Lobe::Hemisphere,
+        Look::Matte => Lobe::Lambertian,
+        Look::Mirror { fuzz } => Lobe::Metal { mirrored, fuzz },
+        Look::Glass { refraction_index } => {
+            let ratio = if hit.is_outside { 1.0 / refraction_index } else { refraction_index };
+            let across = direction + hit.normal * cosine;
+            let refracted_sine2 = ratio * ratio * across.length_squared();
+            let refracted = (refracted_sine2 <= 1.0)
+                .then(|| across * ratio - hit.normal * (1.0 - refracted_sine2).max(0.0).sqrt());
+            let f0 = ((1.0 - refraction_index) / (1.0 + refraction_index)).powi(2);
+            let reflectance = match rules.dielectric {
+                DielectricLaws::RefractOnly => 0.0,
+                _ if refracted.is_none() => 1.0,
+                DielectricLaws::TotalReflection => 0.0,
+                DielectricLaws::Schlick => f0 + (1.0 - f0) * (1.0 - cosine).powi(5),
+            };
+            let refracts = next.is_some_and(|next| next.dot(hit.normal) < 0.0);
+            Lobe::Glass { mirrored, refracted, reflectance, coin, refracts }
+        }
+    }
+}
+
+impl Step {
+    /// What happens at the end of the ray, in one or two sentences.
+    pub fn sentence(&self, job: &RenderJob) -> String {
+        let Some(hit) = self.hit else {
+            return "The ray leaves the scene and brings back the light of the sky.".to_owned();
+        };
+        let degrees = |direction: DVec3| direction.dot(hit.normal).abs().min(1.0).acos().to_degrees();
+        let angle = degrees(self.direction);
+        match self.event {
+            Event::Sky | Event::Shown => {
+                "The surface is hit. This stage shows it in a colour and ends the path here.".to_owned()
+            }
+            Event::Limit => {
+                let limit = job.settings().max_depth;
+                format!("This is the last of {limit} rays that a path may have: it ends here and brings no light.")
+            }
+            Event::Absorbed(_) => {
+                "Metal: the fuzzy reflection points into the surface, so the ray is absorbed.".to_owned()
+            }
+            Event::Scattered(Lobe::Hemisphere) => {
+                "Matte: the new direction is any direction above the surface, all equally likely.".to_owned()
+            }
+            Event::Scattered(Lobe::Lambertian) => {
+                "Matte: the new direction is the normal plus a random unit vector, so directions near the normal are \
+                 more likely."
+                    .to_owned()
+            }
+            Event::Scattered(Lobe::Metal { fuzz: 0.0, .. }) => {
+                format!("Mirror: the ray arrives at {angle:.0}° to the normal and leaves at the same angle.")
+            }
+            Event::Scattered(Lobe::Metal { fuzz, .. }) => format!(
+                "Metal: the ray is mirrored at {angle:.0}°, then moved by a random vector of length {fuzz}, its fuzz."
+            ),
+            Event::Scattered(Lobe::Glass { refracted, reflectance, coin, refracts, .. }) => {
+                let side = if hit.is_outside { "from outside" } else { "from inside" };
+                let what = match (job.rules().dielectric, refracted.map(degrees)) {
+                    (DielectricLaws::RefractOnly, None) => {
+                        "Snell's law has no solution; this stage refracts all the same, wrongly.".to_owned()
+                    }
+                    (_, None) => "Snell's law has no solution: total reflection.".to_owned(),
+                    (DielectricLaws::Schlick, Some(inner)) => {
+                        let end =
+                            if refracts { format!("refracted, to {inner:.0}°") } else { "reflected".to_owned() };
+                        let chance = 100.0 * reflectance;
+                        format!("Schlick says {chance:.1} % reflect; the coin is {coin:.3}: {end}.")
+                    }
+                    (_, Some(inner)) => format!("It is refracted, to {inner:.0}°."),
+                };
+                format!("Glass: the ray arrives {side}, at {angle:.0}°. {what}")
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+    use std::f64::consts::FRAC_1_SQRT_2;
+
+    const GLASS: Material = Material::Dielectric { refraction_index: 1.5 };
+
+    fn top(is_outside: bool) -> Hit {
+        Hit { sphere: 0, point: DVec3::ZERO, normal: DVec3::Y, is_outside }
+    }
+
+    fn laws(dielectric: DielectricLaws) -> Rules {
+        Rules { dielectric, ..Rules::FINISHED }
+    }
+
+    /// What glass may do with a ray that comes down at 45 degrees: the refracted direction and the reflectance.
+    fn glass(dielectric: DielectricLaws, is_outside: bool) -> (Option<DVec3>, f64) {
+        let down = DVec3::new(FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0);
+        match lobe_of(&GLASS, &laws(dielectric), &top(is_outside), down, None, 0.5) {
+            Lobe::Glass { mirrored, refracted, reflectance, coin, refracts } => {
+                assert!(
+                    mirrored.distance(DVec3::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0)) < 1e-15,
+                    "{mirrored}"
+                );
+                assert_eq!((coin, refracts), (0.5, false));
+                (refracted, reflectance)
+            }
+            lobe => panic!("{lobe:?}"),
+        }
+    }
+
+    #[test]
+    fn glass_bends_and_reflects_as_the_laws_say() {
+        use DielectricLaws::{RefractOnly, Schlick, TotalReflection};
+        // The sine is divided by 1.5: its square is 2/9.
+        let bent = DVec3::new((2.0_f64 / 9.0).sqrt(), -(7.0_f64 / 9.0).sqrt(), 0.0);
+        let schlick = 0.04 + 0.96 * (1.0 - FRAC_1_SQRT_2).powi(5);
+        for (laws, expected) in [(RefractOnly, 0.0), (TotalReflection, 0.0), (Schlick, schlick)] {
+            let (refracted, reflectance) = glass(laws, true);
+            assert!(refracted.is_some_and(|found| found.distance(bent) < 1e-15), "{refracted:?}");
+            assert!((reflectance - expected).abs() < 1e-15, "{laws:?}: {reflectance}");
+        }
+        // From inside, the square of the sine would be 9/8.
+        for (laws, expected) in [(RefractOnly, 0.0), (TotalReflection, 1.0), (Schlick, 1.0)] {
+            assert_eq!(glass(laws, false), (None, expected), "{laws:?}");
+        }
+    }
+
+    fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
+        let job = Stage::find(stage).unwrap().recipe().job().unwrap();
+        let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);
+        Step { origin, direction, throughput, hit: Some(top(is_outside)), event }.sentence(&job)
+    }
+
+    #[test]
+    fn a_sentence_names_angles_and_chance() {
+        let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
+        let at_30 = Some(DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0));
+        let mirror = Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 };
+        assert!(
+            said("metal", at_60, true, Event::Scattered(mirror))
+                .starts_with("Mirror: the ray arrives at 60° ")
+        );
+        // Rounding may make a unit vector a little longer.
+        let along = said("metal", 1.000_001 * DVec3::NEG_Y, true, Event::Scattered(mirror));
+        assert!(along.contains(" at 0° "), "{along}");
+        for (stage, is_outside, refracted, refracts, parts) in [
+            (
+                "glass-schlick",
+                true,
+                at_30,
+                true,
+                ["outside, at 60°", "12.5 % reflect; the coin is 0.750: refracted, to 30°"],
+            ),
+            ("glass-schlick", true, at_30, false, ["outside, at 60°", "0.750: reflected"]),
+            ("glass-tir", false, at_30, true, ["inside, at 60°", "refracted, to 30°"]),
+            ("glass-tir", false, None, false, ["inside, at 60°", "no solution: total reflection"]),
+            ("glass-refract", true, None, true, ["outside, at 60°", "all the same, wrongly"]),
+        ] {
+            let (mirrored, reflectance, coin) = (DVec3::Y, 0.125, 0.75);
+            let lobe = Lobe::Glass { mirrored, refracted, reflectance, coin, refracts };
+            let sentence = said(stage, at_60, is_outside, Event::Scattered(lobe));
+            assert!(parts.iter().all(|part| sentence.contains(part)), "{sentence}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! `weekender merge`: adds films of the same picture, or the parts of a plan as they come, and makes an animated PNG of
+//! frames.
+
+mod films;
+mod pieces;
+mod plan;
+
+use crate::cli::MergeOptions;
+use crate::film::{Description, Film, SampleRanges};
+use crate::job::output::{OutputFormat, write_image};
+use crate::job::plan::Plan;
+use crate::job::saved::Replaced;
+use crate::stages::Transfer;
+use crate::system::console;
+use crate::system::failure::{FAILED, Failure, output_failure};
+use crate::system::files::{FileLock, ShownPath, check_writable};
+use anyhow::anyhow;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Merges or checks what the options name.
+///
+/// # Errors
+/// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
+pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
+    for out in &options.out {
+        OutputFormat::from_path(out).map_err(Failure::input)?;
+        check_writable(out).map_err(Failure::input)?;
+    }
+    let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
+    let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
+    let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
+    let refuse = |words: &str| Err(Failure::Input(anyhow!("{words}")));
+    match options.films.as_slice() {
+        [plan] if Plan::is_at(plan) => plan::run(&Plan::load(plan).map_err(Failure::Input)?, options),
+        films if films.iter().any(|film| Plan::is_at(film)) => refuse(
+            "a plan names its parts itself: merge it alone, then merge the result with the other files",
+        ),
+        _ if options.watch => refuse(
+            "--watch needs a plan: only a plan says which parts are to come; make one with `weekender plan`",
+        ),
+        films => films::run(films, options),
+    }
+}
+
+/// Warns of samples that are lost because `film` replaces a film that has others.
+fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
+    let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
+    for words in out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept)) {
+        console::note(&format!("warning: {words}"));
+    }
+}
+
+/// Writes the film to each file.
+fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Description) -> Result<(), Failure> {
+    out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)
+}
+
+fn wrote(out: &[PathBuf]) -> String {
+    out.iter().map(|out| format!("wrote {}\n", out.shown())).collect()
+}
+
+/// Prints the findings of `--check` in full, however long they are: some are commands.
+fn print_findings(lines: &[String], is_good: bool) -> Result<ExitCode, Failure> {
+    let lines = lines.iter().flat_map(|line| line.split('\n'));
+    let text: String = lines.map(|line| console::printable(line).into_owned() + "\n").collect();
+    console::write_out(&text).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
+    Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
+}

@@ -1,0 +1,198 @@
+//! The films or frames of a plan: what is there of each, and the commands for what is missing.
+
+use crate::film::{SampleRanges, checkpoint};
+use crate::job::plan::{Commands, Part, Plan, Work};
+use crate::job::saved::FrameState;
+use crate::progressive::describe::SOFTWARE;
+use crate::system::files::{ShownPath, Stamp};
+use std::path::PathBuf;
+
+/// What is there of a film or frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum State {
+    Whole,
+    /// A checkpoint with so many of the part's samples per pixel.
+    Unfinished {
+        held: u64,
+        of: u64,
+    },
+    Missing,
+    /// A file that is damaged, of another picture or of other samples: why, and what to do.
+    Wrong(String),
+}
+
+/// The film of a part, or a frame of one.
+pub(super) struct Piece {
+    /// The part that renders it.
+    part: usize,
+    kind: Kind,
+    pub path: PathBuf,
+    pub state: State,
+    /// The file that was seen last.
+    seen: Option<Stamp>,
+    /// Whether it is in the sum for good.
+    pub is_merged: bool,
+}
+
+#[derive(Clone)]
+enum Kind {
+    Film(Part),
+    Frame(u32),
+}
+
+/// All films or frames of a plan.
+pub(super) struct Pieces<'a> {
+    pub plan: &'a Plan,
+    pub all: Vec<Piece>,
+}
+
+impl<'a> Pieces<'a> {
+    /// The films or frames, not looked at yet.
+    pub fn of(plan: &'a Plan) -> Self {
+        let piece = |part, kind, path| Piece {
+            part,
+            kind,
+            path,
+            state: State::Missing,
+            seen: None,
+            is_merged: false,
+        };
+        let all = match &plan.manifest.work {
+            Work::Samples(work) => {
+                let film =
+                    |(part, it): (usize, &Part)| piece(part, Kind::Film(it.clone()), plan.beside(&it.file));
+                work.parts.iter().enumerate().map(film).collect()
+            }
+            Work::Frames(work) => {
+                let names = plan.frame_names();
+                let frames = work.parts.iter().enumerate();
+                let frames = frames.flat_map(|(part, frames)| frames.range().map(move |frame| (part, frame)));
+                frames.map(|(part, frame)| piece(part, Kind::Frame(frame), names.path(frame))).collect()
+            }
+        };
+        Pieces { plan, all }
+    }
+
+    /// Looks at the files that have changed since the last look, and returns these. Of a film, only the head is read.
+    pub fn look(&mut self) -> Vec<&Piece> {
+        let mut changed = Vec::new();
+        for piece in self.all.iter_mut().filter(|piece| piece.state != State::Whole) {
+            let now = Stamp::of(&piece.path).ok().flatten();
+            if now != piece.seen {
+                piece.state = if now.is_some() { piece.look(self.plan) } else { State::Missing };
+                piece.seen = now;
+                changed.push(&*piece);
+            }
+        }
+        changed
+    }
+
+    fn lacking(&self) -> impl Iterator<Item = &Piece> {
+        self.all.iter().filter(|piece| piece.state != State::Whole)
+    }
+
+    pub fn is_complete(&self) -> bool {
+        self.lacking().next().is_none()
+    }
+
+    /// How many are whole, in words.
+    pub fn words(&self) -> String {
+        let count = self.all.len();
+        let noun = if matches!(self.plan.manifest.work, Work::Samples(_)) { "parts" } else { "frames" };
+        format!("{} of {count} {noun} are whole", count - self.lacking().count())
+    }
+
+    /// A line on each that is not whole.
+    pub fn lines(&self) -> impl Iterator<Item = String> {
+        self.lacking().map(Piece::line)
+    }
+
+    /// How to render what is missing: a heading, and the commands, one a line.
+    pub fn remedy(&self, program: &str) -> String {
+        let mut parts: Vec<usize> = self.lacking().map(|piece| piece.part).collect();
+        parts.dedup();
+        let commands = Commands::new(program, &self.plan.path.to_string_lossy(), &self.plan.manifest);
+        let heading = format!("for what is missing (--array={} in Slurm):", ranges(&parts));
+        let lines = parts.iter().map(|part| commands.part_line(&part.to_string()));
+        std::iter::once(heading).chain(lines).collect::<Vec<_>>().join("\n")
+    }
+}
+
+impl Piece {
+    fn look(&self, plan: &Plan) -> State {
+        match (&self.kind, &plan.manifest.work) {
+            (Kind::Frame(frame), Work::Frames(work)) => {
+                let recipe = plan.recipe.at_frame(&work.camera_path(&plan.recipe), *frame);
+                match FrameState::of(&self.path, &recipe, SOFTWARE) {
+                    FrameState::Whole => State::Whole,
+                    FrameState::Missing => State::Missing,
+                    FrameState::Wrong(words) => State::Wrong(words),
+                }
+            }
+            (Kind::Film(part), _) => match checkpoint::read_head(&self.path) {
+                Ok(head) => self.of_samples(part, &head.samples),
+                Err(error) => State::Wrong(error.to_string()),
+            },
+            _ => State::Missing,
+        }
+    }
+
+    /// The state of a part whose film holds `samples`.
+    fn of_samples(&self, part: &Part, samples: &SampleRanges) -> State {
+        if part.is_exceeded_by(samples) {
+            let ([start, end], path) = (part.samples, self.path.shown());
+            return State::Wrong(format!(
+                "{path} holds the samples {samples}, but this part has {start}..{end}; move the file away"
+            ));
+        }
+        match part.missing(samples) {
+            0 => State::Whole,
+            missing => {
+                let of = part.samples[1] - part.samples[0];
+                State::Unfinished { held: of - missing, of }
+            }
+        }
+    }
+
+    /// What is there of it, in words.
+    pub fn line(&self) -> String {
+        let Piece { part, path, state, .. } = self;
+        let name = path.file_name().unwrap_or_default().shown();
+        match state {
+            State::Whole => format!("part {part}: {name} is whole"),
+            State::Unfinished { held, of } => {
+                format!("part {part}: {name} has {held} of {of} samples per pixel")
+            }
+            State::Missing => format!("part {part}: {name} is missing"),
+            State::Wrong(words) => format!("part {part}: {words}"),
+        }
+    }
+}
+
+/// Ascending numbers as Slurm takes them: `0,3-7,9`.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|number, next| number + 1 == *next);
+    let words = |run: &[usize]| match run {
+        [first, _, .., last] => format!("{first}-{last}"),
+        few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(","),
+    };
+    runs.map(words).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ranges;
+
+    #[test]
+    fn three_numbers_in_a_row_are_a_range() {
+        for (numbers, words) in [
+            (&[][..], ""),
+            (&[4], "4"),
+            (&[1, 2], "1,2"),
+            (&[0, 1, 2, 4, 6, 8, 9, 10], "0-2,4,6,8-10"),
+            (&[3, 4, 6, 7, 8], "3,4,6-8"),
+        ] {
+            assert_eq!(ranges(numbers), words);
+        }
+    }
+}

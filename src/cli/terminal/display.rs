@@ -1,0 +1,127 @@
+//! Progress on standard error: a bar on a terminal, otherwise a line from time to time, or nothing.
+
+use crate::cli::ProgressChoice;
+use crate::system::console;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+/// How progress is shown.
+pub enum Display {
+    /// A progress bar.
+    Bar(ProgressBar),
+    /// Single lines.
+    Lines {
+        /// When the next line may be printed.
+        next: Instant,
+        /// Least time between two lines.
+        interval: Duration,
+    },
+    /// Nothing.
+    Off,
+}
+
+impl Display {
+    /// Depends on `choice` and on whether there is a terminal. The bar has `steps` and looks as indicatif's
+    /// `template` says, where `prefix` fills the placeholder of that name. Lines are at least `interval` apart.
+    pub fn new(choice: ProgressChoice, steps: u64, template: &str, prefix: &str, interval: Duration) -> Self {
+        match (choice, stderr().is_terminal()) {
+            (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
+            (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },
+            (_, true) => Display::Bar(bar(ProgressDrawTarget::stderr(), steps, template, prefix)),
+        }
+    }
+
+    /// Whether it is a bar, whose length shows the progress.
+    pub fn is_bar(&self) -> bool {
+        matches!(self, Display::Bar(_))
+    }
+
+    /// Shows `words` at step `position`. A line is printed only if one is due.
+    pub fn update(&mut self, position: u64, words: impl FnOnce() -> String) {
+        match self {
+            Display::Lines { next, .. } if Instant::now() < *next => {}
+            _ => self.announce(position, words),
+        }
+    }
+
+    /// Shows `words` at step `position` even if no line is due.
+    pub fn announce(&mut self, position: u64, words: impl FnOnce() -> String) {
+        match self {
+            Display::Bar(bar) => {
+                bar.set_position(position);
+                bar.set_message(console::printable(&words()).into_owned());
+            }
+            Display::Lines { next, interval } => {
+                *next = Instant::now() + *interval;
+                console::note(&words());
+            }
+            Display::Off => {}
+        }
+    }
+
+    /// Prints a message that must be read, even if progress is off.
+    pub fn say(&self, message: &str) {
+        self.above(|| console::note(message));
+    }
+
+    /// Hides the bar while `print` writes to the terminal.
+    pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
+        match self {
+            Display::Bar(bar) => bar.suspend(print),
+            _ => print(),
+        }
+    }
+
+    /// Removes the bar.
+    pub fn clear(&self) {
+        if let Display::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar(target: ProgressDrawTarget, steps: u64, template: &str, prefix: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(steps), target);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(console::printable(prefix).into_owned());
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_printed_only_if_one_is_due_unless_it_is_announced() {
+        let interval = Duration::from_secs(3600);
+        let mut display = Display::Lines { next: Instant::now(), interval };
+        let mut printed = Vec::new();
+        let mut show = |display: &mut Display, word: &'static str, must: bool| {
+            let words = || {
+                printed.push(word);
+                word.to_owned()
+            };
+            if must { display.announce(1, words) } else { display.update(1, words) }
+        };
+        show(&mut display, "first", false);
+        show(&mut display, "too soon", false);
+        show(&mut display, "announced", true);
+        show(&mut display, "too soon again", false);
+        show(&mut Display::Off, "nothing", true);
+        assert_eq!(printed, ["first", "announced"]);
+    }
+
+    #[test]
+    fn a_bar_shows_its_position_and_names_without_control_characters() {
+        let bar = bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:8}] {wide_msg}", "a\u{1b}b");
+        let mut display = Display::Bar(bar.clone());
+        display.update(2, || "half\u{1b} done".to_owned());
+        assert_eq!((bar.position(), bar.length()), (2, Some(4)));
+        assert_eq!((bar.prefix(), bar.message()), ("a\\u{1b}b".to_owned(), "half\\u{1b} done".to_owned()));
+        display.clear();
+        assert!(bar.is_finished());
+    }
+}

@@ -1,0 +1,66 @@
+//! Output of the programs without a window: text for people, JSON for other programs, and progress.
+
+mod display;
+
+pub use display::Display;
+
+use crate::cli::JsonTarget;
+use crate::system::console;
+use crate::system::failure::output_failure;
+use crate::system::files::write_text;
+use anyhow::{Context, Result, anyhow};
+use serde::Serialize;
+use std::io;
+
+/// Prints a result as text to standard output.
+///
+/// # Errors
+/// If standard output cannot be written, for instance because its reader has gone away.
+pub fn print(text: &str) -> Result<()> {
+    checked(console::print(text))
+}
+
+/// Prints text to standard output, or to standard error if JSON goes to standard output.
+///
+/// # Errors
+/// As for [`print()`]. Standard error never fails.
+pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
+    if is_taken(json) {
+        console::note(text);
+        return Ok(());
+    }
+    print(text)
+}
+
+/// As [`print_beside`], for text with the program's own colours.
+///
+/// # Errors
+/// As for [`print()`].
+pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
+    if is_taken(json) {
+        console::note_painted(text);
+        return Ok(());
+    }
+    checked(console::write_out(text))
+}
+
+/// Whether standard output is reserved for JSON.
+pub fn is_taken(json: Option<&JsonTarget>) -> bool {
+    json == Some(&JsonTarget::StandardOutput)
+}
+
+/// Writes `value` as JSON, followed by a newline.
+///
+/// # Errors
+/// If the file or standard output cannot be written, or JSON cannot represent the value.
+pub fn write_json(value: &impl Serialize, target: &JsonTarget) -> Result<()> {
+    let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
+    match target {
+        JsonTarget::File(path) => Ok(write_text(path, &text)?),
+        JsonTarget::StandardOutput => checked(console::write_out(&text)),
+    }
+}
+
+fn checked(written: io::Result<()>) -> Result<()> {
+    written.map_err(|error| anyhow!(output_failure(&error)))
+}

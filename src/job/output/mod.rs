@@ -1,0 +1,221 @@
+//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`],
+//! 8-bit ones without the recipe if it is longer than [`RECIPE_LIMIT`]. Pictures of other programs can be read, too:
+//! [`read_picture`].
+
+mod apng;
+mod long_recipe;
+mod pfm;
+mod png;
+mod ppm;
+mod read;
+
+pub use apng::{FrameRate, animation_in, check_frame, write_animation};
+pub use long_recipe::{RECIPE_LIMIT, length_of_missing, recipe_in_picture};
+pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
+
+pub use crate::film::{Description, RECIPE_KEY, key};
+
+use crate::film::{CheckpointError, Film, checkpoint};
+use crate::stages::Transfer;
+use crate::system::files::{self, InputError, ShownPath, WriteError, replace_file};
+use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// File format of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OutputFormat {
+    /// 8-bit RGB.
+    Png,
+    /// Binary PPM, 8-bit RGB: the book's format in binary form.
+    P6,
+    /// Linear float RGB and the film's exact sums: see [`crate::film::checkpoint`].
+    Exr,
+}
+
+impl OutputFormat {
+    /// All formats.
+    pub const ALL: [OutputFormat; 3] = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr];
+
+    /// File extension, with the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            OutputFormat::Png => ".png",
+            OutputFormat::P6 => ".ppm",
+            OutputFormat::Exr => ".exr",
+        }
+    }
+
+    /// The format that belongs to a file name's extension, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`OutputError::UnknownEnding`], which lists the known extensions.
+    pub fn from_path(path: &Path) -> Result<Self, OutputError> {
+        let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy().to_lowercase()));
+        OutputFormat::ALL
+            .into_iter()
+            .find(|format| Some(format.ending()) == ending.as_deref())
+            .ok_or_else(|| OutputError::UnknownEnding { path: path.to_owned() })
+    }
+}
+
+/// Why a picture cannot be written, or its description cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The file name has no known extension.
+    #[error(
+        "cannot tell the picture format of {}; let the name end in one of {}",
+        path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
+    )]
+    UnknownEnding {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The file cannot be opened, or is not a regular file.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The film is damaged or of another version.
+    #[error(transparent)]
+    Film(#[from] CheckpointError),
+    /// The content of the file cannot be read.
+    #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.shown())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: io::Error,
+    },
+    /// The picture does not contain a description.
+    #[error(
+        "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
+        path.shown()
+    )]
+    NoDescription {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// How a PPM holds its numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PpmForm {
+    /// As bytes (P6).
+    #[default]
+    Binary,
+    /// As text (P3), as the book writes them.
+    Ascii,
+}
+
+/// How hard a PNG is compressed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PngForm {
+    /// In little time.
+    #[default]
+    Fast,
+    /// For pages that are to load quickly: a seventh smaller, in five times the time.
+    Small,
+}
+
+/// The forms of the formats that have several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Forms {
+    /// The form of a PPM.
+    pub ppm: PpmForm,
+    /// The form of a PNG.
+    pub png: PngForm,
+}
+
+/// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
+/// for 8-bit formats; an EXR file is linear and holds the film.
+///
+/// # Errors
+/// [`OutputError`]; an existing file is then unchanged.
+pub fn write_image(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+) -> Result<(), OutputError> {
+    write_image_as(path, film, transfer, description, Forms::default())
+}
+
+/// As [`write_image`], in one of several `forms`.
+///
+/// # Errors
+/// As for [`write_image`].
+pub fn write_image_as(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+    forms: Forms,
+) -> Result<(), OutputError> {
+    let format = OutputFormat::from_path(path)?;
+    replace_file(path, |writer| match format {
+        OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
+        OutputFormat::Exr => checkpoint::write(film, description, writer),
+    })?;
+    Ok(())
+}
+
+/// Writes the part of a film's picture that begins at column and row `first` and has `size` pixels, as an 8-bit PNG.
+///
+/// # Errors
+/// [`OutputError::Write`]; an existing file is then unchanged.
+pub fn write_part(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    [first, size]: [[u32; 2]; 2],
+    description: &Description,
+) -> Result<(), OutputError> {
+    let rgb8 = film.part_rgb8(transfer, first, size);
+    replace_file(path, |writer| png::write_bytes(size, &rgb8, description, writer))?;
+    Ok(())
+}
+
+/// Reads the description of a picture. The first bytes of the file tell its format; the name does not matter.
+///
+/// # Errors
+/// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
+pub fn read_description(path: &Path) -> Result<Description, OutputError> {
+    let (file, _) = files::open(path)?;
+    decode_description(BufReader::new(file), path)
+}
+
+/// The same from a reader; `path` is only used in messages.
+///
+/// # Errors
+/// As for [`read_description`].
+pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description, OutputError> {
+    let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
+    let start = start_of(&mut reader).map_err(unreadable)?;
+    let found = match start.as_slice() {
+        [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
+        [b'P', b'3' | b'6', ..] => ppm::read_description(reader).map_err(unreadable)?,
+        start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
+        _ => None,
+    };
+    found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// The first bytes, which tell the format of a file.
+fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    reader.by_ref().take(8).read_to_end(&mut start)?;
+    reader.rewind()?;
+    Ok(start)
+}
+
+/// Writes all pixels as 8-bit RGB, row by row, because a second copy of a large picture may not fit into memory.
+fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {
+    let mut bytes = vec![0; 3 * film.width() as usize];
+    for row in 0..film.height() {
+        film.resolve_rows(row..row + 1, transfer, &mut bytes);
+        writer.write_all(&bytes)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,401 @@
+//! From TOML to a recipe: serde checks the form, [`recipe_of`] the values.
+
+use super::named;
+use crate::job::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
+use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::scene::animation::{FRAME_LIMIT, Keyframe};
+use crate::scene::{Camera, Material, Scene, SceneError, Sky};
+use crate::stages::Rules;
+use crate::system::files::{self, InputError, ShownPath};
+use crate::system::memory::{self, MemoryError};
+use glam::DVec3;
+use serde::Deserialize;
+use std::collections::{BTreeMap, HashMap};
+use std::fmt::Display;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+use thiserror::Error;
+use toml::Spanned;
+
+/// Longest scene file, bytes. Ten million spheres take about as many.
+const FILE_LIMIT: u64 = 1 << 30;
+
+/// Most bytes of memory per value, key or line of a scene file while it is read. Measured with listed spheres, which need
+/// the most, and with the shortest values.
+const VALUE_BYTES: u64 = 260;
+
+/// Why a scene file cannot be used. The message names the file and the line, and says what to do.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// The file cannot be read, or it is too long for a scene file.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// There is not enough memory to read the file.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// The text is not valid, or no picture can be made from it.
+    #[error("{name}:{line}:{column}: {reason}")]
+    Invalid {
+        /// The file.
+        name: String,
+        /// From 1.
+        line: usize,
+        /// In characters, from 1.
+        column: usize,
+        /// What is wrong: key, value, limit and remedy.
+        reason: String,
+    },
+}
+
+impl FileError {
+    /// An error at this byte of the text.
+    fn at(text: &str, name: &str, byte: usize, reason: String) -> Self {
+        let before = text.get(..byte).unwrap_or(text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let (line, column) = (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count());
+        FileError::Invalid { name: name.to_owned(), line, column, reason }
+    }
+}
+
+/// Reads a scene file. The recipe is named after the file, without its extension.
+///
+/// # Errors
+/// [`FileError`] if the file cannot be read or is malformed, or if no picture can be made from it.
+pub fn load(path: &Path) -> Result<Recipe, FileError> {
+    let label = path.shown();
+    let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
+        let reason =
+            "this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file";
+        FileError::at(&good, &label, good.len(), reason.to_owned())
+    })?;
+    let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
+    Ok(Recipe { name: stem, ..parse(&text, &label)? })
+}
+
+/// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
+///
+/// # Errors
+/// [`FileError`] if the text is malformed, or if no picture can be made from it.
+pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
+    let values = text.bytes().filter(|byte| b",=[{\n".contains(byte)).count() as u64;
+    let bytes = text.len() as u64 + VALUE_BYTES * values;
+    let remedy = "use a scene of fewer spheres, or close other programs";
+    memory::check(|| format!("reading {name}"), bytes, remedy)?;
+    let raw: RawFile = toml::from_str(text).map_err(|error| {
+        FileError::at(text, name, error.span().unwrap_or_default().start, in_toml_words(error))
+    })?;
+    recipe_of(raw, name).map_err(|refusal| FileError::at(text, name, refusal.place.start, refusal.reason))
+}
+
+/// The message of a TOML error on one line, with the path of the key and without Rust's words.
+fn in_toml_words(mut error: toml::de::Error) -> String {
+    error.set_input(None);
+    [
+        ("unknown field", "unknown key"),
+        ("missing field", "missing key"),
+        ("duplicate field", "duplicate key"),
+        ("unknown variant", "unknown value"),
+        ("expected i64", "expected a whole number"),
+        ("expected f64", "expected a number"),
+        ("\n", " "),
+    ]
+    .iter()
+    .fold(error.to_string().trim_end().to_owned(), |text, (from, to)| text.replace(from, to))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RawFile {
+    /// A built-in scene, instead of sky, materials and spheres.
+    scene: Option<Spanned<String>>,
+    scene_mark: Option<Spanned<String>>,
+    sky: Option<Spanned<RawSky>>,
+    materials: Option<BTreeMap<Spanned<String>, Material>>,
+    spheres: Option<Vec<Spanned<RawSphere>>>,
+    camera: Spanned<RawCamera>,
+    #[serde(default)]
+    keyframes: Vec<RawKeyframe>,
+    #[serde(default)]
+    render: RawSettings,
+    #[serde(default)]
+    rules: Rules,
+}
+
+/// Exactly three numbers; glam would ignore a fourth.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "Vec<f64>")]
+struct Triple(DVec3);
+
+impl TryFrom<Vec<f64>> for Triple {
+    type Error = String;
+
+    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
+        match numbers[..] {
+            [x, y, z] => Ok(Triple(DVec3::new(x, y, z))),
+            _ => Err(format!("expected three numbers, such as [0.0, 1.0, 0.0], but found {}", numbers.len())),
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct RawSky {
+    bottom: Option<Triple>,
+    top: Option<Triple>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct RawSphere {
+    center: Triple,
+    radius: f64,
+    /// The name of a material, or the table of one.
+    material: toml::Value,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct RawCamera {
+    look_from: Triple,
+    look_at: Triple,
+    vup: Option<Triple>,
+    vfov_degrees: f64,
+    #[serde(default)]
+    defocus_angle_degrees: f64,
+    focus_distance: Option<f64>,
+}
+
+/// What a keyframe leaves out is as in `[camera]`, except for the focus distance: without it, the focus is on `look_at`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct RawKeyframe {
+    frame: Spanned<i64>,
+    look_from: Option<Triple>,
+    look_at: Option<Triple>,
+    vup: Option<Triple>,
+    vfov_degrees: Option<f64>,
+    defocus_angle_degrees: Option<f64>,
+    focus_distance: Option<f64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, expecting = "a table")]
+struct RawSettings {
+    width: Option<Spanned<i64>>,
+    height: Option<Spanned<i64>>,
+    samples_per_pixel: Option<Spanned<i64>>,
+    max_depth: Option<Spanned<i64>>,
+    sampler: Option<SamplerKind>,
+    seed: Option<Spanned<i64>>,
+    estimate_error: Option<bool>,
+}
+
+/// Why no picture can be made, and where in the text.
+struct Refusal {
+    place: Range<usize>,
+    reason: String,
+}
+
+fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
+    Refusal { place, reason: reason.to_string() }
+}
+
+/// Every value is checked here, where its place is known.
+fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
+    let (settings, samples_per_pixel) = settings_of(raw.render)?;
+    let scene = match raw.scene {
+        Some(scene) if raw.sky.is_some() || raw.materials.is_some() || raw.spheres.is_some() => {
+            let reason = "sky, materials and spheres cannot be combined with scene, which has its own; remove one of them";
+            return Err(refuse(scene.span(), reason));
+        }
+        Some(scene) => builtin_scene(&scene, raw.scene_mark.as_ref())?,
+        None => {
+            let sky = sky_of(raw.sky)?;
+            Arc::new(listed_scene(sky, raw.materials.unwrap_or_default(), raw.spheres.unwrap_or_default())?)
+        }
+    };
+    let camera = camera_of(&raw.camera)?;
+    Ok(Recipe {
+        name: name.to_owned(),
+        scene,
+        camera,
+        keyframes: keyframes_of(raw.keyframes, &camera)?,
+        settings,
+        rules: raw.rules,
+        samples_per_pixel,
+    })
+}
+
+/// A whole number within `lowest` and `highest`.
+fn whole<T: TryFrom<i64> + PartialOrd + Display>(
+    key: &str,
+    value: Option<Spanned<i64>>,
+    default: T,
+    [lowest, highest]: [T; 2],
+    remedy: &str,
+) -> Result<T, Refusal> {
+    let Some(value) = value else { return Ok(default) };
+    let number = T::try_from(*value.get_ref()).ok().filter(|number| lowest <= *number && *number <= highest);
+    number.ok_or_else(|| {
+        let reason =
+            format!("{key} is {}, but must be within {lowest} and {highest}; {remedy}", value.get_ref());
+        refuse(value.span(), reason)
+    })
+}
+
+fn settings_of(raw: RawSettings) -> Result<(RenderSettings, u64), Refusal> {
+    let default = RenderSettings::default();
+    let size = [1, SIZE_LIMIT];
+    let settings = RenderSettings {
+        width: whole("width", raw.width, default.width, size, "give pixels, such as 800")?,
+        height: whole("height", raw.height, default.height, size, "give pixels, such as 450")?,
+        max_depth: whole(
+            "max_depth",
+            raw.max_depth,
+            default.max_depth,
+            [1, DEPTH_LIMIT],
+            "the book uses 50 rays per path",
+        )?,
+        sampler: raw.sampler.unwrap_or(default.sampler),
+        seed: whole("seed", raw.seed, default.seed, [0, u32::MAX], "choose any number in this range")?,
+        estimate_error: raw.estimate_error.unwrap_or(default.estimate_error),
+    };
+    let (default, limits) = (DEFAULT_SAMPLES_PER_PIXEL, [1, SAMPLE_LIMIT]);
+    let samples = whole("samples_per_pixel", raw.samples_per_pixel, default, limits, "try 100")?;
+    Ok((settings, samples))
+}
+
+/// The built-in scene of this name. Refused if its mark differs from that in the file.
+fn builtin_scene(name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Result<Arc<Scene>, Refusal> {
+    let scene = Recipe::find(name.get_ref()).map_err(|error| refuse(name.span(), error))?.scene;
+    match mark {
+        Some(mark) if *mark.get_ref() != named::mark(&scene) => {
+            let reason = format!(
+                "the built-in scene {:?} has changed since this file was made; use the version that made it, or remove \
+                 scene_mark to take the present scene",
+                name.get_ref()
+            );
+            Err(refuse(mark.span(), reason))
+        }
+        _ => Ok(scene),
+    }
+}
+
+fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
+    let mut sky = Sky::default();
+    let Some(raw) = raw else { return Ok(sky) };
+    let RawSky { bottom, top } = raw.get_ref();
+    sky.bottom = bottom.map_or(sky.bottom, |Triple(colour)| colour);
+    sky.top = top.map_or(sky.top, |Triple(colour)| colour);
+    sky.validate().map_err(|error| refuse(raw.span(), error))?;
+    Ok(sky)
+}
+
+fn listed_scene(
+    sky: Sky,
+    materials: BTreeMap<Spanned<String>, Material>,
+    spheres: Vec<Spanned<RawSphere>>,
+) -> Result<Scene, Refusal> {
+    let mut scene = Scene { sky, ..Scene::default() };
+    // In the order of the file; the map has sorted them by name.
+    let mut named: Vec<_> = materials.into_iter().collect();
+    named.sort_by_key(|(name, _)| name.span().start);
+    let mut index_of = HashMap::with_capacity(named.len());
+    for (name, material) in named {
+        let place = name.span();
+        let name = name.into_inner();
+        material.validate(format_args!("materials.{name}")).map_err(|error| refuse(place, error))?;
+        index_of.insert(name.clone(), scene.add_material(name, material));
+    }
+    scene.spheres.reserve_exact(spheres.len());
+    for (index, sphere) in spheres.into_iter().enumerate() {
+        let place = sphere.span();
+        let RawSphere { center: Triple(center), radius, material } = sphere.into_inner();
+        let material = material_of(material, index, &mut scene, &mut index_of)
+            .map_err(|reason| Refusal { place: place.clone(), reason })?;
+        scene.add_sphere(center, radius, material);
+        let validated = scene.spheres[index].validate(index, scene.materials.len());
+        validated.map_err(|error| refuse(place, error))?;
+    }
+    Ok(scene)
+}
+
+/// The index of a sphere's material. One that is given in place gets a name that no other has.
+fn material_of(
+    value: toml::Value,
+    sphere: usize,
+    scene: &mut Scene,
+    index_of: &mut HashMap<String, usize>,
+) -> Result<usize, String> {
+    let what = format_args!("spheres[{sphere}].material");
+    match value {
+        toml::Value::String(name) => index_of.get(&name).copied().ok_or_else(|| {
+            let error = SceneError::MissingMaterial { sphere, material: name };
+            error.to_string()
+        }),
+        table @ toml::Value::Table(_) => {
+            let material = Material::deserialize(table);
+            let material = material.map_err(|error| format!("{what}: {}", in_toml_words(error)))?;
+            material.validate(what).map_err(|error| error.to_string())?;
+            let mut name = format!("sphere-{sphere}");
+            while index_of.contains_key(&name) {
+                name.push('*');
+            }
+            let index = scene.add_material(name.clone(), material);
+            index_of.insert(name, index);
+            Ok(index)
+        }
+        other => Err(format!(
+            "{what} is {other}, but must be a material's name or a table such as {{ kind = \"metal\", albedo = [0.8, 0.8, \
+             0.8] }}"
+        )),
+    }
+}
+
+fn camera_of(raw: &Spanned<RawCamera>) -> Result<Camera, Refusal> {
+    let place = raw.span();
+    let raw = raw.get_ref();
+    let camera = Camera {
+        look_from: raw.look_from.0,
+        look_at: raw.look_at.0,
+        vup: raw.vup.map_or(Camera::BOOK.vup, |Triple(vup)| vup),
+        vfov_degrees: raw.vfov_degrees,
+        defocus_angle_degrees: raw.defocus_angle_degrees,
+        focus_distance: raw.focus_distance,
+    };
+    camera.validate().map_err(|error| refuse(place, error))?;
+    Ok(camera)
+}
+
+/// The keyframes, with what they leave out taken from `camera`.
+fn keyframes_of(raw: Vec<RawKeyframe>, camera: &Camera) -> Result<Vec<Keyframe>, Refusal> {
+    let mut keyframes: Vec<Keyframe> = Vec::with_capacity(raw.len());
+    for raw in raw {
+        let place = raw.frame.span();
+        let frame = whole("frame", Some(raw.frame), 0, [0, FRAME_LIMIT - 1], "count frames from 0")?;
+        if let Some(Keyframe { frame: before, .. }) = keyframes.last()
+            && *before >= frame
+        {
+            let reason = format!(
+                "frame is {frame}, but the keyframe before it has {before}; list keyframes by rising frame number, each \
+                 number once"
+            );
+            return Err(refuse(place, reason));
+        }
+        let vector = |raw: Option<Triple>, default| raw.map_or(default, |Triple(vector)| vector);
+        let camera = Camera {
+            look_from: vector(raw.look_from, camera.look_from),
+            look_at: vector(raw.look_at, camera.look_at),
+            vup: vector(raw.vup, camera.vup),
+            vfov_degrees: raw.vfov_degrees.unwrap_or(camera.vfov_degrees),
+            defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(camera.defocus_angle_degrees),
+            focus_distance: raw.focus_distance,
+        };
+        camera.validate().map_err(|error| refuse(place, error))?;
+        keyframes.push(Keyframe { frame, camera });
+    }
+    Ok(keyframes)
+}

@@ -1,0 +1,116 @@
+//! From a recipe to TOML.
+
+use super::named::{mark, name_of};
+use crate::job::recipe::Recipe;
+use crate::job::render::{RenderSettings, SettingValue};
+use crate::scene::animation::Keyframe;
+use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
+use crate::stages::Rules;
+use glam::DVec3;
+
+/// With more spheres than this, each takes one line, and they come first in the file.
+const LONG_FORM_LIMIT: usize = 40;
+
+/// The recipe as a scene file, without its name. Numbers have the fewest digits that give the same bits again.
+///
+/// A recipe that is not valid is written as it is; reading it back reports what is wrong.
+pub fn to_toml(recipe: &Recipe) -> String {
+    let Scene { materials, spheres, sky } = &*recipe.scene;
+    let is_long = spheres.len() > LONG_FORM_LIMIT;
+    let values = |sphere: &Sphere| {
+        let material = materials.get(sphere.material).map_or("", |named| &named.name);
+        (vector(sphere.center), number(sphere.radius), toml_string(material))
+    };
+    let mut text = String::with_capacity(1000 + 100 * spheres.len());
+    if is_long {
+        text.push_str("# Camera, render settings, sky and materials follow the spheres.\nspheres = [\n");
+        for (center, radius, material) in spheres.iter().map(values) {
+            text += &format!("  {{ center = {center}, radius = {radius}, material = {material} }},\n");
+        }
+        text.push_str("]\n\n");
+    }
+    text += &settings(recipe);
+    let (bottom, top) = (vector(sky.bottom), vector(sky.top));
+    text += &format!("\n[sky] # radiance, linear RGB\nbottom = {bottom}\ntop = {top}\n");
+    if !materials.is_empty() {
+        text.push_str("\n[materials]\n");
+        text.extend(materials.iter().map(material_line));
+    }
+    if !is_long {
+        for (center, radius, material) in spheres.iter().map(values) {
+            text += &format!("\n[[spheres]]\ncenter = {center}\nradius = {radius}\nmaterial = {material}\n");
+        }
+    }
+    text
+}
+
+/// Like [`to_toml`], for the description of a picture: a large, unchanged built-in field is named, not listed.
+pub fn to_picture_toml(recipe: &Recipe) -> String {
+    let Some(name) = name_of(&recipe.scene) else { return to_toml(recipe) };
+    let (name, mark) = (toml_string(&name), toml_string(&mark(&recipe.scene)));
+    let count = recipe.scene.spheres.len();
+    format!("scene = {name} # {count} spheres\nscene_mark = {mark}\n\n{}", settings(recipe))
+}
+
+/// Everything but the scene.
+fn settings(recipe: &Recipe) -> String {
+    let mut text = format!("[camera] # lengths in scene units\n{}", camera_keys(&recipe.camera));
+    for Keyframe { frame, camera } in &recipe.keyframes {
+        text += &format!("\n[[keyframes]]\nframe = {frame}\n{}", camera_keys(camera));
+    }
+    let RenderSettings { width, height, .. } = recipe.settings;
+    let samples = recipe.samples_per_pixel;
+    text +=
+        &format!("\n[render]\nwidth = {width} # pixels\nheight = {height}\nsamples_per_pixel = {samples}\n");
+    for named in RenderSettings::NAMED {
+        let value = match (named.value)(&recipe.settings) {
+            SettingValue::Number(number) => number.to_string(),
+            SettingValue::Name(name) => toml_string(name),
+            SettingValue::Switch(is_on) => is_on.to_string(),
+        };
+        let comment = if named.comment.is_empty() { String::new() } else { format!(" # {}", named.comment) };
+        text += &format!("{} = {value}{comment}\n", named.key);
+    }
+    text + &rules(&recipe.rules)
+}
+
+fn camera_keys(camera: &Camera) -> String {
+    let Camera { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance } = camera;
+    let vectors = [("look_from", look_from), ("look_at", look_at), ("vup", vup)];
+    let numbers = [("vfov_degrees", vfov_degrees), ("defocus_angle_degrees", defocus_angle_degrees)];
+    let focus = focus_distance.as_ref().map(|distance| ("focus_distance", distance));
+    let vectors = vectors.map(|(key, value)| format!("{key} = {}\n", vector(*value)));
+    let numbers =
+        numbers.into_iter().chain(focus).map(|(key, value)| format!("{key} = {}\n", number(*value)));
+    vectors.into_iter().chain(numbers).collect()
+}
+
+/// Only the rules that differ from the finished renderer's.
+fn rules(rules: &Rules) -> String {
+    let table = |rules: &Rules| toml::Table::try_from(rules).unwrap_or_default();
+    let finished = table(&Rules::FINISHED);
+    let different = table(rules).into_iter().filter(|(key, value)| finished.get(key) != Some(value));
+    let lines: String = different.map(|(key, value)| format!("{key} = {value}\n")).collect();
+    if lines.is_empty() {
+        return lines;
+    }
+    format!("\n[rules] # where they differ from the finished renderer's\n{lines}")
+}
+
+fn material_line(named: &NamedMaterial) -> String {
+    let keys = named.material.parameters().into_iter().map(|(key, parameter)| match parameter {
+        Parameter::Number(value) => format!("{key} = {}", number(value)),
+        Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
+    });
+    let keys = keys.collect::<Vec<_>>().join(", ");
+    format!("{} = {{ kind = \"{}\", {keys} }}\n", toml_key(&named.name), named.material.kind())
+}
+
+fn vector(v: DVec3) -> String {
+    format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
+}
+
+/// Rust's shortest form, which TOML can read, except for NaN.
+fn number(x: f64) -> String {
+    if x.is_nan() { "nan".to_owned() } else { format!("{x:?}") }
+}

@@ -1,0 +1,179 @@
+//! A recipe: everything that defines a picture. A scene file contains one, a stage is one, and the window edits one.
+//! Validation turns it into a [`RenderJob`].
+
+pub mod file;
+
+use crate::job::render::{JobError, RenderJob, RenderSettings, TRACING_BYTES_PER_SPHERE};
+use crate::scene::animation::{CameraPath, Keyframe};
+use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
+use crate::scene::{Camera, Scene, Sphere};
+use crate::stages::{Rules, Setup, Stage};
+use crate::system::memory::{self, MemoryError};
+use crate::system::suggest::{or_nearest, similar_names};
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Samples per pixel of a scene file that does not set them.
+pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
+
+/// Scene, camera, settings, rules and the wanted number of samples, not checked yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recipe {
+    /// The name of a built-in scene, the id of a stage, or the stem of a file name.
+    pub name: String,
+    /// Spheres, materials and sky. All jobs of the recipe share it.
+    pub scene: Arc<Scene>,
+    /// The camera.
+    pub camera: Camera,
+    /// The keyframes of an animation by rising frame number, if there are any. Not part of the job, which is one picture.
+    pub keyframes: Vec<Keyframe>,
+    /// Size, depth, sampler, seed, halves.
+    pub settings: RenderSettings,
+    /// The rules in force.
+    pub rules: Rules,
+    /// Samples per pixel that the picture should have, `1..=2^32`. Not part of the job: a film can have any number.
+    pub samples_per_pixel: u64,
+}
+
+impl Recipe {
+    /// The picture of a frame.
+    pub fn at_frame(&self, path: &CameraPath, frame: u32) -> Recipe {
+        Recipe { camera: path.camera(frame), keyframes: Vec::new(), ..self.clone() }
+    }
+
+    /// The built-in scene of this name; `field:N` is a field of `N` spheres.
+    pub fn builtin(name: &str) -> Option<Recipe> {
+        Self::find(name).ok()
+    }
+
+    /// The built-in scene of this name; `field:N` is a field of `N` spheres.
+    ///
+    /// # Errors
+    /// [`SceneNameError`], with similar names or the limits of a field.
+    pub fn find(name: &str) -> Result<Recipe, SceneNameError> {
+        if let Some(builtin) = BuiltinScene::find(name) {
+            let (scene, camera) = (builtin.build)();
+            return Ok(Self::of_builtin(builtin, name, scene, camera));
+        }
+        let Some(count) = name.strip_prefix("field:") else {
+            let near = similar_names(name, BuiltinScene::ALL.iter().map(|scene| scene.name));
+            return Err(SceneNameError::Unknown { name: name.to_owned(), near });
+        };
+        match count.parse() {
+            Ok(number) if FIELD_COUNT_LIMITS.contains(&number) => {
+                let bytes = number * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE);
+                memory::check(|| format!("field:{number}"), bytes, "choose a field of fewer spheres")?;
+                let (scene, camera) = field(number);
+                Ok(Self::of_builtin(&BuiltinScene::FIELD, name, scene, camera))
+            }
+            _ => Err(SceneNameError::FieldCount { count: count.to_owned() }),
+        }
+    }
+
+    fn of_builtin(builtin: &BuiltinScene, name: &str, scene: Scene, camera: Camera) -> Recipe {
+        let BuiltinScene { width, height, samples_per_pixel, max_depth, .. } = *builtin;
+        Recipe {
+            name: name.to_owned(),
+            scene: Arc::new(scene),
+            camera,
+            keyframes: Vec::new(),
+            settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
+            rules: Rules::FINISHED,
+            samples_per_pixel,
+        }
+    }
+
+    /// Checks scene, camera, settings and rules.
+    ///
+    /// # Errors
+    /// See [`RenderJob::new`].
+    pub fn job(&self) -> Result<RenderJob, JobError> {
+        RenderJob::new(Arc::clone(&self.scene), self.camera, self.settings, self.rules)
+    }
+}
+
+/// A name that every file system accepts: other characters become dashes.
+pub fn plain_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '-' }).collect()
+}
+
+impl Stage {
+    /// The picture that shows this stage.
+    pub fn recipe(&self) -> Recipe {
+        let Setup { scene, camera, rules, width, height, samples_per_pixel, max_depth } = self.setup;
+        Recipe {
+            name: self.id.to_owned(),
+            scene: Arc::new(scene()),
+            camera,
+            keyframes: Vec::new(),
+            settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
+            rules,
+            samples_per_pixel,
+        }
+    }
+}
+
+/// No built-in scene has this name.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum SceneNameError {
+    /// There is no such scene.
+    #[error("there is no scene {name:?}; {}", or_nearest(near))]
+    Unknown {
+        /// The name that was given.
+        name: String,
+        /// Similar names, best match first.
+        near: Vec<&'static str>,
+    },
+    /// `field:N` with an `N` out of range.
+    #[error(
+        "field:{count} has {count:?} for its number of spheres, which must be within {} and {}; try field:10000",
+        FIELD_COUNT_LIMITS.start(),
+        FIELD_COUNT_LIMITS.end()
+    )]
+    FieldCount {
+        /// The text after the colon.
+        count: String,
+    },
+    /// There is not enough memory for so many spheres.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_by_name() {
+        for builtin in BuiltinScene::ALL {
+            let recipe = Recipe::builtin(builtin.name).expect("in the registry");
+            assert_eq!(recipe.name, builtin.name);
+            recipe.job().expect("valid");
+        }
+        let field = Recipe::builtin("field:123").expect("a field");
+        assert_eq!((field.name.as_str(), field.scene.spheres.len()), ("field:123", 124));
+        assert_eq!(field.settings, Recipe::builtin("field").expect("a field").settings);
+    }
+
+    #[test]
+    fn an_unknown_scene_gives_similar_names() {
+        let message = |name: &str| Recipe::find(name).expect_err("unknown").to_string();
+        assert_eq!(
+            message("three-sphere"),
+            "there is no scene \"three-sphere\"; did you mean three-spheres or two-spheres? --list shows all"
+        );
+        assert_eq!(message("xylophone"), "there is no scene \"xylophone\"; --list shows all");
+        for count in ["0", "10000001", "-1", "many", ""] {
+            let refused = message(&format!("field:{count}"));
+            assert!(refused.contains("must be within 1 and 10000000"), "{refused}");
+        }
+        assert_eq!(Recipe::builtin("xylophone"), None);
+    }
+
+    #[test]
+    fn plain_names_have_no_sign_that_a_file_system_minds() {
+        assert_eq!(plain_name("field:100"), "field-100");
+        assert_eq!(plain_name("a/b\\c\"d*e?f<g>h|i\0j"), "a-b-c-d-e-f-g-h-i-j");
+        assert_eq!(plain_name("Köln 1_2.3-4"), "Köln 1_2.3-4");
+    }
+}

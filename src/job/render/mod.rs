@@ -1,0 +1,406 @@
+//! The job that every backend renders, and its interface: [`RenderJob`] and the [`Renderer`] trait.
+//!
+//! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet width,
+//! the thread, neighbouring pixels or earlier samples. Everything else relies on this.
+
+mod settings;
+
+pub use settings::{NamedSetting, RenderSettings, SamplerKind, SettingValue};
+
+pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
+
+use crate::film::Film;
+use crate::scene::{Camera, Scene, SceneError};
+use crate::stages::Rules;
+use crate::system::memory::{self, MemoryError};
+use serde::Serialize;
+use std::any::Any;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use thiserror::Error;
+
+/// Largest number of rays per path.
+pub const DEPTH_LIMIT: u32 = 10_000;
+
+/// Memory per pixel besides its sums while the picture is written.
+const OUTPUT_BYTES_PER_PIXEL: u64 = 4;
+
+/// Memory per sphere besides its place in the scene: prepared scene, hierarchy, and the peak while building them.
+pub const TRACING_BYTES_PER_SPHERE: u64 = 400;
+
+/// A job: a picture to render, validated once. Two equal jobs have the same samples.
+#[derive(Clone, Debug)]
+pub struct RenderJob {
+    scene: Arc<Scene>,
+    camera: Camera,
+    settings: RenderSettings,
+    rules: Rules,
+}
+
+impl PartialEq for RenderJob {
+    /// Scenes that share memory are not compared sphere by sphere.
+    fn eq(&self, other: &Self) -> bool {
+        (self.camera, self.settings, self.rules) == (other.camera, other.settings, other.rules)
+            && (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene)
+    }
+}
+
+impl RenderJob {
+    /// Creates a job and validates everything that backends rely on.
+    ///
+    /// # Errors
+    /// The first invalid value, with its limit and a remedy.
+    pub fn new(
+        scene: impl Into<Arc<Scene>>,
+        camera: Camera,
+        settings: RenderSettings,
+        rules: Rules,
+    ) -> Result<Self, JobError> {
+        let scene = scene.into();
+        scene.validate()?;
+        RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
+    }
+
+    /// The same scene and rules with another camera or picture size. The scene is shared and not validated again.
+    ///
+    /// # Errors
+    /// The first invalid value of the camera or the settings.
+    pub fn seen_by(&self, camera: Camera, settings: RenderSettings) -> Result<Self, JobError> {
+        camera.validate()?;
+        for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
+            if !(1..=SIZE_LIMIT).contains(&pixels) {
+                return Err(JobError::Size { what, pixels });
+            }
+        }
+        if !(1..=DEPTH_LIMIT).contains(&settings.max_depth) {
+            return Err(JobError::Depth { depth: settings.max_depth });
+        }
+        Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
+    }
+
+    /// Whether both jobs share one scene in memory, under the same rules.
+    pub fn shares_scene_with(&self, other: &RenderJob) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene) && self.rules == other.rules
+    }
+
+    /// The scene: spheres, materials and sky.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The camera of the job.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Size, depth, sampler, seed and halves.
+    pub fn settings(&self) -> &RenderSettings {
+        &self.settings
+    }
+
+    /// The rules in effect.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// Creates an empty film for this job.
+    pub fn new_film(&self) -> Film {
+        Film::new(self.settings.width, self.settings.height, self.settings.half_count())
+    }
+
+    /// Returns an error if the job and `films` films of its size do not fit into memory while it is prepared, traced
+    /// and written.
+    ///
+    /// # Errors
+    /// [`MemoryError`], with a remedy.
+    pub fn check_memory(&self, films: u64) -> Result<(), MemoryError> {
+        let RenderSettings { width, height, .. } = self.settings;
+        let film = Film::bytes(width, height, self.settings.half_count()).saturating_mul(films);
+        let output = u64::from(width) * u64::from(height) * OUTPUT_BYTES_PER_PIXEL;
+        let spheres = self.scene.spheres.len();
+        let remedy = match self.settings.half_count() {
+            1 => "choose a smaller --size, or a scene of fewer spheres",
+            _ => {
+                "choose a smaller --size, or halve the film with --estimate-error off, or choose a scene of fewer spheres"
+            }
+        };
+        memory::check(
+            || format!("a picture of {width}x{height} of {spheres} spheres"),
+            film.saturating_add(output).saturating_add(TRACING_BYTES_PER_SPHERE * spheres as u64),
+            remedy,
+        )
+    }
+
+    /// Whether a film has this job's shape.
+    pub fn fits(&self, film: &Film) -> bool {
+        let RenderSettings { width, height, .. } = self.settings;
+        (film.width(), film.height(), film.halves().len()) == (width, height, self.settings.half_count())
+    }
+}
+
+/// A job that cannot be rendered.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum JobError {
+    /// The scene or the camera is invalid.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The picture's size is out of range.
+    #[error(
+        "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller picture or stitch several"
+    )]
+    Size {
+        /// The dimension: "width" or "height".
+        what: &'static str,
+        /// The requested number of pixels.
+        pixels: u32,
+    },
+    /// The depth is out of range.
+    #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
+    Depth {
+        /// The requested number of rays per path.
+        depth: u32,
+    },
+}
+
+/// Statistics of a call to [`Renderer::accumulate`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Completed paths: pixels times samples.
+    pub paths: u64,
+    /// Rays traced.
+    pub rays: u64,
+    /// Rejected samples: NaN, infinite or negative.
+    pub rejected: u64,
+    /// Lanes that traced a ray, summed over all intersections of packets.
+    pub busy_lanes: u64,
+    /// Available lanes, summed over all intersections of packets.
+    pub offered_lanes: u64,
+    /// Wall time spent tracing.
+    pub trace: Duration,
+}
+
+impl Stats {
+    /// Adds the statistics of another call.
+    pub fn add(&mut self, other: &Stats) {
+        self.paths += other.paths;
+        self.rays += other.rays;
+        self.rejected += other.rejected;
+        self.busy_lanes += other.busy_lanes;
+        self.offered_lanes += other.offered_lanes;
+        self.trace += other.trace;
+    }
+}
+
+/// What a kernel has code for, in words.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct KernelContents {
+    /// What it has.
+    pub present: String,
+    /// What it leaves out.
+    pub left_out: Vec<&'static str>,
+}
+
+/// Occupancy of packets in each tile of a picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TileOccupancy {
+    /// Side of a tile in pixels.
+    pub side: u32,
+    /// Number of tiles in a row.
+    pub columns: u32,
+    /// Busy lanes and available lanes of each tile, summed over all intersections; row by row from the top.
+    pub tiles: Vec<[u64; 2]>,
+}
+
+impl TileOccupancy {
+    /// Share of lanes in use in the tile of a pixel, `0..=1`; `None` if nothing has been traced there.
+    pub fn share_at(&self, [x, y]: [u32; 2]) -> Option<f64> {
+        let side = self.side.max(1);
+        let [busy, offered] = *self.tiles.get((y / side * self.columns + x / side) as usize)?;
+        (offered > 0).then(|| busy as f64 / offered as f64)
+    }
+}
+
+/// Why samples could not be added to a film.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The caller cancelled the call. The film's sums are then unusable.
+    #[error("cancelled")]
+    Cancelled,
+    /// The backend failed; another can continue from the last good film.
+    #[error("{backend} failed: {reason}")]
+    Backend {
+        /// Name of the backend.
+        backend: &'static str,
+        /// The backend's error message.
+        reason: String,
+    },
+    /// The backend failed while adding samples, and its partial additions could not be removed: the film is unusable.
+    #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
+    FilmLost {
+        /// Name of the backend.
+        backend: &'static str,
+        /// The backend's error message.
+        reason: String,
+    },
+    /// The same samples were requested twice.
+    #[error(transparent)]
+    Film(#[from] crate::film::FilmError),
+}
+
+impl RenderError {
+    /// Converts a backend's panic to an error.
+    pub fn of_panic(backend: &'static str, payload: &(dyn Any + Send)) -> Self {
+        RenderError::Backend { backend, reason: format!("it panicked: {}", panic_text(payload)) }
+    }
+}
+
+/// The message of a panic.
+pub fn panic_text(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("for no stated reason")
+}
+
+/// Describes a backend, for reports.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BackendInfo {
+    /// "cpu", "reference" or "gpu".
+    pub name: &'static str,
+    /// The instruction level, or the adapter.
+    pub device: String,
+    /// Number of paths that advance in step.
+    pub lanes: usize,
+    /// Number of threads.
+    pub threads: usize,
+}
+
+/// A backend, which adds samples to a film.
+pub trait Renderer: Send {
+    /// Describes this backend.
+    fn info(&self) -> BackendInfo;
+
+    /// The backends that added the samples of the last [`Renderer::accumulate`], which added `added` samples per pixel.
+    /// By default, this renderer added all of them.
+    fn credits(&self, added: u64) -> Vec<(BackendInfo, u64)> {
+        vec![(self.info(), added)]
+    }
+
+    /// Takes messages that the user has not seen yet, such as a software adapter in use or a part that failed.
+    fn take_messages(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Wall time of building the prepared job's hierarchy; zero if it has none.
+    fn hierarchy_time(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    /// Total time of all dispatches so far by the device's own clock; `None` without one.
+    fn device_time(&self) -> Option<Duration> {
+        None
+    }
+
+    /// Describes the prepared job's kernel and the time it took to compile.
+    fn kernel(&self) -> String {
+        String::new()
+    }
+
+    /// What the prepared job's kernel has and leaves out; both empty if no job is prepared.
+    fn kernel_contents(&self) -> KernelContents {
+        KernelContents::default()
+    }
+
+    /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        None
+    }
+
+    /// Begins a film of `job`: builds whatever tracing needs and is not there yet (prepared scene, hierarchy, kernels),
+    /// and discards traced samples that were not collected.
+    ///
+    /// Checks `cancel` while the scene is prepared and while kernels compile.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`] if the backend cannot render this job; [`RenderError::Cancelled`] if it was cancelled.
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
+
+    /// Estimates how long a sample of every pixel of the prepared job takes, by tracing about one pixel in `one_in` and
+    /// dropping what it finds: `film` has the job's size and stays as it is. In long passes a sample takes less. `None` from
+    /// a renderer that cannot tell.
+    fn try_out(&mut self, _film: &mut Film, _one_in: usize, _cancel: &AtomicBool) -> Option<Duration> {
+        None
+    }
+
+    /// Adds samples `range` of every pixel to `film` and records them there. Prepares the job if necessary.
+    ///
+    /// Checks `cancel` between small units of work.
+    ///
+    /// # Errors
+    /// After [`RenderError::Cancelled`] and [`RenderError::FilmLost`] the film's sums are incomplete: discard it. After
+    /// any other error the film is unchanged. It is also unchanged after a panic: a renderer that adds to it piece by
+    /// piece catches panics and removes the pieces.
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError>;
+
+    /// Like [`Renderer::accumulate`], but need not wait for results: samples may stay with the renderer until a later
+    /// call adds them to the same film. The film records the samples that it contains, and the statistics cover those
+    /// that this call added.
+    ///
+    /// # Errors
+    /// As for [`Renderer::accumulate`]; samples that are not in the film are then lost.
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.accumulate(job, range, film, cancel)
+    }
+
+    /// Like [`Renderer::advance`], but if `stop` is set meanwhile, does what is quicker: finishes, or removes what it has
+    /// added. `None` if it has removed it: the film is then as it was. By default, it finishes.
+    ///
+    /// # Errors
+    /// As for [`Renderer::advance`].
+    fn advance_unless(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+        _stop: &AtomicBool,
+    ) -> Result<Option<Stats>, RenderError> {
+        self.advance(job, range, film, cancel).map(Some)
+    }
+
+    /// Whether [`Renderer::advance_unless`] heeds a stop, so that one takes at most half the time of a pass.
+    fn heeds_stop(&self) -> bool {
+        false
+    }
+
+    /// Requests what has been traced so far: the next [`Renderer::advance`] adds it to the film while tracing.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    fn fetch(&mut self) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    /// Waits for everything traced so far and adds to the film what it does not contain.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`]; samples that are not in the film are then lost.
+    fn collect(&mut self, _film: &mut Film) -> Result<Stats, RenderError> {
+        Ok(Stats::default())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,102 @@
+//! Describes in words how two jobs differ.
+
+use crate::job::recipe::file;
+use crate::job::render::{RenderJob, RenderSettings};
+
+/// Checks whether two recipes, given as text, describe the same samples.
+///
+/// # Errors
+/// What differs, or what is wrong with one of the recipes, in words.
+pub fn same_job(first: &str, other: &str) -> Result<(), String> {
+    let (first, other) = (job(first)?, job(other)?);
+    difference(&first, &other).map_or(Ok(()), Err)
+}
+
+fn job(text: &str) -> Result<RenderJob, String> {
+    let recipe =
+        file::parse(text, "its recipe").map_err(|error| format!("cannot read its recipe: {error}"))?;
+    recipe.job().map_err(|error| error.to_string())
+}
+
+/// The first difference between two jobs, in words that a user can act on; `None` if their samples are the same.
+pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
+    if first == other {
+        return None;
+    }
+    let [mine, theirs] = [first, other].map(named_values);
+    let differing = mine.into_iter().zip(theirs).find(|((_, mine), (_, theirs))| mine != theirs);
+    Some(differing.map_or_else(
+        || "the spheres, materials or sky differ".to_owned(),
+        |((what, mine), (_, theirs))| format!("{what} is {mine} here, {theirs} there"),
+    ))
+}
+
+/// What a user chooses of a job, with the names of the flags; then the rules of the stage.
+fn named_values(job: &RenderJob) -> Vec<(String, String)> {
+    let (settings, camera) = (job.settings(), job.camera());
+    let mut values = vec![("size", format!("{}x{}", settings.width, settings.height))];
+    values
+        .extend(RenderSettings::NAMED.iter().map(|named| (named.flag, (named.value)(settings).to_string())));
+    let distance = camera.focus_distance.map_or("that to the point looked at".to_owned(), |d| d.to_string());
+    values.extend([
+        ("look-from", camera.look_from.to_string()),
+        ("look-at", camera.look_at.to_string()),
+        ("vup", camera.vup.to_string()),
+        ("vfov", camera.vfov_degrees.to_string()),
+        ("defocus-angle", camera.defocus_angle_degrees.to_string()),
+        ("focus-distance", distance),
+        ("number of spheres", job.scene().spheres.len().to_string()),
+    ]);
+    let mut values: Vec<_> = values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
+    // Their names in scene files.
+    if let Ok(serde_json::Value::Object(rules)) = serde_json::to_value(job.rules()) {
+        let words = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
+        values.extend(rules.into_iter().map(words));
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::recipe::Recipe;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_differs_first_is_named_with_both_values() {
+        let recipe = Recipe::builtin("three-spheres").unwrap();
+        let told = |change: fn(&mut Recipe)| {
+            let mut other = recipe.clone();
+            change(&mut other);
+            difference(&recipe.job().unwrap(), &other.job().unwrap())
+        };
+        assert_eq!(told(|_| {}), None);
+        // Equal numbers are no difference, whatever their signs.
+        assert_eq!(told(|recipe| recipe.camera.look_from.x = -0.0), None);
+        let cases: [(fn(&mut Recipe), &str); 8] = [
+            (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
+            (|recipe| recipe.settings.seed = 5, "seed is 0 here, 5 there"),
+            (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov is 90 here, 20 there"),
+            (|recipe| recipe.camera.look_from.y = -2.5, "look-from is [0, 0, 0] here, [0, -2.5, 0] there"),
+            (
+                |recipe| recipe.camera.focus_distance = Some(3.4),
+                "focus-distance is that to the point looked at here, 3.4 there",
+            ),
+            (
+                |recipe| recipe.rules.antialiasing = false,
+                "the stage's rule antialiasing is true here, false there",
+            ),
+            (
+                |recipe| Arc::make_mut(&mut recipe.scene).spheres.truncate(4),
+                "number of spheres is 5 here, 4 there",
+            ),
+            (
+                |recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 0.5,
+                "the spheres, materials or sky differ",
+            ),
+        ];
+        for (change, expected) in cases {
+            assert_eq!(told(change).as_deref(), Some(expected));
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Tells whether the file of a frame is there and right.
+
+use super::difference::same_job;
+use crate::film::{Description, key};
+use crate::job::output::{check_frame, length_of_missing, read_description, recipe_in_picture};
+use crate::job::recipe::{Recipe, file};
+use crate::system::files::ShownPath;
+use std::path::Path;
+
+/// What is there of a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FrameState {
+    /// The whole picture.
+    Whole,
+    /// No file.
+    Missing,
+    /// A file that is damaged, of another picture, or from another version of the program: why, in words.
+    Wrong(String),
+}
+
+impl FrameState {
+    /// What is there of the frame that `recipe` describes. `software` is the program and its version.
+    pub fn of(path: &Path, recipe: &Recipe, software: &str) -> FrameState {
+        if path.symlink_metadata().is_err() {
+            return FrameState::Missing;
+        }
+        let found = match read_description(path) {
+            Ok(found) => found,
+            Err(error) => return FrameState::Wrong(error.to_string()),
+        };
+        let wrong = |what: String| FrameState::Wrong(format!("{} is {what}", path.shown()));
+        let wanted = Description::new(&file::to_picture_toml(recipe));
+        if found.recipe() != recipe_in_picture(wanted.recipe()) {
+            // A recipe that is too long for a picture is not in it.
+            return match same_job(wanted.recipe(), found.recipe()) {
+                Err(difference) if length_of_missing(found.recipe()).is_none() => {
+                    wrong(format!("of another picture: {difference}"))
+                }
+                _ => wrong("of another picture".to_owned()),
+            };
+        }
+        let said = |key| found.get(key).unwrap_or("unknown");
+        let samples = recipe.samples_per_pixel.to_string();
+        if said(key::SAMPLES) != samples {
+            return wrong(format!("of {} samples per pixel, not {samples}", said(key::SAMPLES)));
+        }
+        if said(key::SOFTWARE) != software {
+            return wrong(format!("from {}, not {software}", said(key::SOFTWARE)));
+        }
+        match check_frame(path, [recipe.settings.width, recipe.settings.height]) {
+            Ok(()) => FrameState::Whole,
+            Err(error) => FrameState::Wrong(error.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::output::{RECIPE_LIMIT, write_image};
+    use crate::job::saved::Saved;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_frame_is_whole_if_all_that_made_it_is_the_same() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("frame.png");
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+        let of = |recipe: &Recipe, software: &str| FrameState::of(&path, recipe, software);
+        assert_eq!(of(&recipe, "Weekender 1"), FrameState::Missing);
+
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(0..2, 0).unwrap();
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
+        description.set(key::SOFTWARE, "Weekender 1");
+        description.set(key::SAMPLES, 2);
+        let write = |description: &Description| {
+            write_image(&path, &film, recipe.rules.transfer, description).unwrap()
+        };
+        write(&description);
+        assert_eq!(of(&recipe, "Weekender 1"), FrameState::Whole);
+
+        let told = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
+            FrameState::Wrong(words) => assert!(words.contains(part), "{words} should say {part}"),
+            other => panic!("{other:?}, but should say {part}"),
+        };
+        told(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
+        let mut other = recipe.clone();
+        other.settings.seed = 5;
+        told(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
+        description.set(key::SAMPLES, 1);
+        write(&description);
+        told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
+        std::fs::write(&path, "no picture").unwrap();
+        told(&recipe, "Weekender 1", "frame.png");
+    }
+
+    #[test]
+    fn a_frame_whose_recipe_is_too_long_for_a_picture_is_whole_too() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("frame.png");
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(0..2, 0).unwrap();
+        let scene = Arc::make_mut(&mut recipe.scene);
+        let mut long = scene.materials[0].clone();
+        long.name = "x".repeat(RECIPE_LIMIT);
+        scene.materials.push(long);
+
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
+        description.set(key::SOFTWARE, "Weekender 1");
+        description.set(key::SAMPLES, 2);
+        write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
+        assert_eq!(FrameState::of(&path, &recipe, "Weekender 1"), FrameState::Whole);
+        recipe.settings.seed = 5;
+        let told = FrameState::of(&path, &recipe, "Weekender 1");
+        assert_eq!(told, FrameState::Wrong(format!("{} is of another picture", path.shown())));
+        let told = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
+        assert!(told.contains("frame.png") && told.contains("open the scene file"), "{told}");
+    }
+}

@@ -1,0 +1,226 @@
+//! Reads saved files: a scene file, a picture that describes how it was made, or a film with its samples. All code that
+//! opens or resumes a file uses this module.
+
+mod difference;
+mod frames;
+mod replaced;
+mod rescue;
+
+pub use difference::{difference, same_job};
+pub use frames::FrameState;
+pub use replaced::Replaced;
+pub use rescue::rescue;
+
+use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
+use crate::job::output::{OutputError, RECIPE_LIMIT, length_of_missing, read_description};
+use crate::job::recipe::{Recipe, file};
+use crate::job::render::RenderJob;
+use crate::stages::Stage;
+use crate::system::files::ShownPath;
+use std::path::{Path, PathBuf};
+
+/// Why a file cannot be opened or resumed. The message names the file and says what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    #[error(transparent)]
+    Scene(#[from] file::FileError),
+    /// The film is damaged, of another version, or cannot be read; or a film is needed, and this is none.
+    #[error(transparent)]
+    Film(CheckpointError),
+    /// The picture cannot be read or does not describe how it was made.
+    #[error(transparent)]
+    Picture(OutputError),
+    /// The recipe in the file is missing or cannot be rendered, or the film does not match it.
+    #[error("{} {what}", path.shown())]
+    Recipe { path: PathBuf, what: String },
+    #[error(
+        "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
+        path.shown()
+    )]
+    OtherPicture { path: PathBuf, difference: String },
+}
+
+/// The description in a picture or film, and the film itself.
+#[derive(Debug)]
+pub struct Saved {
+    pub path: PathBuf,
+    pub description: Description,
+    /// The film, if the file has one and it was read.
+    pub film: Option<Film>,
+}
+
+impl Saved {
+    /// Reads a picture or film. The first bytes of the file tell which it is.
+    ///
+    /// # Errors
+    /// [`OpenError::Film`] or [`OpenError::Picture`].
+    pub fn read(path: &Path) -> Result<Self, OpenError> {
+        match checkpoint::load(path) {
+            Ok(FilmFile { film, description }) => {
+                Ok(Saved { path: path.to_owned(), description, film: Some(film) })
+            }
+            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => Self::describe(path),
+            Err(error) => Err(OpenError::Film(error)),
+        }
+    }
+
+    /// Reads only the description of a picture or film, not its samples, which is fast.
+    ///
+    /// # Errors
+    /// [`OpenError::Picture`].
+    pub fn describe(path: &Path) -> Result<Self, OpenError> {
+        let description = read_description(path).map_err(OpenError::Picture)?;
+        Ok(Saved { path: path.to_owned(), description, film: None })
+    }
+
+    /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
+    ///
+    /// # Errors
+    /// [`OpenError::Recipe`].
+    pub fn recipe(&self) -> Result<Recipe, OpenError> {
+        let no_recipe = |what| OpenError::Recipe { path: self.path.clone(), what };
+        if let Some(length) = length_of_missing(self.description.recipe()) {
+            return Err(no_recipe(format!(
+                "does not hold its recipe, which has {length} bytes; a picture holds at most {RECIPE_LIMIT}; open the \
+                 scene file, or a film (.exr) of the picture"
+            )));
+        }
+        let label = self.path.shown();
+        let recipe = file::parse(self.description.recipe(), &label)
+            .map_err(|reason| no_recipe(format!("has a recipe that cannot be read: {reason}")))?;
+        let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let name = self.description.get(key::SCENE).map(str::to_owned).or(stem).unwrap_or(label);
+        Ok(Recipe { name, ..recipe })
+    }
+
+    /// The stage that the description names.
+    pub fn stage(&self) -> Option<&'static Stage> {
+        self.description.get(key::STAGE).and_then(|id| Stage::find(id).ok())
+    }
+
+    /// Samples per pixel, if the description has them.
+    pub fn samples(&self) -> Option<u64> {
+        self.description.get(key::SAMPLES)?.parse().ok().filter(|samples| *samples > 0)
+    }
+
+    /// Seconds of tracing, if the description has them.
+    pub fn seconds(&self) -> Option<f64> {
+        self.description.get(key::SECONDS)?.parse().ok()
+    }
+
+    /// The film with its tracing time and backend; `None` for a picture.
+    fn into_film(self) -> Option<SavedFilm> {
+        let (seconds, backend) = (self.seconds(), self.description.get(key::BACKEND).map(str::to_owned));
+        self.film.map(|film| SavedFilm { film, seconds, backend })
+    }
+}
+
+/// A film that was read, with what its file says about the tracing.
+#[derive(Debug)]
+pub struct SavedFilm {
+    pub film: Film,
+    /// Seconds that tracing the samples took, if the file says so.
+    pub seconds: Option<f64>,
+    /// The backend that traced them, if the file says so.
+    pub backend: Option<String>,
+}
+
+/// The content of a file besides its recipe.
+#[derive(Debug)]
+pub enum Content {
+    /// Nothing else: the file is a scene file.
+    Scene,
+    /// A picture.
+    Picture {
+        /// Samples per pixel, if the file says so.
+        samples: Option<u64>,
+    },
+    /// A film whose shape matches the recipe.
+    Film(SavedFilm),
+}
+
+/// A file that was opened.
+#[derive(Debug)]
+pub struct Opened {
+    pub path: PathBuf,
+    /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that the description names. The recipe may have been changed since.
+    pub stage: Option<&'static Stage>,
+    /// What the file contains besides the recipe.
+    pub content: Content,
+}
+
+/// Opens a scene file (its name ends in .toml), a picture or a film.
+///
+/// # Errors
+/// [`OpenError`]; a film must have the shape that its recipe describes.
+pub fn open(path: &Path) -> Result<Opened, OpenError> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+        let recipe = file::load(path)?;
+        let job = job_of(path, &recipe)?;
+        return Ok(Opened { path: path.to_owned(), recipe, job, stage: None, content: Content::Scene });
+    }
+    let saved = Saved::read(path)?;
+    let recipe = saved.recipe()?;
+    let job = job_of(path, &recipe)?;
+    let (stage, samples) = (saved.stage(), saved.samples());
+    let content = saved.into_film().map_or(Content::Picture { samples }, Content::Film);
+    if let Content::Film(saved) = &content
+        && !job.fits(&saved.film)
+    {
+        let what = "is a film that does not have the size that its recipe says; render it again".to_owned();
+        return Err(OpenError::Recipe { path: path.to_owned(), what });
+    }
+    Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
+}
+
+/// Opens a film and returns its job and the film.
+///
+/// # Errors
+/// [`OpenError`]; pictures and scene files are refused.
+pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
+    checkpoint::read_head(path).map_err(OpenError::Film)?;
+    match open(path)? {
+        Opened { job, content: Content::Film(film), .. } => Ok((job, film)),
+        _ => Err(OpenError::Film(CheckpointError::NotFilm { path: path.to_owned() })),
+    }
+}
+
+/// Reads the film of `job` in order to resume it.
+///
+/// # Errors
+/// [`OpenError`]; [`OpenError::OtherPicture`] for the film of another job.
+pub fn resume(path: &Path, job: &RenderJob) -> Result<SavedFilm, OpenError> {
+    let (theirs, film) = open_film(path)?;
+    check_same(path, job, &theirs)?;
+    Ok(film)
+}
+
+/// Refuses a film of another job, as [`resume`] would, without reading the film's samples.
+///
+/// # Errors
+/// Those of [`resume`].
+pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
+    let theirs = job_of(path, &Saved::describe(path)?.recipe()?)?;
+    check_same(path, job, &theirs)
+}
+
+fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
+    recipe.job().map_err(|reason| {
+        let what = format!("has a recipe that cannot be rendered: {reason}");
+        OpenError::Recipe { path: path.to_owned(), what }
+    })
+}
+
+fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {
+    match difference(mine, theirs) {
+        Some(difference) => Err(OpenError::OtherPicture { path: path.to_owned(), difference }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,119 @@
+//! Says what would be lost if a film were replaced.
+
+use super::difference::same_job;
+use crate::film::{SampleRanges, checkpoint};
+use crate::system::files::ShownPath;
+use std::path::Path;
+
+/// What is in the place where a film is to be written.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Replaced {
+    /// No file, an empty one, or a device.
+    Nothing,
+    /// A film of the same picture, with these samples.
+    Same(SampleRanges),
+    /// Something else, in words: `holds ...` or `cannot be read as a film (...)`.
+    Other(String),
+}
+
+impl Replaced {
+    /// Looks at the file. `recipe` is that of the film to be written.
+    pub fn at(path: &Path, recipe: &str) -> Replaced {
+        if !std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0) {
+            return Replaced::Nothing;
+        }
+        match checkpoint::read_head(path) {
+            Ok(head) => match same_job(recipe, head.description.recipe()) {
+                Ok(()) => Replaced::Same(head.samples),
+                Err(difference) => {
+                    let count = per_pixel(head.samples.count());
+                    Replaced::Other(format!("holds {count} of another picture ({difference})"))
+                }
+            },
+            Err(error) => Replaced::Other(format!("cannot be read as a film ({error})")),
+        }
+    }
+
+    /// A warning that `--out` replaces the file at `path`, unless it is a film of this picture whose samples `are_kept`.
+    pub fn warning(&self, path: &Path, are_kept: impl FnOnce(&SampleRanges) -> bool) -> Option<String> {
+        let what = match self {
+            Replaced::Nothing => return None,
+            Replaced::Same(samples) if are_kept(samples) => return None,
+            Replaced::Same(samples) => {
+                format!("holds {} of this picture ({samples})", per_pixel(samples.count()))
+            }
+            Replaced::Other(what) => what.clone(),
+        };
+        Some(format!("--out replaces {}, which {what}; to keep it, name another file", path.shown()))
+    }
+
+    /// Why `--checkpoint` must not be the file at `path`, and what to do; `None` if nothing would be lost.
+    pub fn refusal(&self, path: &Path) -> Option<String> {
+        const REMEDY: &str = "name another file for --checkpoint, or move this one away";
+        let path = path.shown();
+        match self {
+            Replaced::Nothing => None,
+            Replaced::Same(samples) => Some(format!(
+                "{path} already holds {} of this picture ({samples}); go on with them (--checkpoint {path} \
+                 --continue), or {REMEDY}",
+                per_pixel(samples.count())
+            )),
+            Replaced::Other(what) => Some(format!("{path} is there already and {what}; {REMEDY}")),
+        }
+    }
+}
+
+fn per_pixel(count: u64) -> String {
+    format!("{count} sample{} per pixel", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Description;
+    use crate::job::recipe::{Recipe, file};
+
+    #[test]
+    fn what_would_be_lost_is_told_and_what_would_not_is_passed_over() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        let text = file::to_picture_toml(&recipe);
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(2..32, 0).unwrap();
+        let path = at("a.exr");
+        checkpoint::save(&path, &film, &Description::new(&text)).unwrap();
+        recipe.settings.seed = 5;
+        let other = file::to_picture_toml(&recipe);
+
+        let found = Replaced::at(&path, &text);
+        assert_eq!(found, Replaced::Same(film.samples().clone()));
+        assert_eq!(found.warning(&path, |_| true), None);
+        let told = found.warning(&path, |samples| samples.end() <= 8).unwrap();
+        assert!(told.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"), "{told}");
+        let told = found.refusal(&path).unwrap();
+        assert!(told.contains("30 samples per pixel") && told.contains("--continue"), "{told}");
+
+        let found = Replaced::at(&path, &other);
+        for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+            assert!(told.contains("another picture") && told.contains("seed is 5 here, 0 there"), "{told}");
+            assert!(!told.contains("--continue"), "{told}");
+        }
+
+        std::fs::write(at("empty.exr"), "").unwrap();
+        for name in ["empty.exr", "missing.exr", "."] {
+            let found = Replaced::at(&at(name), &text);
+            assert_eq!((found.warning(&path, |_| false), found.refusal(&path)), (None, None), "{name}");
+        }
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes.truncate(100);
+        for (content, part) in [(&b"a picture"[..], "is not an EXR file"), (&bytes, "is damaged")] {
+            std::fs::write(at("no.exr"), content).unwrap();
+            let found = Replaced::at(&at("no.exr"), &text);
+            for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+                assert!(told.contains(part), "{told}");
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Rescues samples whose file cannot be written, by saving them wherever there is room.
+
+use crate::film::{Description, Film, checkpoint, key};
+use crate::job::recipe::plain_name;
+use crate::system::files::{ShownPath, home_directory, state_directory};
+use std::env;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Most characters of the picture's name in the name of the file.
+const NAME_LENGTH: usize = 60;
+
+/// Saves the film of the picture `name` at the first place that works, and returns its path: the directories `first`,
+/// then those for temporary files, for the state of programs, and the home directory.
+///
+/// # Errors
+/// What is lost, and why each place failed.
+pub fn rescue(
+    first: &[PathBuf],
+    name: &str,
+    film: &Film,
+    description: &Description,
+) -> Result<PathBuf, String> {
+    if let Some(state) = state_directory() {
+        // If it cannot be created, writing the file will say so.
+        let _ = std::fs::create_dir_all(state);
+    }
+    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
+    let places: Vec<PathBuf> = first.iter().cloned().chain(others.into_iter().flatten()).collect();
+    keep_in(&places, name, film, description)
+}
+
+fn keep_in(
+    places: &[PathBuf],
+    name: &str,
+    film: &Film,
+    description: &Description,
+) -> Result<PathBuf, String> {
+    let mut reasons = Vec::new();
+    for place in places {
+        match save_in(place, name, film, description) {
+            Ok(path) => return Ok(path),
+            Err(error) => reasons.push(format!("{} ({error})", place.shown())),
+        }
+    }
+    let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
+    let seconds = seconds.map_or_else(String::new, |seconds| format!(", {seconds:.0} s of tracing"));
+    Err(format!(
+        "the samples are lost ({} per pixel{seconds}); saving them elsewhere failed, too: {}",
+        film.sample_count(),
+        reasons.join(", ")
+    ))
+}
+
+fn save_in(directory: &Path, picture: &str, film: &Film, description: &Description) -> io::Result<PathBuf> {
+    let picture: String = plain_name(picture).chars().take(NAME_LENGTH).collect();
+    let prefix = format!("weekender-{picture}-");
+    let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
+    let mut writer = BufWriter::new(file.as_file());
+    checkpoint::write(film, description, &mut writer)?;
+    writer.flush()?;
+    drop(writer);
+    file.as_file().sync_data()?;
+    Ok(file.into_temp_path().keep()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        std::fs::write(at("file"), "").unwrap();
+        std::fs::create_dir_all(at("made/deep")).unwrap();
+        let mut film = Film::new(4, 3, 2);
+        film.record(0..6, 0).unwrap();
+        let mut description = Description::new("r");
+        description.set(key::SECONDS, 7.2);
+        let keep = |places: &[PathBuf]| keep_in(places, "a/b", &film, &description);
+
+        let path = keep(&[at("file"), at("made/deep"), at("unused")]).unwrap();
+        assert_eq!(path.parent(), Some(at("made/deep").as_path()));
+        assert!(checkpoint::load(&path).unwrap().film == film);
+        assert!(!at("unused").exists());
+        let second = keep(&[at("made/deep")]).unwrap();
+        assert!(second != path && second.exists() && path.exists());
+        // No file system has names as long as a picture's name may be.
+        assert!(keep_in(&[at("made")], &"long".repeat(200), &film, &description).unwrap().exists());
+
+        let lost = keep(&[at("file"), at("file/x")]).unwrap_err();
+        for part in ["lost", "6 per pixel", "7 s", "file/x"] {
+            assert!(lost.contains(part), "{lost} should say {part}");
+        }
+    }
+}

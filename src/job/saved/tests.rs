@@ -1,0 +1,112 @@
+//! Tests of what is opened, and as what.
+
+use super::*;
+use crate::job::output::write_image;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A small recipe, its film of four samples, and the film's description with `entries`.
+fn film(entries: &[(&str, &str)]) -> (Recipe, Film, Description) {
+    let mut recipe = Recipe::builtin("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height) = (4, 3);
+    let mut film = recipe.job().unwrap().new_film();
+    film.record(0..4, 0).unwrap();
+    let mut description = Description::new(&file::to_toml(&recipe));
+    entries.iter().for_each(|(key, value)| description.set(key, value));
+    (recipe, film, description)
+}
+
+fn written(directory: &TempDir, name: &str, entries: &[(&str, &str)]) -> PathBuf {
+    let (recipe, film, description) = film(entries);
+    let path = directory.path().join(name);
+    write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
+    path
+}
+
+#[test]
+fn a_film_is_opened_with_its_samples_and_what_it_says() {
+    let directory = tempfile::tempdir().unwrap();
+    let said = [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
+    let path = written(&directory, "a.exr", &said);
+    let opened = open(&path).unwrap();
+    assert_eq!((opened.recipe.name.as_str(), opened.stage.map(|stage| stage.id)), ("balls", Some("metal")));
+    let Content::Film(read) = opened.content else { panic!("no film") };
+    assert_eq!(read.film, film(&[]).1);
+    assert_eq!((read.seconds, read.backend.as_deref()), (Some(2.5), Some("cpu")));
+    assert_eq!(opened.job, film(&[]).0.job().unwrap());
+    // The recipe's name does not matter.
+    let renamed = directory.path().join("renamed.png");
+    std::fs::rename(&path, &renamed).unwrap();
+    assert!(matches!(open(&renamed).unwrap().content, Content::Film(_)));
+}
+
+#[test]
+fn a_picture_says_its_samples_and_what_has_no_name_is_called_as_its_file() {
+    let directory = tempfile::tempdir().unwrap();
+    for (said, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
+        let path = written(&directory, "plain.png", &[(key::SAMPLES, said)]);
+        let opened = open(&path).unwrap();
+        let Content::Picture { samples: found } = opened.content else { panic!("{said}") };
+        assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
+        assert!(matches!(open_film(&path), Err(OpenError::Film(CheckpointError::NotExr { .. }))));
+    }
+}
+
+#[test]
+fn only_the_film_of_the_same_picture_goes_on() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = written(&directory, "a.exr", &[]);
+    let mut recipe = film(&[]).0;
+    let job = recipe.job().unwrap();
+    assert_eq!(resume(&path, &job).unwrap().film.sample_count(), 4);
+    check_resume(&path, &job).unwrap();
+    recipe.settings.seed = 5;
+    let job = recipe.job().unwrap();
+    for refused in [resume(&path, &job).map(|_| ()), check_resume(&path, &job)] {
+        let told = refused.unwrap_err().to_string();
+        assert!(told.contains("a.exr") && told.contains("seed is 5 here, 0 there"), "{told}");
+    }
+}
+
+#[test]
+fn a_film_that_its_recipe_does_not_fit_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut recipe, film, _) = film(&[]);
+    let path = directory.path().join("a.exr");
+    for (width, estimate_error) in [(5, true), (4, false)] {
+        recipe.settings.width = width;
+        recipe.settings.estimate_error = estimate_error;
+        let description = Description::new(&file::to_toml(&recipe));
+        write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
+        assert!(matches!(open(&path), Err(OpenError::Recipe { .. })));
+        let job = recipe.job().unwrap();
+        assert!(matches!(resume(&path, &job), Err(OpenError::Recipe { .. })));
+    }
+}
+
+#[test]
+fn what_a_file_is_decides_how_it_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    for name in ["text.exr", "text.png"] {
+        std::fs::write(at(name), "no film").unwrap();
+    }
+    exr::prelude::write_rgb_file(at("plain.exr"), 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
+    std::fs::copy(at("plain.exr"), at("plain.png")).unwrap();
+    let error = |name: &str| open(&at(name)).unwrap_err();
+    for name in ["text.exr", "plain.exr", "text.png", "plain.png"] {
+        assert!(matches!(error(name), OpenError::Picture(OutputError::NoDescription { .. })), "{name}");
+    }
+    let no_film = |name: &str| match open_film(&at(name)).unwrap_err() {
+        OpenError::Film(error) => error,
+        other => panic!("{other}"),
+    };
+    assert!(matches!(no_film("text.exr"), CheckpointError::NotExr { .. }));
+    assert!(matches!(no_film("plain.exr"), CheckpointError::NotFilm { .. }));
+    assert!(matches!(error("missing.exr"), OpenError::Film(CheckpointError::Input(_))));
+    // A picture that has a description is a picture by any name, and a scene file by any case.
+    std::fs::rename(written(&directory, "a.png", &[]), at("b.exr")).unwrap();
+    assert!(matches!(open(&at("b.exr")).unwrap().content, Content::Picture { .. }));
+    std::fs::write(at("scene.TOML"), file::to_toml(&film(&[]).0)).unwrap();
+    assert!(matches!(open(&at("scene.TOML")).unwrap().content, Content::Scene));
+}

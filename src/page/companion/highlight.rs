@@ -1,0 +1,85 @@
+//! Code as HTML with classes, so that one style sheet colours it in light and dark.
+//!
+//! The syntax definitions are small and our own, because no collection has WGSL. Their scopes are the class names:
+//! `hl-k` keyword, `hl-t` type, `hl-f` function, `hl-v` constant, `hl-n` number, `hl-s` string, `hl-c` comment, `hl-m`
+//! macro or attribute.
+
+use anyhow::{Context, Result, anyhow};
+use maud::PreEscaped;
+use syntect::html::{ClassStyle, ClassedHTMLGenerator};
+use syntect::parsing::{SyntaxDefinition, SyntaxSet, SyntaxSetBuilder};
+
+const SYNTAXES: [&str; 5] = [
+    include_str!("../../../assets/companion/syntaxes/rust.sublime-syntax"),
+    include_str!("../../../assets/companion/syntaxes/wgsl.sublime-syntax"),
+    include_str!("../../../assets/companion/syntaxes/c.sublime-syntax"),
+    include_str!("../../../assets/companion/syntaxes/python.sublime-syntax"),
+    include_str!("../../../assets/companion/syntaxes/sh.sublime-syntax"),
+];
+
+/// The language of blocks without colours.
+const PLAIN: &str = "text";
+
+/// Colours code in the languages of the page.
+pub struct Highlighter {
+    syntaxes: SyntaxSet,
+}
+
+impl Highlighter {
+    /// Reads the syntax definitions.
+    ///
+    /// # Errors
+    /// If one of them is wrong.
+    pub fn new() -> Result<Self> {
+        let mut builder = SyntaxSetBuilder::new();
+        for text in SYNTAXES {
+            let read = SyntaxDefinition::load_from_str(text, true, None);
+            builder.add(read.context("cannot read a syntax definition of the page")?);
+        }
+        Ok(Highlighter { syntaxes: builder.build() })
+    }
+
+    /// The code as HTML. `language` is a name or a file extension.
+    ///
+    /// # Errors
+    /// If the language is unknown.
+    pub fn html(&self, language: &str, code: &str) -> Result<PreEscaped<String>> {
+        if language == PLAIN {
+            return Ok(PreEscaped(maud::html! { (code) }.into_string()));
+        }
+        let syntax = self.syntaxes.find_syntax_by_token(language).ok_or_else(|| {
+            let known: Vec<&str> =
+                self.syntaxes.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
+            anyhow!("code in {language:?} has no colours; use {PLAIN}, {}", known.join(", "))
+        })?;
+        let mut html = ClassedHTMLGenerator::new_with_class_style(syntax, &self.syntaxes, ClassStyle::Spaced);
+        for line in code.split_inclusive('\n') {
+            html.parse_html_for_line_which_includes_newline(line).context("cannot colour code")?;
+        }
+        Ok(PreEscaped(html.finalize()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_unchanged_apart_from_the_tags() {
+        for (language, code) in [
+            ("rust", include_str!("../../render_cpu/sphere.rs")),
+            ("wgsl", include_str!("../../../shaders/path.wgsl")),
+            ("c", include_str!("../../../reference/rt_weekend.c")),
+        ] {
+            let html = Highlighter::new().unwrap().html(language, code).unwrap().into_string();
+            assert!(html.contains("class=\"hl-k\""), "{language}");
+            let mut text: String =
+                html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect();
+            for (name, c) in [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")]
+            {
+                text = text.replace(name, c);
+            }
+            assert!(text == code, "{language}");
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! The texts of the page and the sources that it quotes: as they were when the program was built, or those of a
+//! checkout.
+
+use super::fault::{Fault, line_of};
+use crate::system::files;
+use serde::de::DeserializeOwned;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fs::DirEntry;
+use std::path::{Path, PathBuf};
+use toml::Spanned;
+
+/// Reads files of the project by their paths in the checkout.
+#[derive(Clone, Debug)]
+pub enum Library {
+    /// The files in the program.
+    Embedded,
+    /// Those of a checkout, so that a text can be changed and seen without building the program again.
+    Checkout(PathBuf),
+}
+
+/// The folder of the texts.
+pub const FOLDER: &str = "docs/companion";
+
+/// Largest file of a checkout that is read, bytes.
+const FILE_LIMIT: u64 = 1 << 22;
+
+/// Includes files by their folders in the checkout and their names.
+macro_rules! embedded {
+    ($($folder:literal: $($name:literal)*;)*) => {
+        &[$($((
+            concat!($folder, $name),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/", $folder, $name)),
+        ),)*)*]
+    };
+}
+
+/// Every file that the page is made of: chapters and data, diagrams, and the sources that it quotes. A test compares
+/// the list with the folder.
+#[rustfmt::skip]
+const FILES: &[(&str, &str)] = embedded![
+    "docs/companion/": "00-start.md" "01-languages.md" "02-image.md" "03-vectors.md" "04-rays.md"
+        "05-sphere.md" "06-normals.md" "07-camera-class.md" "08-antialiasing.md" "09-diffuse.md"
+        "10-metal.md" "11-glass.md" "12-camera.md" "13-defocus.md" "14-final.md" "20-many-rays.md"
+        "21-mappings.md" "22-simd.md" "23-speed.md" "24-control.md" "25-error.md" "26-precision.md"
+        "27-references.md" "28-glossary.md" "book.toml" "excerpts.toml" "glossary.toml" "measured.toml"
+        "references.toml";
+    "docs/companion/measured/": "error.json" "mappings.json" "refill.json" "speed.json";
+    "docs/companion/diagrams/": "lanes.svg" "life-cycle.svg" "mappings.svg";
+    "reference/": "rt_weekend.c";
+    "shaders/": "aside.wgsl" "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
+        "path.wgsl" "resolve.wgsl" "rng.wgsl" "sphere.wgsl";
+    "src/film/": "error_estimate.rs" "fixed_point.rs" "resolve.rs";
+    "src/kernel/": "records.rs";
+    "src/job/output/": "ppm.rs";
+    "src/prepared/": "camera.rs" "mod.rs";
+    "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs" "tiles.rs"
+        "work.rs";
+    "src/render_cpu/lanes/": "mod.rs" "vector.rs";
+    "src/render_cpu/path/": "collect.rs" "mod.rs" "send.rs";
+    "src/render_gpu/": "schedule.rs";
+    "src/kernel/sampling/": "mod.rs" "warp.rs";
+    "src/scene/builtin/": "book.rs";
+    "src/scene/": "camera.rs";
+    "src/stages/table/": "setups.rs";
+];
+
+/// An entry of a TOML file with one table per entry.
+#[derive(Clone, Debug)]
+pub struct Entry<T> {
+    pub key: String,
+    /// Line in the file, counted from 1.
+    pub line: usize,
+    pub value: T,
+}
+
+impl Library {
+    /// The content of a file.
+    pub fn read(&self, path: &str) -> Result<Cow<'static, str>, Fault> {
+        let content = match self {
+            Library::Embedded => {
+                FILES.iter().find(|(name, _)| *name == path).map(|(_, text)| Cow::Borrowed(*text)).ok_or_else(
+                    || "is not in the program; add it to FILES in src/page/companion/library.rs".to_owned(),
+                )
+            }
+            Library::Checkout(directory) => {
+                files::read(&directory.join(path), "a text of the page", FILE_LIMIT)
+                    .map_err(|error| error.to_string())
+                    .and_then(|bytes| String::from_utf8(bytes).map_err(|_| "is not UTF-8".to_owned()))
+                    .map(Cow::Owned)
+            }
+        };
+        content.map_err(|message| Fault::new(path, 0, message))
+    }
+
+    /// The content of a TOML file.
+    pub fn toml<T: DeserializeOwned>(&self, path: &str) -> Result<T, Fault> {
+        let text = self.read(path)?;
+        toml::from_str(&text).map_err(|error| {
+            let line = error.span().map_or(0, |span| line_of(&text, span.start));
+            Fault::new(path, line, error.message())
+        })
+    }
+
+    /// The tables of a TOML file, in the order of the file.
+    pub fn entries<T: DeserializeOwned>(&self, path: &str) -> Result<Vec<Entry<T>>, Fault> {
+        let tables: BTreeMap<String, Spanned<T>> = self.toml(path)?;
+        let text = self.read(path)?;
+        let entry = |(key, value): (String, Spanned<T>)| {
+            let line = line_of(&text, value.span().start);
+            Entry { key, line, value: value.into_inner() }
+        };
+        let mut entries: Vec<Entry<T>> = tables.into_iter().map(entry).collect();
+        entries.sort_by_key(|entry| entry.line);
+        Ok(entries)
+    }
+
+    /// Paths of the chapters, ascending.
+    pub fn chapters(&self) -> Result<Vec<String>, Fault> {
+        let mut chapters: Vec<String> = match self {
+            Library::Embedded => FILES.iter().map(|(path, _)| (*path).to_owned()).collect(),
+            Library::Checkout(directory) => std::fs::read_dir(directory.join(FOLDER))
+                .and_then(|entries| {
+                    let path = |entry: DirEntry| format!("{FOLDER}/{}", entry.file_name().to_string_lossy());
+                    entries.map(|entry| entry.map(path)).collect()
+                })
+                .map_err(|error| Fault::new(FOLDER, 0, error))?,
+        };
+        chapters.retain(|path| is_chapter(path));
+        chapters.sort();
+        Ok(chapters)
+    }
+}
+
+/// Whether this is `docs/companion/NN-name.md`.
+fn is_chapter(path: &str) -> bool {
+    let name = Path::new(path).strip_prefix(FOLDER).ok().and_then(Path::to_str).unwrap_or_default();
+    let number = name.split('-').next().unwrap_or_default();
+    name.ends_with(".md") && !name.contains('/') && number.len() == 2 && number.parse::<u8>().is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn checkout() -> PathBuf {
+        PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    }
+
+    #[test]
+    fn every_file_of_the_folder_is_in_the_program() {
+        let paths = FILES.iter().map(|(path, _)| (*path).to_owned());
+        let embedded: BTreeSet<String> = paths.filter(|path| path.starts_with(FOLDER)).collect();
+        let mut found = BTreeSet::new();
+        for folder in ["", "diagrams", "measured"] {
+            let entries = std::fs::read_dir(checkout().join(FOLDER).join(folder)).unwrap();
+            let files = entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file());
+            found.extend(
+                files.map(|path| path.strip_prefix(checkout()).unwrap().to_str().unwrap().to_owned()),
+            );
+        }
+        assert_eq!(embedded, found, "left: FILES in library.rs; right: {FOLDER}");
+        let library = Library::Checkout(checkout());
+        assert_eq!(library.chapters().unwrap(), Library::Embedded.chapters().unwrap());
+    }
+
+    #[test]
+    fn sources_that_chapters_cite_exist() {
+        for path in Library::Embedded.chapters().unwrap() {
+            let text = Library::Embedded.read(&path).unwrap();
+            for cited in text.split("](source:").skip(1) {
+                let cited = cited.split(')').next().unwrap();
+                assert!(checkout().join(cited).exists(), "{path}: {cited}");
+            }
+        }
+    }
+
+    #[test]
+    fn entries_have_their_lines_and_files_that_cannot_be_read_are_named() {
+        let directory = tempfile::tempdir().unwrap();
+        let library = Library::Checkout(directory.path().to_owned());
+        std::fs::write(directory.path().join("a.toml"), "# A\n[z]\nx = 1\n\n[b]\nx = 2\n").unwrap();
+        let entries: Vec<Entry<BTreeMap<String, u32>>> = library.entries("a.toml").unwrap();
+        let found: Vec<_> = entries.iter().map(|entry| (entry.key.as_str(), entry.line)).collect();
+        assert_eq!(found, [("z", 2), ("b", 5)]);
+        std::fs::write(directory.path().join("a.toml"), "# A\n[z]\nx = 1\n").unwrap();
+        let fault = library.entries::<BTreeMap<String, bool>>("a.toml").unwrap_err();
+        assert_eq!((fault.file.as_str(), fault.line), ("a.toml", 3));
+        std::fs::write(directory.path().join("b.md"), b"a\xff").unwrap();
+        assert_eq!(library.read("b.md").unwrap_err().to_string(), "b.md: is not UTF-8");
+        assert!(library.read("c.md").unwrap_err().to_string().starts_with("c.md: "));
+    }
+}

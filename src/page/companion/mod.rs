@@ -1,0 +1,77 @@
+//! `weekender companion`: one web page that goes through the book, made from the texts in `docs/companion`, the
+//! sources, the gallery's stills and measurements.
+
+mod back_matter;
+mod book;
+mod chapter;
+mod directive;
+mod excerpt;
+mod fault;
+mod formula;
+mod highlight;
+mod library;
+mod measured;
+mod page;
+mod prose;
+mod reference;
+mod section;
+mod site;
+mod timeline;
+
+pub use excerpt::Excerpt;
+pub use section::excerpts_between;
+
+use crate::cli::CompanionOptions;
+use crate::page::gallery::{self, Order, Quality};
+use crate::system::failure::Failure;
+use crate::system::files::{self, check_page, write_text};
+use crate::system::interrupt::Interrupt;
+use anyhow::{Context, Result};
+use library::Library;
+use page::Page;
+use site::Site;
+use std::process::ExitCode;
+
+/// Largest JSON of `weekender bench` that is read, bytes.
+const BENCH_LIMIT: u64 = 16 << 20;
+
+/// Writes the page and renders the stills that changed.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
+pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
+    let page = build(options).map_err(Failure::Input)?;
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let out = &options.out;
+    std::fs::create_dir_all(out)
+        .with_context(|| format!("cannot create the directory {}; choose another with --out", out.display()))
+        .map_err(Failure::Input)?;
+    let index = out.join("index.html");
+    check_page(&index).map_err(Failure::input)?;
+    // The page can be read while its figures are rendered.
+    write_text(&index, &page.html).map_err(Failure::run)?;
+    let order = Order {
+        directory: &out.join("figures"),
+        stages: &page.stages,
+        quality: Quality::new(options.quick),
+        backend: &options.backend,
+        progress: options.progress,
+        prints_stills: false,
+    };
+    gallery::render(&order, &interrupt)?.report("figure", &index, &interrupt)
+}
+
+fn build(options: &CompanionOptions) -> Result<Page> {
+    let library = options.source.clone().map_or(Library::Embedded, Library::Checkout);
+    let mut site = Site::read(&library)?;
+    if let Some(path) = &options.bench {
+        let bytes = files::read(path, "the JSON of a benchmark", BENCH_LIMIT)?;
+        site.measured
+            .set_bench(String::from_utf8_lossy(&bytes).into_owned())
+            .context("the file of --bench")?;
+    }
+    page::render(&site)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,203 @@
+//! The page around the chapters.
+
+use super::back_matter;
+use super::chapter::Chapter;
+use super::fault::Fault;
+use super::prose;
+use super::site::{Site, Uses};
+use crate::page::gallery::Panel;
+use crate::page::web;
+use crate::stages::{BOOK_URL, Stage};
+use crate::system::files::GENERATOR;
+use anyhow::Result;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("../../../assets/companion/page.css");
+const SCRIPT: &str = include_str!("../../../assets/companion/page.js");
+/// Runs before anything is drawn, so that the page does not flash in the wrong colours.
+const THEME_SCRIPT: &str = include_str!("../../../assets/companion/theme.js");
+
+const TITLE: &str = "Weekender, the companion";
+const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
+
+/// The page, ready to be written.
+#[derive(Debug)]
+pub struct Page {
+    /// The content of `index.html`.
+    pub html: String,
+    /// The stages whose stills it shows, in the book's order.
+    pub stages: Vec<&'static Stage>,
+}
+
+/// Renders everything.
+///
+/// # Errors
+/// The first [`Fault`] of the texts, or if a stage has no data for a browser.
+pub fn render(site: &Site) -> Result<Page> {
+    let mut uses = Uses::default();
+    uses.anchors.extend(site.chapters.iter().map(|chapter| chapter.id.clone()));
+    let chapters = html! {
+        @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
+    };
+    let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses)?;
+    site.check(&uses)?;
+    let mut stages: Vec<&Stage> =
+        uses.figures.iter().flat_map(|figure| figure.panels).map(Panel::stage).collect();
+    stages.push(cover_stage());
+    stages.sort_by_key(|stage| stage.index());
+    stages.dedup();
+    let live = web::live_data(stages.iter().copied())?;
+    let page = document(site, &PreEscaped(chapters), &PreEscaped(live));
+    Ok(Page { html: page.into_string(), stages })
+}
+
+/// The last stage, whose picture opens the page.
+fn cover_stage() -> &'static Stage {
+    &Stage::ALL[Stage::ALL.len() - 1]
+}
+
+fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                (PreEscaped(GENERATOR))
+                title { (TITLE) }
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="description" content=(ABOUT);
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                style { (PreEscaped(STYLE)) (PreEscaped(web::HOST_STYLE)) }
+                script { (PreEscaped(THEME_SCRIPT)) }
+            }
+            body id="top" {
+                a .skip href="#content" { "Skip to the text" }
+                (navigation(site))
+                main id="content" tabindex="-1" {
+                    (cover())
+                    (chapters)
+                    (colophon())
+                }
+                div .tip id="tip" role="tooltip" hidden {}
+                script { (PreEscaped(SCRIPT)) }
+                script type="application/json" id="live-data" { (live) }
+                script type="module" { (PreEscaped(web::HOST_SCRIPT)) }
+            }
+        }
+    }
+}
+
+fn cover() -> Markup {
+    let stage = cover_stage();
+    html! {
+        header .cover {
+            p .kicker { "Weekender, the companion" }
+            h1 { cite { "Ray Tracing in One Weekend" } ", many rays at a time" }
+            p .lead {
+                "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
+                 every figure live in your browser. Then: lanes, threads and GPUs, measured."
+            }
+            img src={ "figures/" (stage.id) ".png" } width=(stage.setup.width) height=(stage.setup.height)
+                alt="The book's last picture: hundreds of small balls around three large ones of glass, brown matte and polished metal."
+                fetchpriority="high";
+        }
+    }
+}
+
+fn colophon() -> Markup {
+    html! {
+        footer .colophon {
+            p {
+                "Made by " code { "weekender companion" } ", version " (env!("CARGO_PKG_VERSION"))
+                ". The book is by Peter Shirley, Trevor David Black and Steve Hollasch: "
+                a href=(BOOK_URL) { "Ray Tracing in One Weekend" } "."
+            }
+            p { a href="#top" { "Back to the top" } }
+        }
+    }
+}
+
+fn navigation(site: &Site) -> Markup {
+    let last_of_book = site.chapters.iter().rposition(|chapter| chapter.facts.book.is_some());
+    let (with_book, beyond) = site.chapters.split_at(last_of_book.map_or(0, |place| place + 1));
+    html! {
+        nav .contents id="contents" aria-label="Chapters" {
+            details open {
+                summary { span .now { "Chapters" } }
+                div .list {
+                    a .home href="#top" { strong { "Weekender" } " the companion" }
+                    @for (title, chapters) in [("With the book", with_book), ("Beyond the book", beyond)] {
+                        p .part { (title) }
+                        ol {
+                            @for chapter in chapters {
+                                li {
+                                    a href={ "#" (chapter.id) } {
+                                        span .number { (chapter.number_prefix()) } (chapter.short())
+                                    }
+                                }
+                            }
+                        }
+                    }
+                    fieldset .theme hidden {
+                        legend { "Colours" }
+                        @for (value, label) in [("auto", "Auto"), ("light", "Light"), ("dark", "Dark")] {
+                            label { input type="radio" name="theme" value=(value) checked[value == "auto"]; span { (label) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> {
+    let chapter = &site.chapters[place];
+    let (id, title) = (&chapter.id, &chapter.facts.title);
+    let text = prose::chapter(site, chapter, uses)?;
+    let book = match &chapter.facts.book {
+        Some(number) => Some((number, book_chapter(site, chapter, number)?)),
+        None => None,
+    };
+    let before = place.checked_sub(1).and_then(|place| site.chapters.get(place));
+    let after = site.chapters.get(place + 1);
+    Ok(html! {
+        section .chapter aria-labelledby=(id) {
+            header .head {
+                p .kicker {
+                    @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
+                    @if let Some((number, (url, heading))) = book {
+                        @if chapter.shown_number().is_some() { " · " }
+                        a .book href=(url) {
+                            "The book, chapter " (number) @if heading != title { ": " (heading) }
+                        }
+                    }
+                }
+                h2 id=(id) {
+                    (title)
+                    a .anchor href={ "#" (id) } aria-label="Link to this chapter" { "#" }
+                }
+            }
+            (text)
+            nav .turn aria-label={ "Before and after " (title) } {
+                @if let Some(before) = before {
+                    a .before href={ "#" (before.id) } { span { "Previous" } (before.number_prefix()) (before.short()) }
+                }
+                @if let Some(after) = after {
+                    a .after href={ "#" (after.id) } { span { "Next" } (after.number_prefix()) (after.short()) }
+                }
+            }
+        }
+    })
+}
+
+/// The web address and the heading of a chapter of the book, which must be the one that the chapter gives.
+fn book_chapter<'a>(site: &'a Site, chapter: &Chapter, number: &str) -> Result<(String, &'a str), Fault> {
+    let heading =
+        site.book.heading(number).filter(|found| Some(*found) == chapter.facts.book_title.as_deref());
+    site.book.url(number).zip(heading).ok_or_else(|| {
+        let title = chapter.facts.book_title.as_deref().unwrap_or_default();
+        let message = format!("the book has no chapter {number:?} with the book_title {title:?}");
+        Fault::new(&chapter.file, 1, message)
+    })
+}

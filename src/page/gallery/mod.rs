@@ -1,0 +1,140 @@
+//! The figures: the book's stages as pictures with captions, alone or side by side. `weekender gallery` renders them
+//! into a directory, with a page that shows them.
+
+mod figures;
+mod page;
+mod quality;
+mod rendering;
+mod still;
+
+pub use quality::{Quality, is_about_pixels};
+pub use rendering::{Order, Outcome, render};
+pub use still::{Still, Stills, fingerprint};
+
+use crate::cli::GalleryOptions;
+use crate::stages::Stage;
+use crate::system::failure::Failure;
+use crate::system::files::{check_page, write_text};
+use crate::system::interrupt::Interrupt;
+use crate::system::suggest::{or_nearest, similar_names};
+use anyhow::{Result, bail};
+use std::process::ExitCode;
+
+/// One or more pictures with a caption.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Figure {
+    /// The identifier in pages and on the command line. It never changes.
+    pub id: &'static str,
+    pub title: &'static str,
+    /// What the pictures show: one or two sentences.
+    pub caption: &'static str,
+    /// The pictures from left to right, at least one.
+    pub panels: &'static [Panel],
+}
+
+/// One picture of a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Panel {
+    stage_id: &'static str,
+    /// A few words that tell the picture from its neighbours.
+    pub label: &'static str,
+}
+
+impl Figure {
+    /// All figures in the book's order. Every stage is in at least one of them.
+    pub const ALL: &'static [Figure] = figures::FIGURES;
+
+    pub fn find(id: &str) -> Option<&'static Figure> {
+        Self::ALL.iter().find(|figure| figure.id == id)
+    }
+
+    /// The stage whose section of the book the figure belongs to: the latest of its stages.
+    pub fn stage(&self) -> &'static Stage {
+        let latest = self.panels.iter().map(Panel::stage).max_by_key(|stage| stage.index());
+        latest.unwrap_or(&Stage::ALL[0])
+    }
+}
+
+impl Panel {
+    /// The stage that the picture shows.
+    pub fn stage(&self) -> &'static Stage {
+        // A test finds the stage of every panel.
+        Stage::find(self.stage_id).unwrap_or(&Stage::ALL[0])
+    }
+}
+
+/// Renders what is missing of the gallery, and writes its page.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was rendered, [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
+pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
+    let stages = chosen(&options.only).map_err(Failure::Input)?;
+    let index = options.out.join("index.html");
+    if options.out.is_dir() {
+        check_page(&index).map_err(Failure::input)?;
+    }
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let order = Order {
+        directory: &options.out,
+        stages: &stages,
+        quality: Quality::new(options.quick),
+        backend: &options.backend,
+        progress: options.progress,
+        prints_stills: true,
+    };
+    let outcome = render(&order, &interrupt)?;
+    write_text(&index, &page::page(&outcome.stills)).map_err(Failure::run)?;
+    outcome.report("picture", &index, &interrupt)
+}
+
+/// The stages of these ids of figures or stages, in the book's order; all stages if there are none.
+fn chosen(ids: &[String]) -> Result<Vec<&'static Stage>> {
+    let mut chosen: Vec<&str> = Vec::new();
+    for id in ids {
+        let panels = Figure::find(id).map_or(&[][..], |figure| figure.panels);
+        let stages = panels.iter().map(Panel::stage).chain(Stage::find(id).ok());
+        let before = chosen.len();
+        chosen.extend(stages.map(|stage| stage.id));
+        if chosen.len() == before {
+            let ids =
+                Figure::ALL.iter().map(|figure| figure.id).chain(Stage::ALL.iter().map(|stage| stage.id));
+            let mut near = similar_names(id, ids);
+            near.dedup();
+            bail!("--only names {id:?}, which is neither a figure nor a stage; {}", or_nearest(&near));
+        }
+    }
+    Ok(Stage::ALL.iter().filter(|stage| ids.is_empty() || chosen.contains(&stage.id)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn figures_cover_every_stage_in_the_books_order() {
+        let shown: HashSet<&str> =
+            Figure::ALL.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage_id).collect();
+        assert_eq!(shown, Stage::ALL.iter().map(|stage| stage.id).collect());
+        let ids: HashSet<&str> = Figure::ALL.iter().map(|figure| figure.id).collect();
+        assert_eq!(ids.len(), Figure::ALL.len());
+        assert!(Figure::ALL.is_sorted_by_key(|figure| figure.stage().index()));
+        assert_eq!(Figure::find("gamma").map(|figure| figure.stage().id), Some("lambertian-gamma"));
+    }
+
+    #[test]
+    fn figures_and_stages_can_be_chosen() {
+        let ids = |only: &[&str]| {
+            let only: Vec<String> = only.iter().map(|id| (*id).to_owned()).collect();
+            chosen(&only).map(|stages| stages.iter().map(|stage| stage.id).collect::<Vec<_>>())
+        };
+        assert_eq!(ids(&[]).unwrap().len(), Stage::ALL.len());
+        assert_eq!(ids(&["book", "fuzz", "metal"]).unwrap(), ["metal", "metal-fuzzy", "book"]);
+        assert_eq!(ids(&["aliased"]).unwrap(), ["aliased"]);
+        let message = ids(&["hollow"]).unwrap_err().to_string();
+        assert!(
+            message.contains("\"hollow\"") && message.contains("did you mean hollow-glass?"),
+            "{message}"
+        );
+    }
+}

@@ -1,0 +1,139 @@
+//! `index.html`: the figures with captions, chapter by chapter. It needs no server, script or network.
+
+use super::quality::is_about_pixels;
+use super::{Figure, Panel, Stills};
+use crate::stages::{BOOK_URL, Stage};
+use crate::system::files::GENERATOR;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::collections::BTreeSet;
+
+const STYLE: &str = include_str!("../../../assets/gallery/style.css");
+
+/// The page of the stills. A still that is not there has a place that says so.
+pub fn page(stills: &Stills) -> String {
+    let chapters = Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
+    let chapters: Vec<(&Stage, &[Figure])> =
+        chapters.filter_map(|figures| Some((figures.first()?.stage(), figures))).collect();
+    let title = |stage: &Stage| html! { span.number { (stage.chapter()) } " " (stage.chapter_title) };
+    let backends: BTreeSet<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
+    let backends: Vec<&str> = backends.into_iter().collect();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                (PreEscaped(GENERATOR))
+                title { "Ray Tracing in One Weekend in pictures" }
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="description" content="Every figure of Ray Tracing in One Weekend, with its settings, time \
+                                                  and error.";
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Ray Tracing in One Weekend in pictures" }
+                    p.lead {
+                        "Every step of " a href=(BOOK_URL) { "the book" } ", rendered by Weekender. Each picture opens in \
+                         full size and contains the settings that it was made with."
+                    }
+                    nav aria-label="Chapters" {
+                        ul {
+                            @for (stage, _) in &chapters {
+                                li { a href={ "#chapter-" (stage.chapter()) } { (title(stage)) } }
+                            }
+                        }
+                    }
+                }
+                main {
+                    @for (stage, figures) in &chapters {
+                        section id={ "chapter-" (stage.chapter()) } {
+                            h2 { (title(stage)) }
+                            @for figure in *figures { (shown(figure, stills)) }
+                        }
+                    }
+                }
+                footer {
+                    p {
+                        "Times are those of tracing alone. The error is the root of the mean squared error in linear radiance, \
+                         estimated from two halves of the samples; ± is one standard deviation of the estimate."
+                    }
+                    @if !backends.is_empty() {
+                        p { "Rendered by Weekender " (env!("CARGO_PKG_VERSION")) " (" (backends.join("; ")) ")." }
+                    }
+                }
+            }
+        }
+    };
+    page.into_string() + "\n"
+}
+
+fn shown(figure: &Figure, stills: &Stills) -> Markup {
+    let stage = figure.stage();
+    let class = match figure.panels.len() {
+        1 => "panels",
+        2 => "panels two",
+        _ => "panels three",
+    };
+    html! {
+        figure.figure id={ "figure-" (figure.id) } {
+            div class=(class) {
+                @for panel in figure.panels { (shown_panel(panel, figure.panels.len() > 1, stills)) }
+            }
+            figcaption {
+                h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
+                p { (figure.caption) }
+                p.section { a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title) } }
+            }
+        }
+    }
+}
+
+/// The panel; `is_labelled` if it has neighbours.
+fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
+    let stage = panel.stage();
+    let class = if is_about_pixels(stage) { "panel pixels" } else { "panel" };
+    html! {
+        div class=(class) data-stage=(stage.id) {
+            @match stills.of(stage) {
+                Some(still) => {
+                    a href=(still.file) {
+                        img src=(still.file) width=(still.width) height=(still.height) alt=(stage.alt) loading="lazy";
+                    }
+                    p.facts {
+                        @if is_labelled { strong { (panel.label) } " " }
+                        (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
+                    }
+                }
+                None => p.missing { "Not rendered yet: " code { "--only " (stage.id) } }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::gallery::Still;
+
+    #[test]
+    fn a_page_has_every_figure_and_says_which_pictures_are_missing() {
+        let mut stills = Stills::default();
+        for (id, backend) in [("metal", "gpu x"), ("metal-fuzzy", "cpu y"), ("book", "gpu x")] {
+            stills.set(Still { backend: backend.to_owned(), ..Still::of(id) });
+        }
+        let page = page(&stills);
+        for figure in Figure::ALL {
+            assert_eq!(page.matches(&format!("id=\"figure-{}\"", figure.id)).count(), 1, "{}", figure.id);
+            let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());
+            assert_eq!(page.matches(&chapter).count(), 1, "{chapter}");
+        }
+        // Metal is shown alone and, with a label, beside its fuzzy neighbour.
+        let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
+        assert_eq!(page.matches("<img ").count(), 4);
+        assert_eq!(page.matches("<p class=\"facts\"><strong>").count(), 2);
+        assert_eq!(page.matches("Not rendered yet").count(), panels - 4);
+        assert!(page.contains(" (cpu y; gpu x).</p>"), "{page}");
+        assert!(!page.contains("<script") && !page.contains("style=\""));
+    }
+}

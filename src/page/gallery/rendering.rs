@@ -1,0 +1,223 @@
+//! Renders the stills that are missing or have changed.
+
+use super::quality::Quality;
+use super::still::{self, INDEX, Still, Stills, fingerprint};
+use crate::backends::BackendChoice;
+use crate::batch::{Event, Studio};
+use crate::cli::ProgressChoice;
+use crate::cli::terminal::{Display, print};
+use crate::film::key;
+use crate::job::output::{Forms, PngForm, write_image_as};
+use crate::job::recipe::Recipe;
+use crate::progressive::describe::{counted, describe};
+use crate::progressive::{Phase, Status};
+use crate::stages::Stage;
+use crate::system::console;
+use crate::system::failure::Failure;
+use crate::system::files::check_writable;
+use crate::system::interrupt::Interrupt;
+use anyhow::{Context, Result, bail};
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Which stills are wanted, and where.
+#[derive(Clone, Debug)]
+pub struct Order<'a> {
+    /// The directory of the stills, which is created if necessary.
+    pub directory: &'a Path,
+    /// The stages; stills of others are left as they are.
+    pub stages: &'a [&'static Stage],
+    /// The effort for each still. A full still is kept when quick ones are wanted.
+    pub quality: Quality,
+    pub backend: &'a BackendChoice,
+    pub progress: ProgressChoice,
+    /// Whether each finished still is printed on a line.
+    pub prints_stills: bool,
+}
+
+/// The result of an order.
+#[derive(Debug)]
+pub struct Outcome {
+    /// All stills of the directory.
+    pub stills: Stills,
+    /// How many were rendered now.
+    pub rendered: usize,
+    /// How many of the wanted ones did not have to be rendered.
+    pub kept: usize,
+    /// How many are still missing because of a signal.
+    pub missing: usize,
+}
+
+impl Outcome {
+    /// Says what was done, and where the page is or how to continue.
+    ///
+    /// # Errors
+    /// If standard output cannot be written.
+    pub fn report(&self, noun: &str, page: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
+        if self.missing > 0 {
+            let missing = counted(self.missing as u64, noun);
+            console::note(&format!("interrupted: {missing} missing; run the same command again to go on"));
+            return Ok(interrupt.exit_code());
+        }
+        let rendered = counted(self.rendered as u64, noun);
+        print(&format!("{rendered} rendered, {} unchanged\nopen {}\n", self.kept, page.display()))
+            .map_err(Failure::Run)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// A still that must be rendered.
+struct Task {
+    stage: &'static Stage,
+    recipe: Recipe,
+    fingerprint: String,
+}
+
+/// Interval of progress lines when there is no terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
+
+/// The progress bar, whose steps are paths.
+const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
+
+/// Renders those of the wanted stills that are missing, damaged or made from other settings or by another tracer, and
+/// writes each with its description as soon as it is finished. After Ctrl-C, the still in progress is dropped.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was rendered, otherwise [`Failure::BrokeOff`] or [`Failure::Run`]. Finished stills are
+/// kept.
+pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failure> {
+    let directory = order.directory;
+    std::fs::create_dir_all(directory)
+        .with_context(|| {
+            format!("cannot create the directory {}; choose another with --out", directory.display())
+        })
+        .map_err(Failure::Input)?;
+    let mut stills = Stills::read(directory);
+    let tasks = tasks(order, &stills).map_err(Failure::Input)?;
+    for file in tasks.iter().map(|task| Still::file_name(task.stage)).chain([INDEX.to_owned()]) {
+        check_writable(&directory.join(file)).map_err(Failure::input)?;
+    }
+    let kept = order.stages.len() - tasks.len();
+    let mut rendered = 0;
+    if !tasks.is_empty() {
+        let studio = Studio::open(order.backend, interrupt)?;
+        let display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
+        let mut work = Work { order, interrupt, tasks: &tasks, studio, display };
+        let outcome = work.render_all(&mut stills, &mut rendered);
+        work.display.clear();
+        outcome.map_err(|error| match rendered {
+            0 => Failure::Run(error),
+            _ => {
+                let kept = counted(rendered as u64, "picture");
+                Failure::BrokeOff(error.context(format!("broke off; kept: {kept}")))
+            }
+        })?;
+    }
+    Ok(Outcome { stills, rendered, kept, missing: tasks.len() - rendered })
+}
+
+/// The stills that must be rendered.
+fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
+    let mut tasks = Vec::new();
+    for stage in order.stages {
+        let recipe = order.quality.recipe(stage);
+        let fingerprint = fingerprint(&recipe);
+        let full = still::fingerprint(&Quality::Full.recipe(stage));
+        if stills.is_fresh(stage, &[&fingerprint, &full]) {
+            continue;
+        }
+        recipe.job()?.check_memory(1)?;
+        tasks.push(Task { stage, recipe, fingerprint });
+    }
+    Ok(tasks)
+}
+
+/// The work on an order.
+struct Work<'a> {
+    order: &'a Order<'a>,
+    interrupt: &'a Interrupt,
+    tasks: &'a [Task],
+    studio: Studio<'a>,
+    display: Display,
+}
+
+impl Work<'_> {
+    /// Counts the finished stills in `rendered`. Ends early after a signal.
+    fn render_all(&mut self, stills: &mut Stills, rendered: &mut usize) -> Result<()> {
+        for (number, task) in self.tasks.iter().enumerate() {
+            let Some(still) = self.render(number, task)? else { break };
+            let line = still.line();
+            stills.set(still);
+            stills.write()?;
+            *rendered += 1;
+            if self.order.prints_stills {
+                self.display.above(|| print(&line))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders and writes a still; `None` after a signal.
+    fn render(&mut self, number: usize, task: &Task) -> Result<Option<Still>> {
+        let recipe = &task.recipe;
+        let plan = Studio::plan(recipe.samples_per_pixel);
+        let (display, tasks) = (&mut self.display, self.tasks);
+        let (status, film) = self.studio.render(recipe.job()?, plan, None, |event| match event {
+            Event::Warning(words) => display.say(&format!("warning: {words}")),
+            Event::Stopping => {}
+            Event::Status(_, status) => {
+                let (words, done) = progress(tasks, number, status);
+                display.update(done, || words);
+            }
+        });
+        if let Phase::Failed(reason) = &status.phase {
+            bail!("{}: {reason}", task.stage.id);
+        }
+        let film = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel);
+        let Some(film) = film else { return Ok(None) };
+
+        let path = self.order.directory.join(Still::file_name(task.stage));
+        let _writing = self.interrupt.while_writing(path.display().to_string());
+        let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
+        let forms = Forms { png: PngForm::Small, ..Forms::default() };
+        write_image_as(&path, &film, recipe.rules.transfer, &description, forms)?;
+        let error = film.error();
+        let settings = &recipe.settings;
+        Ok(Some(Still {
+            stage: task.stage.id.to_owned(),
+            file: Still::file_name(task.stage),
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name().to_owned(),
+            seed: settings.seed,
+            samples_per_pixel: recipe.samples_per_pixel,
+            trace_seconds: status.trace.as_secs_f64(),
+            rmse_estimate: error.map(|error| error.rmse),
+            rmse_deviation: error.map(|error| error.rmse_deviation),
+            backend: description.get(key::BACKEND).unwrap_or_default().to_owned(),
+            fingerprint: task.fingerprint.clone(),
+            checksum: still::checksum(&path)?,
+        }))
+    }
+}
+
+/// The progress in words and in paths, while the task with this number is rendered.
+fn progress(tasks: &[Task], number: usize, status: &Status) -> (String, u64) {
+    let Task { stage, recipe, .. } = &tasks[number];
+    let done = status.samples_per_pixel;
+    let error = status.error.map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
+    let (count, planned) = (tasks.len(), recipe.samples_per_pixel);
+    let words = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
+    (words, paths(&tasks[..number]) + done * pixels(recipe))
+}
+
+/// The paths of all pictures.
+fn paths(tasks: &[Task]) -> u64 {
+    tasks.iter().map(|task| task.recipe.samples_per_pixel * pixels(&task.recipe)).sum()
+}
+
+fn pixels(recipe: &Recipe) -> u64 {
+    u64::from(recipe.settings.width) * u64::from(recipe.settings.height)
+}

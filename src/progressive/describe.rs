@@ -1,0 +1,174 @@
+//! The description of a picture, from its recipe, its film and how it was rendered.
+
+use crate::film::{Description, Film, key};
+use crate::job::recipe::{Recipe, file};
+use crate::job::render::BackendInfo;
+use crate::progressive::{Contribution, Status};
+use crate::scene::Camera;
+use crate::stages::Stage;
+
+pub use crate::film::SOFTWARE;
+
+/// The description of a film rendered from `recipe`. `seconds_before` is the time that the film's earlier samples
+/// took, if known.
+pub fn describe(
+    recipe: &Recipe,
+    stage: Option<&Stage>,
+    film: &Film,
+    status: &Status,
+    seconds_before: Option<f64>,
+) -> Description {
+    let settings = &recipe.settings;
+    let mut description = Description::new(&file::to_picture_toml(recipe));
+    description.set(key::SOFTWARE, SOFTWARE);
+    description.set(key::SCENE, &recipe.name);
+    if let Some(stage) = stage {
+        description.set(key::STAGE, stage.id);
+    }
+    description.set(key::CAMERA, camera_words(&recipe.camera));
+    description.set(key::SAMPLER, settings.sampler.name());
+    description.set(key::SEED, settings.seed);
+    description.set(key::SAMPLES, film.sample_count());
+    if let Some(seconds) = seconds_before {
+        description.set(key::SECONDS, seconds + status.trace.as_secs_f64());
+    }
+    if let Some(backends) = backend_words(film, status) {
+        description.set(key::BACKEND, backends);
+    }
+    description
+}
+
+/// The description of an animated PNG of frames of `recipe`.
+pub fn describe_animation(recipe: &Recipe, command: &str) -> Description {
+    let mut description = Description::new(&file::to_picture_toml(recipe));
+    description.set(key::SOFTWARE, SOFTWARE);
+    description.set(key::SCENE, &recipe.name);
+    description.set(key::SAMPLES, recipe.samples_per_pixel);
+    description.set(key::COMMAND, command);
+    description
+}
+
+/// A number with its noun: `1 sample`, `8 samples`.
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A time such as `3.2 s`, `4 min 05 s` or `2 h 03 min`.
+pub fn seconds(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{seconds:.1} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        3600..864_000 => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+        _ => format!("{} days", whole / 86_400),
+    }
+}
+
+/// The backend. If there were several, the current one comes first, each with its samples, and earlier runs come last.
+fn backend_words(film: &Film, status: &Status) -> Option<String> {
+    let words =
+        |info: &BackendInfo| format!("{} {}, {}", info.name, info.device, counted(info.lanes as u64, "lane"));
+    let samples = |count: u64| counted(count, "sample");
+    let mut parts: Vec<&Contribution> = status.contributions.iter().collect();
+    let earlier = film.sample_count().saturating_sub(parts.iter().map(|part| part.samples_per_pixel).sum());
+    match parts.as_slice() {
+        [] => return status.backend.as_ref().map(words),
+        [only] if earlier == 0 => return Some(words(&only.backend)),
+        _ => {}
+    }
+    parts.sort_by_key(|part| Some(&part.backend) != status.backend.as_ref());
+    let told =
+        parts.iter().map(|part| format!("{} ({})", words(&part.backend), samples(part.samples_per_pixel)));
+    let before = (earlier > 0).then(|| format!("earlier runs ({})", samples(earlier)));
+    Some(told.chain(before).collect::<Vec<_>>().join("; "))
+}
+
+fn camera_words(camera: &Camera) -> String {
+    let (from, at) = (camera.look_from, camera.look_at);
+    format!(
+        "from {},{},{} to {},{},{}, vfov {} degrees, defocus {} degrees, focus at {}",
+        from.x,
+        from.y,
+        from.z,
+        at.x,
+        at.y,
+        at.z,
+        camera.vfov_degrees,
+        camera.defocus_angle_degrees,
+        camera.effective_focus_distance()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn a_camera_is_told_with_all_its_numbers() {
+        let camera = Camera {
+            look_from: DVec3::new(13.0, 2.0, 3.5),
+            look_at: DVec3::new(1.0, -2.0, 0.0),
+            vfov_degrees: 20.0,
+            defocus_angle_degrees: 0.6,
+            focus_distance: Some(10.0),
+            ..Camera::BOOK
+        };
+        assert_eq!(
+            camera_words(&camera),
+            "from 13,2,3.5 to 1,-2,0, vfov 20 degrees, defocus 0.6 degrees, focus at 10"
+        );
+        // A lens without a distance of its own is focused on what it looks at.
+        let (look_from, look_at) = (DVec3::new(3.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 4.0));
+        let words = camera_words(&Camera { look_from, look_at, focus_distance: None, ..camera });
+        assert!(words.ends_with("focus at 5"), "{words}");
+    }
+
+    #[test]
+    fn times_are_short() {
+        let found = [0.0, 59.4, 245.0, 7385.0, 1e7].map(seconds);
+        assert_eq!(found, ["0.0 s", "59.4 s", "4 min 05 s", "2 h 03 min", "115 days"]);
+        // Rounded before it is divided into units.
+        assert_eq!([59.6, 3599.7].map(seconds), ["1 min 00 s", "1 h 00 min"]);
+    }
+
+    #[test]
+    fn the_film_says_how_many_samples_it_has() {
+        let recipe = Recipe::builtin("three-spheres").expect("built in");
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..10, 0).expect("empty");
+        // The status can be that of a later pass.
+        let status = Status { samples_per_pixel: 12, ..Status::default() };
+        let description = describe(&recipe, None, &film, &status, None);
+        assert_eq!((description.get(key::SAMPLES), description.get(key::SECONDS)), (Some("10"), None));
+        // Earlier samples took their time, too.
+        let status = Status { trace: std::time::Duration::from_millis(1500), ..status };
+        let description = describe(&recipe, None, &film, &status, Some(2.5));
+        assert_eq!(description.get(key::SECONDS), Some("4"));
+    }
+
+    #[test]
+    fn all_who_rendered_are_named() {
+        let info = |name: &'static str, lanes| BackendInfo { name, device: "x".into(), lanes, threads: 1 };
+        let part =
+            |name, lanes, samples_per_pixel| Contribution { backend: info(name, lanes), samples_per_pixel };
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..10, 0).expect("empty");
+        let words = |contributions: &[Contribution]| {
+            let status = Status {
+                backend: Some(info("gpu", 64)),
+                contributions: contributions.to_vec(),
+                ..Status::default()
+            };
+            backend_words(&film, &status).expect("a backend")
+        };
+        assert_eq!(words(&[]), "gpu x, 64 lanes");
+        assert_eq!(words(&[part("cpu", 8, 10)]), "cpu x, 8 lanes");
+        assert_eq!(words(&[part("cpu", 8, 4)]), "cpu x, 8 lanes (4 samples); earlier runs (6 samples)");
+        let two = [part("cpu", 8, 6), part("gpu", 64, 1)];
+        assert_eq!(
+            words(&two),
+            "gpu x, 64 lanes (1 sample); cpu x, 8 lanes (6 samples); earlier runs (3 samples)"
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! Failures that end the program early, and their exit codes.
+
+use crate::system::console;
+use std::fmt;
+use std::process::ExitCode;
+
+/// Exit code for a failure during the run, and for two inputs that differ.
+pub const FAILED: u8 = 1;
+
+/// Exit code for a request that cannot be carried out; nothing was started.
+pub const BAD_INPUT: u8 = 2;
+
+/// Exit code of a render that stopped early; the samples until then are in its files.
+pub const BROKE_OFF: u8 = 3;
+
+/// Exit code after SIGHUP, which a closing terminal sends: 128 and its number.
+pub const HUNG_UP: u8 = 129;
+
+/// Exit code after Ctrl-C: 128 and the number of SIGINT.
+pub const INTERRUPTED: u8 = 130;
+
+/// Exit code after SIGTERM, which schedulers send before the time is up: 128 and its number.
+pub const TERMINATED: u8 = 143;
+
+/// The exit codes as `--help` explains them.
+pub const EXIT_CODES: &str = "\
+Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs differ; check: a mistake; merge: a part is missing); 2 the request cannot be carried \
+out, nothing was started (compare: it cannot tell); 3 the render failed, but what it had rendered is saved; 130 Ctrl-C, 143 SIGTERM, 129 \
+SIGHUP: what had been rendered is saved";
+
+/// Why the program ends without having done what was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// The command line is invalid, or asks for help.
+    CommandLine(clap::Error),
+    /// The request cannot be carried out; nothing was started.
+    Input(anyhow::Error),
+    /// Something failed during the run.
+    Run(anyhow::Error),
+    /// The render failed, but what it had rendered is in its files.
+    BrokeOff(anyhow::Error),
+}
+
+impl Failure {
+    /// A failure before anything was started.
+    pub fn input(error: impl Into<anyhow::Error>) -> Self {
+        Failure::Input(error.into())
+    }
+
+    /// A failure during the run.
+    pub fn run(error: impl Into<anyhow::Error>) -> Self {
+        Failure::Run(error.into())
+    }
+
+    /// Prints the failure to standard error (help goes to standard output) and returns the exit code; see
+    /// [`EXIT_CODES`].
+    pub fn report(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Failure::CommandLine(error) if error.use_stderr() => {
+                console::note(&error.render().to_string());
+                u8::try_from(error.exit_code()).unwrap_or(BAD_INPUT)
+            }
+            Failure::CommandLine(help) => match console::print(&help.render().to_string()) {
+                Ok(()) => 0,
+                Err(error) => {
+                    console::note(&format!("error: {}", output_failure(&error)));
+                    FAILED
+                }
+            },
+            Failure::Input(_) => self.say(BAD_INPUT),
+            Failure::Run(_) => self.say(FAILED),
+            Failure::BrokeOff(_) => self.say(BROKE_OFF),
+        })
+    }
+
+    fn say(&self, code: u8) -> u8 {
+        console::note(&self.to_string());
+        code
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::CommandLine(error) => error.fmt(f),
+            Failure::Input(error) | Failure::Run(error) | Failure::BrokeOff(error) => {
+                write!(f, "error: {error:#}")
+            }
+        }
+    }
+}
+
+/// The message for a result that cannot be written to standard output.
+pub fn output_failure(error: &std::io::Error) -> String {
+    format!(
+        "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
+    )
+}

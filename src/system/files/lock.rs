@@ -1,0 +1,181 @@
+//! Locks between programs. The system releases them however a program ends.
+
+use super::identity::resolved;
+use super::leftovers::{LOCK, PREFIX};
+use super::paths::ShownPath;
+use same_file::Handle;
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How long a run waits for another one that is about to end.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Pause between two tries.
+const PAUSE: Duration = Duration::from_millis(5);
+
+/// Another run is writing the file.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error(
+    "{} is locked: another run is writing it; wait until that run has ended, or name another file",
+    path.shown()
+)]
+pub struct LockedError {
+    pub path: PathBuf,
+}
+
+/// The right to write a file, which one run has at a time. The lock is on a hidden file beside it, because the file
+/// itself is replaced whenever it is written.
+#[derive(Debug)]
+pub struct FileLock {
+    /// `None` if there is nothing to lock: see [`FileLock::take`].
+    held: Option<(File, PathBuf)>,
+}
+
+impl FileLock {
+    /// Locks `path` until the result is dropped. Devices need no lock, and where the system has no locks, runs are not
+    /// kept apart.
+    ///
+    /// # Errors
+    /// [`LockedError`] if another run has locked it.
+    pub fn take(path: &Path) -> Result<FileLock, LockedError> {
+        FileLock::take_within(path, PATIENCE)
+    }
+
+    fn take_within(path: &Path, patience: Duration) -> Result<FileLock, LockedError> {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            return Ok(FileLock { held: None });
+        }
+        let lock = || -> io::Result<(File, PathBuf)> {
+            let path = resolved(path)?;
+            let mut name = OsString::from(PREFIX);
+            name.push(path.file_name().ok_or(ErrorKind::InvalidFilename)?);
+            name.push(LOCK);
+            let path = path.with_file_name(name);
+            Ok((lock_path(&path, patience)?, path))
+        };
+        match lock() {
+            Ok(held) => Ok(FileLock { held: Some(held) }),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => Err(LockedError { path: path.to_owned() }),
+            Err(error) => {
+                log::warn!("{} cannot be locked: {error}", path.display());
+                Ok(FileLock { held: None })
+            }
+        }
+    }
+}
+
+impl Drop for FileLock {
+    fn drop(&mut self) {
+        if let Some((_, path)) = &self.held {
+            // Still locked, so nobody else has it. If it stays, the next run uses it.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// Locks the file at `path`, which is created if it is missing, until the result is dropped.
+///
+/// # Errors
+/// [`ErrorKind::WouldBlock`] if another program has held the lock for all of `patience`; other errors if the file cannot
+/// be created or locked.
+pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
+    let begin = Instant::now();
+    loop {
+        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        match file.try_lock() {
+            Ok(()) if is_at(&file, path)? => return Ok(file),
+            // Its last owner has removed it just now.
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) if begin.elapsed() >= patience => {
+                return Err(ErrorKind::WouldBlock.into());
+            }
+            Err(TryLockError::WouldBlock) => std::thread::sleep(PAUSE),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+    }
+}
+
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    let held = Handle::from_file(file.try_clone()?)?;
+    Ok(Handle::from_path(path).is_ok_and(|there| there == held))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_has_the_lock_at_a_time_and_the_others_do_not_wait_for_ever() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.lock");
+        let lock = || lock_path(&path, Duration::ZERO);
+        let first = lock().unwrap();
+        assert_eq!(lock().unwrap_err().kind(), ErrorKind::WouldBlock);
+        drop(first);
+        assert!(lock().is_ok());
+        let missing = lock_path(&directory.path().join("missing/x.lock"), Duration::ZERO);
+        assert_eq!(missing.unwrap_err().kind(), ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn a_lock_that_is_released_in_time_is_had() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("x.exr");
+        let first = FileLock::take(&path).unwrap();
+        let waiting =
+            std::thread::spawn(move || FileLock::take_within(&path, Duration::from_secs(60)).is_ok());
+        drop(first);
+        assert!(waiting.join().unwrap());
+    }
+
+    #[test]
+    fn a_file_is_locked_by_all_its_names_and_though_it_is_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        let take = |name: &str| FileLock::take_within(&at(name), Duration::ZERO);
+        let lock = take("g.exr").unwrap();
+        let told = take("./g.exr").unwrap_err().to_string();
+        assert!(told.contains("g.exr is locked") && told.contains("name another file"), "{told}");
+        crate::system::files::write_text(&at("g.exr"), "a film").unwrap();
+        assert!(take("g.exr").is_err());
+        drop(take("h.exr").unwrap());
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("g.exr", at("link.exr")).unwrap();
+            assert!(take("link.exr").is_err());
+            let null = || FileLock::take(Path::new("/dev/null"));
+            assert!(null().is_ok() && null().is_ok());
+        }
+        crate::system::files::check_writable(&at("other.png")).unwrap();
+        assert!(take("g.exr").is_err(), "a check clears up, but not what is in use");
+        drop(lock);
+        assert!(take("g.exr").is_ok());
+        // A killed run leaves the file of its lock.
+        fs::write(at(".weekender-g.exr.lock"), "").unwrap();
+        assert!(take("g.exr").is_ok());
+        assert!(!at(".weekender-g.exr.lock").exists());
+    }
+
+    #[test]
+    fn of_many_at_once_one_has_it() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        let (inside, turns) = (std::sync::atomic::AtomicU32::new(0), std::sync::atomic::Ordering::SeqCst);
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for _ in 0..50 {
+                        let lock = FileLock::take_within(&path, Duration::from_secs(60)).unwrap();
+                        assert_eq!(inside.fetch_add(1, turns), 0);
+                        inside.fetch_sub(1, turns);
+                        drop(lock);
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,118 @@
+//! Paths: as text in messages and in JSON, free names, and directories of the user.
+
+use crate::system::console::printable;
+use serde::{Serialize, Serializer};
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
+
+/// How messages show a path.
+pub trait ShownPath {
+    /// The path as a piece of one line that cannot control a terminal: see [`printable`]. Bytes that are not UTF-8
+    /// become U+FFFD.
+    fn shown(&self) -> String;
+}
+
+impl<P: AsRef<OsStr> + ?Sized> ShownPath for P {
+    fn shown(&self) -> String {
+        printable(&self.as_ref().to_string_lossy()).into_owned()
+    }
+}
+
+/// A path that can be written as JSON, which holds only Unicode: bytes that are not UTF-8 become U+FFFD there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct JsonPath(pub PathBuf);
+
+impl From<PathBuf> for JsonPath {
+    fn from(path: PathBuf) -> Self {
+        JsonPath(path)
+    }
+}
+
+impl Serialize for JsonPath {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.0.to_string_lossy())
+    }
+}
+
+/// The number of names that are tried.
+pub const NAME_LIMIT: u32 = 1000;
+
+/// The first of the paths `name(1)`, `name(2)` and so on where nothing exists, not even a link. `None` if all
+/// [`NAME_LIMIT`] of them are taken.
+pub fn free_name(name: impl Fn(u32) -> PathBuf) -> Option<PathBuf> {
+    (1..=NAME_LIMIT).map(name).find(|path| path.symlink_metadata().is_err())
+}
+
+/// The program's directory for state that outlives it, such as rescued films; it may not exist yet.
+pub fn state_directory() -> Option<PathBuf> {
+    own_directory(env::var_os("XDG_STATE_HOME"), home_directory(), ".local/state")
+}
+
+/// The program's directory for what it can make again, such as small pictures; it may not exist yet.
+pub fn cache_directory() -> Option<PathBuf> {
+    own_directory(env::var_os("XDG_CACHE_HOME"), home_directory(), ".cache")
+}
+
+/// The program's directory in the one that a variable names or, if that is not absolute, in the usual one at `home`.
+fn own_directory(named: Option<OsString>, home: Option<PathBuf>, usual: &str) -> Option<PathBuf> {
+    let named = named.map(PathBuf::from).filter(|directory| directory.is_absolute());
+    Some(named.or_else(|| Some(home?.join(usual)))?.join("weekender"))
+}
+
+/// The user's home directory.
+pub fn home_directory() -> Option<PathBuf> {
+    env::home_dir().filter(|home| home.is_absolute())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn a_shown_path_is_one_line_without_control_characters() {
+        assert_eq!(Path::new("a\nb\u{1b}[31m\u{202e}c.png").shown(), "a\\nb\\u{1b}[31m\\u{202e}c.png");
+        assert_eq!(Path::new("Köln/it's a.png").shown(), "Köln/it's a.png");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn bytes_that_are_not_unicode_are_replaced_in_messages_and_in_json() {
+        use std::os::unix::ffi::OsStrExt;
+        let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
+        assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
+        let json = serde_json::to_value(JsonPath(path)).unwrap();
+        assert_eq!(json, "d\u{fffd}/a\n.png");
+    }
+
+    #[test]
+    fn the_first_free_name_is_taken() {
+        let directory = tempfile::tempdir().unwrap();
+        let name = |number: u32| directory.path().join(number.to_string());
+        std::fs::write(name(1), "").unwrap();
+        std::fs::create_dir(name(2)).unwrap();
+        std::fs::write(name(4), "").unwrap();
+        assert_eq!(free_name(name), Some(name(3)));
+        assert_eq!(free_name(|_| name(1)), None);
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("missing", name(3)).unwrap();
+            assert_eq!(free_name(name), Some(name(5)));
+        }
+    }
+
+    #[test]
+    fn a_variable_chooses_the_directory_only_if_it_is_absolute() {
+        let here = env::current_dir().unwrap();
+        let [state, home] = ["state", "home"].map(|name| here.join(name));
+        let found = |named: Option<&OsStr>, home: Option<&PathBuf>| {
+            own_directory(named.map(ToOwned::to_owned), home.cloned(), ".local/state")
+        };
+        let usual = Some(home.join(".local/state/weekender"));
+        assert_eq!(found(Some(state.as_os_str()), Some(&home)), Some(state.join("weekender")));
+        assert_eq!(found(Some("state".as_ref()), Some(&home)), usual);
+        assert_eq!(found(None, Some(&home)), usual);
+        assert_eq!(found(Some("state".as_ref()), None), None);
+    }
+}

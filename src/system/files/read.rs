@@ -1,0 +1,127 @@
+//! Input files: their kind and length are checked before anything is read.
+
+use super::paths::ShownPath;
+use crate::system::memory::words;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// A file that cannot be read or is not a sensible input.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+pub enum InputError {
+    /// The system could not open or read the file.
+    #[error("cannot read {}: {reason}; check its name and whether you may read it", path.shown())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's error message.
+        reason: String,
+    },
+    /// The path is a directory, a device or a pipe.
+    #[error("{} is {kind}, but a file is needed; name a regular file", path.shown())]
+    NotFile {
+        /// The path as given.
+        path: PathBuf,
+        /// What kind of thing it is, in words.
+        kind: &'static str,
+    },
+    /// The file is longer than the limit for its kind.
+    #[error(
+        "{} has {}, but {what} of more than {} is not read; check that it is the right file",
+        path.shown(), words(*bytes), words(*limit)
+    )]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// Length in bytes.
+        bytes: u64,
+        /// What the file was expected to be.
+        what: &'static str,
+        /// The longest length in bytes that is accepted.
+        limit: u64,
+    },
+}
+
+impl InputError {
+    pub(crate) fn unreadable(path: &Path, reason: impl ToString) -> Self {
+        InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
+
+/// Opens a file and returns it with its length in bytes.
+///
+/// # Errors
+/// [`InputError`]. Only regular files are opened: some other kinds never end, and some block forever.
+pub fn open(path: &Path) -> Result<(File, u64), InputError> {
+    let unreadable = |reason: io::Error| InputError::unreadable(path, reason);
+    let found = fs::metadata(path).map_err(unreadable)?;
+    if !found.is_file() {
+        let kind = if found.is_dir() { "a directory" } else { "a device, a pipe or a socket" };
+        return Err(InputError::NotFile { path: path.to_owned(), kind });
+    }
+    let file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    Ok((file, length))
+}
+
+/// Reads a file of at most `limit` bytes. `what` says what the file should be, such as "a scene file".
+///
+/// # Errors
+/// [`InputError`].
+pub fn read(path: &Path, what: &'static str, limit: u64) -> Result<Vec<u8>, InputError> {
+    let (file, length) = open(path)?;
+    let too_long = |bytes| InputError::TooLong { path: path.to_owned(), bytes, what, limit };
+    if length > limit {
+        return Err(too_long(length));
+    }
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length as usize).map_err(|error| InputError::unreadable(path, error))?;
+    // Some files report a length of 0 but have content; others grow while they are read.
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| InputError::unreadable(path, error))?;
+    if bytes.len() as u64 > limit {
+        return Err(too_long(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("ten");
+        fs::write(&path, [7; 10]).unwrap();
+        assert_eq!(read(&path, "a list", 10).unwrap(), [7; 10]);
+        let message = read(&path, "a list", 9).unwrap_err().to_string();
+        assert!(message.contains("has 10 bytes, but a list of more than 9 bytes is not read"), "{message}");
+        assert!(matches!(read(&directory.path().join("x"), "a list", 1), Err(InputError::Unreadable { .. })));
+    }
+
+    #[test]
+    fn only_regular_files_are_opened() {
+        let directory = tempfile::tempdir().unwrap();
+        let message = open(directory.path()).unwrap_err().to_string();
+        assert!(message.contains("is a directory, but a file is needed"), "{message}");
+        #[cfg(unix)]
+        {
+            let socket = directory.path().join("socket");
+            let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+            for path in [Path::new("/dev/zero"), &socket] {
+                assert!(matches!(open(path), Err(InputError::NotFile { .. })), "{path:?}");
+            }
+        }
+    }
+
+    /// The system reports a length of 0 for this file.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_file_that_is_longer_than_it_reports_is_read_whole_or_not_at_all() {
+        let path = Path::new("/proc/version");
+        let whole = fs::read(path).unwrap();
+        let length = whole.len() as u64;
+        assert_eq!(read(path, "a list", length).unwrap(), whole);
+        assert!(matches!(read(path, "a list", length - 1), Err(InputError::TooLong { .. })));
+    }
+}

@@ -1,0 +1,244 @@
+//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. Another Ctrl-C ends
+//! the program immediately, but never while files are being written. The exit code tells which signal it was. On Linux, a
+//! signal that was ignored when the program started, as SIGHUP by nohup, stays ignored.
+
+use crate::system::console;
+use crate::system::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
+use anyhow::{Context, Result};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A second signal within this time is an echo of the first: `timeout` and shells signal a program and then its group.
+const ECHO: Duration = Duration::from_millis(500);
+
+/// Whether an end has been requested.
+pub struct Interrupt(Arc<Shared>);
+
+#[derive(Default)]
+struct Shared {
+    is_set: AtomicBool,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// When the first signal arrived.
+    since: Option<Instant>,
+    /// The exit code of the signals that have arrived.
+    exit_code: Option<u8>,
+    /// What is being written, in words.
+    writing: Option<String>,
+}
+
+impl State {
+    /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and end a program that takes too long with
+    /// SIGKILL.
+    fn hurries(&self) -> bool {
+        self.exit_code == Some(INTERRUPTED)
+    }
+}
+
+/// Calls `answer` with its exit code, on a thread of its own, whenever a signal has arrived.
+#[cfg(unix)]
+fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let ignored = ignored_signals();
+    let handled = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored & (1 << (signal - 1)) == 0);
+    let mut signals = signal_hook::iterator::Signals::new(handled)?;
+    let listen = move || {
+        for signal in signals.forever() {
+            answer(match signal {
+                SIGTERM => TERMINATED,
+                SIGHUP => HUNG_UP,
+                _ => INTERRUPTED,
+            });
+        }
+    };
+    std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
+    Ok(())
+}
+
+/// The same. The system does not say which signal it was.
+#[cfg(not(unix))]
+fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
+    Ok(ctrlc::set_handler(move || answer(INTERRUPTED))?)
+}
+
+/// The signals that the program ignores, a bit each, the lowest for signal 1. Called before any is handled, they are those
+/// that it was started with. Where `/proc` does not tell, there are none.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
+}
+
+/// The same from the text of `/proc/self/status`.
+#[cfg(unix)]
+fn ignored_in(status: &str) -> u64 {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+/// The response to a signal.
+#[derive(Debug, PartialEq, Eq)]
+enum Answer {
+    /// Only the flag is set.
+    Nothing,
+    /// A message is printed.
+    Say(String),
+    /// The program ends.
+    Exit,
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn signalled(&self, exit_code: u8, now: Instant) -> Answer {
+        let mut state = self.state();
+        let first = *state.since.get_or_insert(now);
+        let was_set = self.is_set.swap(true, Ordering::Relaxed);
+        // Whoever presses Ctrl-C wants the end, whatever else asks for it.
+        state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
+            .into_iter()
+            .find(|code| *code == exit_code || Some(*code) == state.exit_code);
+        match &state.writing {
+            Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
+            None if was_set && state.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
+            None => Answer::Nothing,
+        }
+    }
+
+    fn exit_code(&self) -> u8 {
+        self.state().exit_code.unwrap_or(INTERRUPTED)
+    }
+}
+
+impl Interrupt {
+    /// Starts to handle signals. This can be done once per process.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn install() -> Result<Self> {
+        Self::install_with(|| {})
+    }
+
+    /// Like [`Interrupt::install`]; `wake` is called, on another thread, when a signal has arrived.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn install_with(wake: impl Fn() + Send + 'static) -> Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let seen = Arc::clone(&shared);
+        let answer = move |code| match seen.signalled(code, Instant::now()) {
+            Answer::Nothing => wake(),
+            Answer::Say(words) => console::note(&words),
+            Answer::Exit => {
+                console::note("ended at once; unsaved results are lost");
+                std::process::exit(i32::from(seen.exit_code()));
+            }
+        };
+        watch(answer).context("cannot handle Ctrl-C and other signals")?;
+        Ok(Interrupt(shared))
+    }
+
+    /// An instance that ignores signals, for tests.
+    #[cfg(test)]
+    pub(crate) fn unheard() -> Self {
+        Interrupt(Arc::default())
+    }
+
+    /// Becomes `true` when an end is requested.
+    pub fn flag(&self) -> &AtomicBool {
+        &self.0.is_set
+    }
+
+    /// Whether an end has been requested.
+    pub fn is_set(&self) -> bool {
+        self.0.is_set.load(Ordering::Relaxed)
+    }
+
+    /// Whether somebody at a keyboard has asked for the end, and can ask again.
+    pub fn is_by_hand(&self) -> bool {
+        self.0.state().hurries()
+    }
+
+    /// The exit code of a program that a signal has ended in good order.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.0.exit_code())
+    }
+
+    /// Until the result is dropped, a signal does not end the program but prints a message that names `what`.
+    pub fn while_writing(&self, what: impl Into<String>) -> Writing<'_> {
+        self.0.state().writing = Some(what.into());
+        Writing(&self.0)
+    }
+}
+
+/// Files are being written: see [`Interrupt::while_writing`].
+pub struct Writing<'a>(&'a Shared);
+
+impl Drop for Writing<'_> {
+    fn drop(&mut self) {
+        self.0.state().writing = None;
+    }
+}
+
+/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error. By default the system ends the program
+/// with SIGXFSZ.
+pub fn survive_file_size_limit() {
+    #[cfg(unix)]
+    {
+        // The flag is not used: having a handler is enough. If it cannot be installed, the default applies.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_signal_asks_and_a_later_ctrl_c_ends() {
+        let (shared, now) = (Shared::default(), Instant::now());
+        assert_eq!(shared.exit_code(), 130);
+        assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);
+        assert_eq!((shared.is_set.load(Ordering::Relaxed), shared.exit_code()), (true, 129));
+        assert_eq!(
+            shared.signalled(TERMINATED, now + 2 * ECHO),
+            Answer::Nothing,
+            "no scheduler is in a hurry"
+        );
+        assert_eq!(shared.exit_code(), 143);
+        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO / 2), Answer::Nothing, "an echo");
+        assert_eq!(shared.exit_code(), 130);
+        assert_eq!(shared.signalled(INTERRUPTED, now + ECHO), Answer::Exit);
+        assert_eq!(Shared::default().signalled(INTERRUPTED, now), Answer::Nothing);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn ignored_signals_are_read_from_the_status_of_the_process() {
+        let status = "Name:\tsh\nSigBlk:\t0000000000000003\nSigIgn:\t0000000000001001\n";
+        assert_eq!(ignored_in(status), 0x1001);
+        for unknown in ["", "SigIgn:\tnone\n", "SigBlk:\t0000000000000001\n"] {
+            assert_eq!(ignored_in(unknown), 0);
+        }
+    }
+
+    #[test]
+    fn nothing_ends_the_program_while_it_writes() {
+        let interrupt = Interrupt::unheard();
+        let now = Instant::now();
+        let writing = interrupt.while_writing("film.exr");
+        for late in 0..3 {
+            let answer = interrupt.0.signalled(INTERRUPTED, now + late * ECHO);
+            assert!(matches!(&answer, Answer::Say(words) if words.contains("film.exr")), "{answer:?}");
+        }
+        drop(writing);
+        assert!(interrupt.is_set());
+        assert_eq!(interrupt.0.signalled(INTERRUPTED, now + 3 * ECHO), Answer::Exit);
+    }
+}

@@ -1,0 +1,168 @@
+//! The log, and the report after a panic.
+//!
+//! Rooms write to the log through the crate `log`, as wgpu does. It is off by default: then only the latest lines of
+//! importance are kept in memory, for the report after a panic. Nothing is logged within a pass of the CPU.
+
+mod panic;
+
+pub use panic::{watched, write_report};
+
+use crate::system::console;
+use env_filter::Filter;
+use log::{Level, LevelFilter, Log, Metadata, Record};
+use std::collections::VecDeque;
+use std::env;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+/// The variable that chooses what is logged.
+pub const VARIABLE: &str = "RUST_LOG";
+
+/// What `--log` writes without [`VARIABLE`].
+const FILTER_OF_FILE: &str = "warn,weekender=debug";
+
+/// Number of lines that are kept for a report.
+const KEPT_LINES: usize = 256;
+
+static KEPT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
+
+/// Why the log cannot be started.
+#[derive(Debug, thiserror::Error)]
+pub enum JournalError {
+    /// The filter is not valid.
+    #[error(
+        "{VARIABLE} is {value:?}, which is not a log filter ({reason}); write a level such as info, or a level for each \
+         module such as warn,weekender=debug; levels are error, warn, info, debug, trace and off"
+    )]
+    Filter {
+        /// The value of the variable.
+        value: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The file cannot be written.
+    #[error("--log {}: {source}; choose a file in a directory that you can write to", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+struct Journal {
+    filter: Filter,
+    /// Standard error without one.
+    file: Option<Mutex<File>>,
+    began: Instant,
+}
+
+/// Starts the log: to `file`, or to standard error if [`VARIABLE`] is set. A second call does nothing.
+///
+/// # Errors
+/// [`JournalError`]; nothing is logged then.
+pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
+    let value = env::var_os(VARIABLE).map(|value| value.to_string_lossy().trim().to_owned());
+    let default = if file.is_some() { FILTER_OF_FILE } else { "off" };
+    let filter = filter_of(value.as_deref().filter(|value| !value.is_empty()).unwrap_or(default))?;
+    let create = |path: &Path| match File::create(path) {
+        Ok(file) => Ok(Mutex::new(file)),
+        Err(source) => Err(JournalError::File { path: path.to_owned(), source }),
+    };
+    let file = file.map(create).transpose()?;
+    let most = filter.filter().max(LevelFilter::Info);
+    if log::set_boxed_logger(Box::new(Journal { filter, file, began: Instant::now() })).is_ok() {
+        log::set_max_level(most);
+    }
+    Ok(())
+}
+
+fn filter_of(words: &str) -> Result<Filter, JournalError> {
+    let mut builder = env_filter::Builder::new();
+    match builder.try_parse(words) {
+        Ok(builder) => Ok(builder.build()),
+        Err(error) => Err(JournalError::Filter { value: words.to_owned(), reason: error.to_string() }),
+    }
+}
+
+/// Whether a line is kept for a report: what the program itself did, and the warnings of others.
+fn is_kept(metadata: &Metadata<'_>) -> bool {
+    let is_own = metadata.target().starts_with("weekender");
+    metadata.level() <= if is_own { Level::Info } else { Level::Warn }
+}
+
+fn keep(line: String) {
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.len() == KEPT_LINES {
+        kept.pop_front();
+    }
+    kept.push_back(line);
+}
+
+/// The kept lines, oldest first.
+fn kept_text() -> String {
+    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    kept.iter().map(String::as_str).collect::<Vec<_>>().join("\n")
+}
+
+impl Log for Journal {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        is_kept(metadata) || self.filter.enabled(metadata)
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        let (is_kept, is_wanted) = (is_kept(record.metadata()), self.filter.matches(record));
+        if !is_kept && !is_wanted {
+            return;
+        }
+        let (seconds, level, target) = (self.began.elapsed().as_secs_f64(), record.level(), record.target());
+        let line = format!("{seconds:9.3} s {level:5} {target}: {}", record.args());
+        match &self.file {
+            Some(file) if is_wanted => {
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                // A full disk must not end a render.
+                let _ = writeln!(file, "{}", console::printable(&line));
+            }
+            None if is_wanted => console::note(&line),
+            _ => {}
+        }
+        if is_kept {
+            keep(line);
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn metadata(level: Level, target: &str) -> Metadata<'_> {
+        Metadata::builder().level(level).target(target).build()
+    }
+
+    #[test]
+    fn a_filter_chooses_by_module_and_level_and_an_invalid_one_is_an_error() {
+        let filter = filter_of(FILTER_OF_FILE).unwrap();
+        let is_on = |level, target| filter.enabled(&metadata(level, target));
+        assert!(is_on(Level::Debug, "weekender::render_gpu") && is_on(Level::Warn, "wgpu_core"));
+        assert!(!is_on(Level::Trace, "weekender::render_gpu") && !is_on(Level::Info, "wgpu_core"));
+        let message = filter_of("weekender=loud").err().unwrap().to_string();
+        assert!(message.contains("weekender=loud") && message.contains("levels are error"), "{message}");
+    }
+
+    #[test]
+    fn own_steps_and_foreign_warnings_are_kept_for_a_report() {
+        let kept = |level, target| is_kept(&metadata(level, target));
+        assert!(kept(Level::Info, "weekender::backends") && kept(Level::Warn, "wgpu_hal"));
+        assert!(!kept(Level::Debug, "weekender::backends") && !kept(Level::Info, "wgpu_hal"));
+        (0..=KEPT_LINES).for_each(|number| keep(format!("line {number}")));
+        let text = kept_text();
+        assert_eq!(text.lines().count(), KEPT_LINES);
+        assert!(text.ends_with(&format!("line {KEPT_LINES}")), "{text}");
+    }
+}

@@ -1,0 +1,112 @@
+//! What is done about a panic. A panic of a tracer ends only its pass, and another backend continues: that is a message
+//! and a line in the log. A panic that ends the program, or its render, also leaves a report in a file.
+
+use super::kept_text;
+use crate::system::console;
+use crate::system::failure::FAILED;
+use crate::system::files::{state_directory, write_text};
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::env;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Mutex, OnceLock, PoisonError};
+
+/// Version, commit and target in one line, for the report.
+static VERSION: OnceLock<String> = OnceLock::new();
+
+/// The words of the latest panic, of whatever thread.
+static LATEST: Mutex<Option<String>> = Mutex::new(None);
+
+/// Runs the program of this version. If it panics, writes a report and says where it is.
+pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode {
+    VERSION.get_or_init(|| version);
+    std::panic::set_hook(Box::new(note));
+    catch_unwind(AssertUnwindSafe(program)).unwrap_or_else(|_| {
+        write_report();
+        ExitCode::from(FAILED)
+    })
+}
+
+/// Writes what is known about the latest panic to a file, and its path to standard error. Without a panic, does nothing.
+pub fn write_report() {
+    let Some(words) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    let version = VERSION.get().map_or("unknown", String::as_str);
+    let text = report(version, &command_line(), &words, &kept_text());
+    let name = format!("weekender-report-{}.txt", std::process::id());
+    let mut reasons = Vec::new();
+    for place in places() {
+        let path = place.join(&name);
+        match write_text(&path, &text) {
+            Ok(()) => {
+                let path = path.display();
+                console::note(&format!(
+                    "a report is in {path}: read it, then send it with the scene file if there was one"
+                ));
+                return;
+            }
+            Err(error) => reasons.push(error.to_string()),
+        }
+    }
+    console::note(&format!("no report could be written: {}", reasons.join("; ")));
+}
+
+/// Directories to try in turn.
+fn places() -> Vec<PathBuf> {
+    let state = state_directory().filter(|state| std::fs::create_dir_all(state).is_ok());
+    [Some(env::temp_dir()), state, Some(PathBuf::from("."))].into_iter().flatten().collect()
+}
+
+fn report(version: &str, command: &str, words: &str, log: &str) -> String {
+    let directory = env::current_dir().map_or_else(|error| error.to_string(), |at| at.display().to_string());
+    let log = if log.is_empty() { "(empty)" } else { log };
+    format!(
+        "Weekender ended by an error of its own. This file tells its developers what happened. It holds nothing but \
+         what follows; remove what is private.\n\nversion    {version}\ncommand    {command}\ndirectory  \
+         {directory}\n\n{words}\n\nLog (seconds since the start):\n{log}\n"
+    )
+}
+
+/// The command line as a shell would read it.
+fn command_line() -> String {
+    let words: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+}
+
+/// The panic hook. It cannot fail, even if standard error is closed.
+fn note(panic: &PanicHookInfo<'_>) {
+    let words = fault_words(panic);
+    log::error!("{words}");
+    console::note(&format!("{words}; please report it with the command that led to it"));
+    let backtrace = Backtrace::capture();
+    let mut whole = words;
+    if backtrace.status() == BacktraceStatus::Captured {
+        console::note(&backtrace.to_string());
+        whole.push_str(&format!("\n\n{backtrace}"));
+    }
+    *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(whole);
+}
+
+fn fault_words(panic: &PanicHookInfo<'_>) -> String {
+    let reason = panic.payload_as_str().unwrap_or("no reason given");
+    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
+    let thread = std::thread::current();
+    format!("internal error in thread {}: {reason}{place}", thread.name().unwrap_or("(unnamed)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_says_what_ran_and_what_happened() {
+        let text = report("weekender 1.2 (abc)", "weekender --batch", "it broke", "0.1 s INFO adapter X");
+        for part in [
+            "\n\nversion    weekender 1.2 (abc)\ncommand    weekender --batch\ndirectory  /",
+            "\n\nit broke\n\nLog (seconds since the start):\n0.1 s INFO adapter X\n",
+        ] {
+            assert!(text.contains(part), "{part} in {text}");
+        }
+        assert!(report("", "", "", "").ends_with("(empty)\n"));
+    }
+}

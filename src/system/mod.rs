@@ -1,0 +1,12 @@
+//! What every room stands on: files written whole or not at all, the log, signals, the memory check, the console.
+
+pub mod console;
+pub mod failure;
+pub mod files;
+pub mod interrupt;
+pub mod journal;
+pub mod memory;
+pub mod number;
+pub mod shell;
+pub mod suggest;
+pub mod threads;
