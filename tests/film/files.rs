@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
-use weekender::film::{CheckpointError, Film, checkpoint};
+use weekender::film::{CheckpointError, Film, FilmFile, checkpoint, key};
 use weekender::job::output::decode_description;
 use weekender::system::files::InputError;
 
@@ -95,6 +95,18 @@ fn another_version_is_refused() {
         let (path, writer) = (path.clone(), writer.clone());
         assert_eq!(error, CheckpointError::Version { path, layout, samples, writer });
     }
+}
+
+/// A film of layout 4, as it was first written, with two bands and both halves.
+#[test]
+fn a_film_that_was_written_long_ago_is_read() {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/layout-4.exr"));
+    let FilmFile { film, description } = checkpoint::load(path).unwrap();
+    assert_eq!((film.width(), film.height(), film.samples().to_string()), (20, 18, "0..4".to_owned()));
+    assert_eq!(description.get(key::SCENE), Some("three-spheres"));
+    let sum = |half: usize| film.halves()[half].iter().flat_map(|sum| sum.0).sum::<u64>();
+    assert_eq!([sum(0), sum(1)], [15_795_466_573, 15_650_156_772]);
+    assert_eq!(checkpoint::check(path).unwrap().description, description);
 }
 
 /// The bytes of an attribute in a file: name, type, length and value.

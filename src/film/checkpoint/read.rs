@@ -174,3 +174,26 @@ impl Seek for At<'_> {
         Ok(self.place)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Description, checkpoint::save};
+
+    #[test]
+    fn another_film_that_is_copied_into_the_file_is_noticed() {
+        let directory = tempfile::tempdir().unwrap();
+        let [path, other] = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
+        for (path, samples) in [(&path, 0..4), (&other, 4..6)] {
+            let mut film = Film::new(4, 40, 2);
+            film.record(samples, 0).unwrap();
+            save(path, &film, &Description::new("r")).unwrap();
+        }
+        let (file, length) = files::open(&path).unwrap();
+        let (opened, _) = Opened::new(At::start(&file), length, &path).unwrap();
+        opened.read_all(&file, &mut []).unwrap();
+        std::fs::copy(&other, &path).unwrap();
+        let changed = opened.read_all(&file, &mut []).unwrap_err();
+        assert_eq!(changed, CheckpointError::Changed { path: path.clone() });
+    }
+}

@@ -73,7 +73,8 @@ mod tests {
         assert_eq!(told(|_| {}), None);
         // Equal numbers are no difference, whatever their signs.
         assert_eq!(told(|recipe| recipe.camera.look_from.x = -0.0), None);
-        let cases: [(fn(&mut Recipe), &str); 8] = [
+        type Change = fn(&mut Recipe);
+        let cases: [(Change, &str); 8] = [
             (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
             (|recipe| recipe.settings.seed = 5, "seed is 0 here, 5 there"),
             (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov is 90 here, 20 there"),
