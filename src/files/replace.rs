@@ -32,8 +32,8 @@ fn remedy(reason: &io::Error) -> &'static str {
 }
 
 /// Writes `path` with `write`: to a new file in the same directory, which then replaces the old one. If anything
-/// fails, the old file is unchanged and the new one is deleted. Links are followed. Devices and pipes are written directly. The file gets the usual permissions, or those of the file it
-/// replaces.
+/// fails, the old file is unchanged and the new one is deleted. Links are followed. Devices and pipes are written
+/// directly. The file gets the usual permissions, or those of the file it replaces.
 ///
 /// # Errors
 /// [`WriteError`], from `write` or from the file system.
