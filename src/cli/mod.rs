@@ -1,5 +1,6 @@
 //! The command line, parsed and validated.
 
+mod animation;
 mod backend;
 mod bench;
 mod check;
@@ -186,6 +187,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
 
 fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
     Ok(match raw.command {
+        None if !raw.render.list && raw.render.animation.check()?.is_some() => {
+            Request::Frames(Box::new(frames::frames(raw.render, line)?))
+        }
         None => render::request(raw.render, line)?,
         Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(bench::bench(*raw)?)),
         Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),
