@@ -1,6 +1,7 @@
 //! The command line, parsed and validated.
 
 pub mod about;
+mod animation;
 pub mod terminal;
 
 mod backend;
@@ -189,6 +190,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
 
 fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
     Ok(match raw.command {
+        None if !raw.render.list && raw.render.animation.check()?.is_some() => {
+            Request::Frames(Box::new(frames::frames(raw.render, line)?))
+        }
         None => render::request(raw.render, line)?,
         Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
         Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),

@@ -1,7 +1,7 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
+use super::animation::{Animation, AnimationFlags};
 use super::error::CliError;
-use super::frames::{Animation, AnimationFlags};
 use super::raw::{ProgressChoice, RawPicture};
 use super::sources::{self, SampleFlags};
 use super::values::{JsonTarget, json_target, parse_duration, whole};

@@ -1,13 +1,13 @@
 //! Rendering, in the window or to files.
 
+use super::animation::AnimationFlags;
 use super::error::CliError;
-use super::frames::AnimationFlags;
 use super::raw::{DrawWith, ProgressChoice, RawPicture};
 use super::sources::{self, ChosenRecipe, SampleFlags};
 use super::values::{
     JsonTarget, check_ending, json_target, parse_duration, parse_noise_target, parse_seconds,
 };
-use super::{Line, Paths, Request, backend, frames};
+use super::{Line, Paths, Request, backend};
 use crate::backends::BackendChoice;
 use crate::job::output::{OutputFormat, PpmForm};
 use crate::job::recipe::{Recipe, plain_name};
@@ -194,9 +194,6 @@ pub struct SaveSceneOptions {
 pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
     if flags.list {
         return Ok(Request::List);
-    }
-    if flags.animation.check()?.is_some() {
-        return frames::request(flags, line);
     }
     let files = &mut flags.files;
     for (flag, path) in [("--checkpoint", &files.checkpoint), ("--resume", &files.resume)] {
