@@ -3,10 +3,10 @@
 use super::error::CliError;
 use super::raw::RawPicture;
 use super::values::{parse_rate, parse_turn, range};
-use crate::animation::{CameraPath, FRAME_LIMIT, Turn};
-use crate::output::FrameRate;
-use crate::recipe::Recipe;
-use crate::render::RenderJob;
+use crate::job::output::FrameRate;
+use crate::job::recipe::Recipe;
+use crate::job::render::RenderJob;
+use crate::scene::animation::{CameraPath, FRAME_LIMIT, Turn};
 use clap::Args;
 use std::ops::Range;
 
