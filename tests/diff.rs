@@ -149,8 +149,8 @@ fn a_difference_is_found_marked_and_told() {
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());
     assert_eq!(code, 1);
-    let from_path = |text: &str| text[text.find("\npath ").unwrap()..].to_owned();
-    assert_eq!(from_path(&found), from_path(&repeated));
+    let paths = |text: &str| text.split_once("\n\n").unwrap().1.to_owned();
+    assert_eq!(paths(&found), paths(&repeated));
 }
 
 #[test]
