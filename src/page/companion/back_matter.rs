@@ -1,17 +1,12 @@
 //! The glossary and the references as HTML.
 
+use super::directive::{GLOSSARY_MARK, REFERENCES_MARK};
 use super::fault::Fault;
 use super::library::Entry;
 use super::prose;
 use super::reference::{Area, GLOSSARY, REFERENCES};
 use super::site::{Site, Uses};
 use maud::{Markup, html};
-
-/// Stands where the glossary is to be put, until all chapters are rendered.
-pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
-
-/// The same for the references.
-pub const REFERENCES_MARK: &str = "<!-- references -->";
 
 /// Puts glossary and references where the chapters want them.
 pub fn fill(html: &str, site: &Site, uses: &mut Uses) -> Result<String, Fault> {

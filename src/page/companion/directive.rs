@@ -1,9 +1,7 @@
 //! Directives: paragraphs such as `{{figure sky}}`, each of which becomes a part of the page.
 
-use super::back_matter::{GLOSSARY_MARK, REFERENCES_MARK};
 use super::excerpt::Excerpt;
 use super::library::FOLDER;
-use super::prose::typographic;
 use super::site::{Site, Uses};
 use super::timeline;
 use crate::page::gallery::{Figure, is_about_pixels};
@@ -13,6 +11,17 @@ use maud::{Markup, PreEscaped, html};
 
 /// The directives with what follows them.
 const KNOWN: &str = "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+
+/// Stands where the glossary is to be put, until all chapters are rendered.
+pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
+
+/// The same for the references.
+pub const REFERENCES_MARK: &str = "<!-- references -->";
+
+/// A text with the apostrophes of print.
+pub fn typographic(text: &str) -> String {
+    text.replace('\'', "’")
+}
 
 /// The HTML of a directive, given without its braces.
 ///

@@ -2,7 +2,7 @@
 
 use super::book::split_heading;
 use super::chapter::Chapter;
-use super::directive;
+use super::directive::{self, typographic};
 use super::fault::{Fault, line_of};
 use super::site::{Site, Uses};
 use anyhow::{Context, Result, bail, ensure};
@@ -46,11 +46,6 @@ pub fn short_text(
     let html = convert(site, &place, uses)?.into_string();
     let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
     Ok(PreEscaped(inside.map_or(html.clone(), str::to_owned)))
-}
-
-/// A text with the apostrophes of print.
-pub fn typographic(text: &str) -> String {
-    text.replace('\'', "’")
 }
 
 /// Words as an anchor: `What a lane is` becomes `what-a-lane-is`.

@@ -1,7 +1,8 @@
 //! Made-up texts as HTML, and what is wrong with them.
 
-use super::back_matter::{self, GLOSSARY_MARK, REFERENCES_MARK};
+use super::back_matter;
 use super::chapter::Chapter;
+use super::directive::{GLOSSARY_MARK, REFERENCES_MARK};
 use super::fault::Fault;
 use super::library::{Entry, Library};
 use super::reference::{Area, Reference, Term};
