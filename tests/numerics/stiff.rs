@@ -278,3 +278,26 @@ fn no_light_gets_into_a_closed_ball() {
         }
     }
 }
+
+/// Spheres much larger than what lies on them are anchored there, in the order of the scene, whichever gains most.
+#[test]
+fn large_spheres_are_anchored_at_their_details() {
+    let grounds = [
+        (DVec3::Y * -(1e4 + 10.0), 1e4, DVec3::new(0.01, 1.0, 0.0).normalize()),
+        (DVec3::Y * (1e6 + 10.0), 1e6, DVec3::new(0.0, -1.0, 1e-4).normalize()),
+    ];
+    for order in [[0, 1], [1, 0]] {
+        let large = order.map(|ground: usize| grounds[ground]);
+        let with_detail = |(center, radius, towards): (DVec3, f64, DVec3)| {
+            let detail = (center + towards * (radius + 0.05), 0.05, lambertian(0.5));
+            [(center, radius, lambertian(0.5)), detail]
+        };
+        let balls: Vec<Ball> = large.into_iter().flat_map(with_detail).collect();
+        let prepared = PreparedScene::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2)));
+        assert_eq!(prepared.scene_index, [1, 3, 0, 2], "anchored spheres come last");
+        for (anchored, (_, _, towards)) in prepared.anchored.iter().zip(large) {
+            let outward = -DVec3::from(anchored.inward.map(f64::from));
+            assert!(outward.distance(towards) < 1e-6, "{outward} {towards}");
+        }
+    }
+}
