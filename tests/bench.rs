@@ -182,7 +182,7 @@ fn bad_flags_are_refused_before_anything_is_measured() {
         (&["--plot", "chart.jpg"], ".png or .svg"),
         (&["--runs", "0"], "from 1 to 1000"),
         (&["--json", "no/such/place.json"], "no/such"),
-        (&["--json", "x.svg", "--plot", "x.svg"], "different names"),
+        (&["--json", "x.svg", "--plot", "x.svg"], "another name"),
     ];
     for (arguments, part) in cases {
         let directory = tempfile::tempdir().unwrap();

