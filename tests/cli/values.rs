@@ -72,10 +72,9 @@ fn nothing_from_outside_steers_a_terminal() {
         let told = text(&output.stdout) + &text(&output.stderr);
         assert!(told.contains("a\\u{1b}[2Jb\\u{9b}c"), "{told}");
     }
-    for arguments in [
-        &["--batch", "--scene", "a\x1b[31mb"][..],
-        &["--batch", "--out", "a\x1b]0;title\x07.png/"],
-    ] {
+    for arguments in
+        [&["--batch", "--scene", "a\x1b[31mb"][..], &["--batch", "--out", "a\x1b]0;title\x07.png/"]]
+    {
         let output = run(directory.path(), arguments);
         assert_eq!(output.status.code(), Some(2));
         assert!(!steers(&output.stderr) && output.stdout.is_empty(), "{output:?}");

@@ -267,7 +267,7 @@ pub fn film(ranges: impl IntoIterator<Item = Range<u64>>) -> Film {
 }
 
 pub fn expected(samples: u64) -> Film {
-    film([0..samples])
+    film(std::iter::once(0..samples))
 }
 
 /// A render thread with these renderers.

@@ -103,7 +103,9 @@ fn decoded(file: &[u8]) -> std::io::Result<ReadPicture> {
 }
 
 /// A well-formed file with the same picture, its original format, and what was wrong.
-fn repaired(bytes: &[u8]) -> Result<(Cow<'_, [u8]>, &'static str, Vec<Damage>), String> {
+type Repaired<'a> = (Cow<'a, [u8]>, &'static str, Vec<Damage>);
+
+fn repaired(bytes: &[u8]) -> Result<Repaired<'_>, String> {
     let mut damages = Vec::new();
     let mut damaged = |title: String, remedy| damages.push(Damage { title, remedy });
     let mut bytes = Cow::Borrowed(bytes);

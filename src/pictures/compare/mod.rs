@@ -127,10 +127,11 @@ impl Rendering {
         job.check_memory(2)?;
         check_memory(width, height, 2)?;
         let is_same_job = read.and_then(|read| read.job.as_ref()) == Some(&job);
+        let first = |count: u64| std::iter::once(0..count).collect();
         let ranges: Vec<Range<u64>> = match (options.samples, read.and_then(|read| read.film.as_deref())) {
             (None, Some(film)) if is_same_job => film.samples().iter().collect(),
-            (None, Some(film)) => vec![0..film.sample_count()],
-            (samples, _) => vec![0..samples.unwrap_or(recipe.samples_per_pixel)],
+            (None, Some(film)) => first(film.sample_count()),
+            (samples, _) => first(samples.unwrap_or(recipe.samples_per_pixel)),
         };
         let mut film = Film::try_new(width, height, job.settings().half_count())?;
         for range in ranges {

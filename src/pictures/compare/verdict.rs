@@ -274,13 +274,13 @@ impl Relation {
 /// Channels that are NaN or infinite in a picture of floats.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NonFinite {
-    /// Pixels with a channel that is [`Relation::Apart`].
+    /// Pixels with a channel that is `Relation::Apart`.
     pub differing_pixels: usize,
-    /// Channels that are [`Relation::Apart`]. These are differences.
+    /// Channels that are `Relation::Apart`. These are differences.
     pub differing: usize,
     /// Column and row of the first differing pixel.
     pub first: Option<[u32; 2]>,
-    /// Channels that are [`Relation::Alike`]. These are equal, and left out of all means.
+    /// Channels that are `Relation::Alike`. These are equal, and left out of all means.
     pub alike: usize,
 }
 
