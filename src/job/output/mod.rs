@@ -3,6 +3,7 @@
 //! [`read_picture`].
 
 mod apng;
+mod limits;
 mod long_recipe;
 mod pfm;
 mod png;

@@ -2,7 +2,7 @@
 //!
 //! Source: Paul Debevec, "PFM Portable FloatMap Image Format".
 
-use super::read::{check_memory, invalid, pixel_count};
+use super::limits::{check_memory, invalid, pixel_count};
 use std::io::{self, BufRead, Read};
 
 /// Longest word of the header, bytes.

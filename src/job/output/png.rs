@@ -1,6 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::read::invalid;
+use super::limits::invalid;
 use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;

@@ -1,11 +1,11 @@
 //! Reads pictures of any program as linear radiance: PFM, EXR, PNG and binary PPM.
 
 use super::OutputError;
+use super::limits::{PIXEL_LIMIT, check_memory, invalid, pixel_count};
 use super::pfm;
 use crate::film::checkpoint;
 use crate::stages::Transfer;
 use crate::system::files;
-use crate::system::memory;
 use image::codecs::{png::PngDecoder, pnm::PnmDecoder};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 use std::io::{self, BufRead, BufReader, Seek};
@@ -76,10 +76,6 @@ pub fn read_rgb8(path: &Path) -> Result<([u32; 2], Vec<u8>), OutputError> {
     let (image, _) = decode(BufReader::new(file), length, ImageFormat::Png)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })?;
     Ok(([image.width(), image.height()], image.into_rgb8().into_raw()))
-}
-
-pub(super) fn invalid(reason: impl ToString) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
 }
 
 fn float((width, height, pixels): (u32, u32, Vec<[f32; 3]>)) -> ReadPicture {
@@ -202,32 +198,6 @@ fn image_of(decoder: impl ImageDecoder, length: u64, ratio: u64) -> io::Result<D
     }
     check_memory(width, height)?;
     DynamicImage::from_decoder(decoder).map_err(invalid)
-}
-
-/// Largest number of pixels that is read.
-const PIXEL_LIMIT: u64 = 1 << 28;
-
-/// Number of pixels, or an error if the size is out of range.
-pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
-    let count = u64::from(width) * u64::from(height);
-    if !(1..=PIXEL_LIMIT).contains(&count) {
-        return Err(invalid(format!(
-            "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
-        )));
-    }
-    Ok(count as usize)
-}
-
-/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
-/// quantisation steps.
-const BYTES_PER_PIXEL: u64 = 80;
-
-/// Returns an error if the picture would not fit into memory.
-pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
-    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
-    let what = || format!("a picture of {width}x{height} pixels");
-    memory::check(what, bytes, "close other programs or make it smaller")
-        .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 impl Encoding {
