@@ -10,29 +10,20 @@ pub const RECIPE_KEY: &str = "Weekender recipe";
 
 /// Keys that Weekender writes. Other keys are allowed.
 pub mod key {
-    /// Program and version.
     pub const SOFTWARE: &str = "Software";
-    /// The scene's name.
     pub const SCENE: &str = "Scene";
-    /// The stage's id.
     pub const STAGE: &str = "Stage";
-    /// The camera's position and settings.
     pub const CAMERA: &str = "Camera";
-    /// The sampler's name.
     pub const SAMPLER: &str = "Sampler";
-    /// The seed.
     pub const SEED: &str = "Seed";
     /// Samples per pixel.
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
-    /// Which part of the picture the file holds: its size, and its first column and row.
+    /// The part of the picture that the file holds: its size, then its first column and row.
     pub const CROP: &str = "Crop";
-    /// The number of the frame in an animation.
     pub const FRAME: &str = "Frame";
-    /// The command that rendered it.
     pub const COMMAND: &str = "Command";
-    /// The backend that rendered it.
     pub const BACKEND: &str = "Backend";
 }
 
@@ -80,7 +71,6 @@ impl Description {
         }
     }
 
-    /// The value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.entries.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }

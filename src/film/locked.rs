@@ -1,11 +1,11 @@
-//! A film file that one run writes again and again, and no other run meanwhile.
+//! A film file that one run writes repeatedly while no other run may.
 
 use super::{Description, Film, SampleRanges, checkpoint};
 use crate::system::files::{FileLock, LockedError, ShownPath, WriteError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A film file that is locked until this is dropped.
+/// A film file, locked until this is dropped.
 #[derive(Debug)]
 pub struct LockedFilm {
     path: PathBuf,
@@ -24,14 +24,14 @@ impl LockedFilm {
         Ok(LockedFilm { path: path.to_owned(), held: SampleRanges::default(), _lock: lock })
     }
 
-    /// Notes that the file holds these samples of the film. None of them is replaced by a film without it, such as one
-    /// that began anew because its device was lost.
+    /// Notes that the file holds these samples of the film. A film that lacks any of them will not replace it, such as
+    /// one that restarted because its device was lost.
     pub fn holds(&mut self, samples: &SampleRanges) {
         self.held = samples.clone();
     }
 
-    /// Replaces the file by `film`. A film whose samples are all in the file, which holds others too, is not written;
-    /// this returns a note for the user then.
+    /// Replaces the file with `film`. If the file already holds all of the film's samples and more, writes nothing and
+    /// returns a note for the user.
     ///
     /// # Errors
     /// [`WriteError`], also if the film and the file each have samples that the other lacks. The file is unchanged.

@@ -4,13 +4,13 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use exr::prelude::Compression;
 
-/// Fewest bytes of a chunk: its entry in the offset table, its row number and its length.
+/// Fewest bytes of a chunk: its offset table entry, row number and length.
 const CHUNK_BYTES: u64 = 16;
 
 /// A chunk may always have this many bytes, whatever the file's length, because tiles may be larger than the picture.
 const SMALL_CHUNK_BYTES: u64 = 16 << 20;
 
-/// Refuses a file that is too short for what it claims to hold, and files that no reader can handle.
+/// Refuses files that are too short for what they claim to hold, and files that no reader can handle.
 pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.deep {
         return Err("it holds deep data".to_owned());
@@ -18,7 +18,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.channels.list.iter().any(|channel| channel.sampling.area() != 1) {
         return Err("some of its channels have fewer samples than pixels".to_owned());
     }
-    // The largest number of bytes that one stored byte can decompress to.
+    // Most bytes that one stored byte can decompress to.
     let ratio = match header.compression {
         Compression::Uncompressed => 1,
         Compression::RLE => 64,

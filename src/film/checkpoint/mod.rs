@@ -32,11 +32,11 @@ use crate::system::files::{InputError, ShownPath};
 use crate::system::memory::MemoryError;
 use std::path::PathBuf;
 
-/// The version of the layout of film files.
+/// Layout version of film files.
 pub const VERSION: u32 = 4;
 
-/// The version of the samples: of the random numbers and of what is made of them. Samples of different versions do not
-/// belong to one film, so films of other versions are neither resumed nor merged.
+/// Version of the samples: of the random numbers and how they are used. Samples of different versions must not be
+/// mixed, so films of other versions are neither resumed nor merged.
 pub const SAMPLE_VERSION: u32 = 3;
 
 /// The first bytes of an OpenEXR file.
@@ -45,12 +45,10 @@ pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 const FILM_ATTRIBUTE: &str = "weekenderFilm";
 const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
 
-/// The content of a film file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmFile {
-    /// The exact sums.
     pub film: Film,
-    /// The recipe of the film's job, and the other entries of its description.
+    /// The recipe of the film's job, and other entries.
     pub description: Description,
 }
 
@@ -66,7 +64,6 @@ pub enum CheckpointError {
         path.shown()
     )]
     NotFilm { path: PathBuf },
-    /// The layout of the file or the samples of its film are of another version.
     #[error(
         "{} is a film of layout {layout} with samples of version {samples}, written by {writer}, but this program \
          ({SOFTWARE}) has layout {VERSION} and samples of version {SAMPLE_VERSION}; continue with {writer}, or render it again",
@@ -76,7 +73,7 @@ pub enum CheckpointError {
     /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.shown())]
     Damaged { path: PathBuf, what: String },
-    /// Another program wrote to the file meanwhile, as a copy in its place does.
+    /// Another program wrote to the file meanwhile, for example by copying over it.
     #[error("{} has changed while it was read; read it again when it is complete", path.shown())]
     Changed { path: PathBuf },
     #[error("cannot read {}: {reason}", path.shown())]
@@ -108,7 +105,7 @@ mod tests {
         film
     }
 
-    /// A film file that is valid except for what `change` does to its head.
+    /// A film file that is valid but for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
         let mut head = Head::of(&film, TEXTS);
@@ -150,7 +147,7 @@ mod tests {
         assert_eq!(opened(&bytes).unwrap().film, film());
     }
 
-    /// The file with other bytes at `offset` after an attribute's name, type and length.
+    /// Overwrites bytes at `offset` after an attribute's name, type and length.
     fn with_attribute(mut bytes: Vec<u8>, name: &[u8], offset: usize, value: i32) -> Vec<u8> {
         let place = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
         bytes[place + offset..place + offset + 4].copy_from_slice(&value.to_le_bytes());

@@ -1,5 +1,5 @@
-//! What is done about a panic. A panic of a tracer ends only its pass, and another backend continues: that is a message
-//! and a line in the log. A panic that ends the program, or its render, also leaves a report in a file.
+//! Handles panics. If a tracer panics, only its pass ends and another backend continues, with a message and a line in
+//! the log. A panic that ends the program or its render also leaves a report in a file.
 
 use super::kept_text;
 use crate::system::console;
@@ -15,10 +15,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Version, commit and target in one line, for the report.
 static VERSION: OnceLock<String> = OnceLock::new();
 
-/// The words of the latest panic, of whatever thread.
+/// Message of the latest panic on any thread.
 static LATEST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Runs the program of this version. If it panics, writes a report and says where it is.
+/// Runs `program`; if it panics, writes a report and prints its path.
 pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode {
     VERSION.get_or_init(|| version);
     std::panic::set_hook(Box::new(note));
@@ -28,7 +28,7 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
     })
 }
 
-/// Writes what is known about the latest panic to a file, and its path to standard error. Without a panic, does nothing.
+/// Writes a report on the latest panic to a file and prints its path to standard error. Does nothing without a panic.
 pub fn write_report() {
     let Some(words) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     let version = VERSION.get().map_or("unknown", String::as_str);
