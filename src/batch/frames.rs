@@ -1,5 +1,5 @@
-//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and one that is there and whole is
-//! kept, so an interrupted run is continued by the same command.
+//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
+//! the same command continues an interrupted run.
 
 use super::progress::LINE_INTERVAL;
 use super::studio::{Event, Studio};
@@ -24,8 +24,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Renders the frames that are not there yet, and makes an animated PNG of all if that is asked for. After a signal, the
-/// frame in progress is dropped.
+/// Renders the missing frames, and makes an animated PNG of all if requested. A signal drops the frame in progress.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
@@ -123,7 +122,7 @@ impl<'a> Run<'a> {
         recipe: &Recipe,
         path: &Path,
     ) -> anyhow::Result<bool> {
-        // The scene is shared by all frames, so it is validated and prepared once, as far as the camera allows.
+        // All frames share the scene, so it is validated and prepared once if the camera allows.
         let job = self.options.job.seen_by(recipe.camera, *self.options.job.settings())?;
         let plan = Studio::plan(recipe.samples_per_pixel);
         let (status, film) = studio.render(job, plan, None, |event| match event {
@@ -169,7 +168,6 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Makes the animated PNG.
     fn assemble(&mut self) -> anyhow::Result<()> {
         let FramesOptions { recipe, frames, names, command, .. } = self.options;
         let Some((path, rate)) = &self.options.animation else { return Ok(()) };
@@ -183,7 +181,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// The first and the last file that is done. Frames are done in their order.
+    /// The first and the last finished file. Frames finish in order.
     fn files(&self) -> Option<[PathBuf; 2]> {
         let FramesOptions { frames, names, .. } = self.options;
         let last = frames.start + self.done().checked_sub(1)?;
@@ -248,7 +246,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The failure of a frame before which `done` frames are whole.
+/// The failure of a frame after `done` complete ones.
 fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
     if done == 0 {
         return Failure::Run(error);
@@ -258,8 +256,8 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
     Failure::BrokeOff(error.context(words))
 }
 
-/// How far the animation is: the frame in work and its samples, frames done and in total, and how long rendering took for
-/// how many frames.
+/// The progress of the animation: current frame and its samples, frames done and in total, and how long rendering took
+/// for how many frames.
 fn so_far(
     frame: u32,
     samples: u64,

@@ -140,7 +140,7 @@ impl Info {
         }
     }
 
-    /// Adds what a film says, and the error that its sums tell, if there is memory for them.
+    /// Adds what a film says and, if there is memory for its sums, its error.
     fn with_film(self, path: &Path) -> anyhow::Result<Info> {
         let head = match checkpoint::read_head(path) {
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
@@ -169,7 +169,7 @@ impl Info {
         })
     }
 
-    /// The samples, with all that is said about them.
+    /// The samples, with everything said about them.
     fn samples_words(&self) -> Option<String> {
         let version = self.sample_version.map(|version| format!("version {version}"));
         let rejected = self.rejected_samples.map(|count| counted(count, "rejected sample"));

@@ -63,7 +63,7 @@ fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<Exit
     let (mut failure, mut printed) = (None, Ok(()));
     for picture in pictures {
         let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
-        // The pictures are rendered even if the figures cannot be printed.
+        // Render the pictures even if the figures cannot be printed.
         printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
         summaries.push(summary.json());
         failure = outcome.err();
@@ -87,7 +87,7 @@ fn write_figures(options: &BatchOptions, mut summaries: Vec<serde_json::Value>) 
     write_json(&Envelope::of(content), target)
 }
 
-/// The end of a run. `figures` is the outcome of printing and writing its figures.
+/// The result of a run. `figures` is the outcome of printing and writing its figures.
 fn ended(
     failure: Option<Failure>,
     figures: anyhow::Result<()>,
@@ -115,7 +115,7 @@ pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Checks for everything that could otherwise fail after rendering.
+/// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         create_directory(directory)?;
@@ -174,7 +174,7 @@ mod tests {
         *options
     }
 
-    /// Those of its picture.
+    /// The options of its picture.
     pub(super) fn options(flags: &[&str]) -> RenderOptions {
         batch(flags).renders.remove(0)
     }

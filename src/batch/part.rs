@@ -1,5 +1,5 @@
-//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the part's
-//! last checkpoint or from the frames that are there, and ends at once if the part is whole.
+//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the
+//! part's last checkpoint or the existing frames, and ends at once if the part is complete.
 
 use super::picture::Picture;
 use super::summary::Summary;
@@ -103,7 +103,7 @@ fn render_samples(
     }
 }
 
-/// The figures of a part of which nothing was left to render.
+/// Figures of a part with nothing left to render.
 fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary<'a> {
     let film = &found.film;
     let status = Status {
@@ -117,7 +117,7 @@ fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary
     Summary { render, samples, status, files: vec![render.out.clone()], writing: Duration::ZERO }
 }
 
-/// The film of the part, if there is one to continue. A damaged one is put aside.
+/// The part's film, if there is one to continue. A damaged one is moved aside.
 fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(None);

@@ -23,7 +23,7 @@ pub(super) struct Picture<'a> {
     /// The film to continue.
     pub resumed: Option<SavedFilm>,
     places: Vec<FilmPlace>,
-    /// What the user must know before it begins.
+    /// Warnings to print before it begins.
     warnings: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Picture<'a> {
         Ok(Picture { render, resumed: None, places, warnings })
     }
 
-    /// Looks at the files that the render would replace.
+    /// Checks the files that the render would replace.
     ///
     /// # Errors
     /// [`Failure::Input`] if one must not be replaced.

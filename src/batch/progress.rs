@@ -51,8 +51,7 @@ impl Progress {
     }
 }
 
-/// How far the render is, in words. `elapsed` has passed since its begin, and `left` are the seconds to its end, if that can
-/// be predicted.
+/// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.
 fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
     if status.phase == Phase::Preparing {
         return "preparing the scene".to_owned();

@@ -64,7 +64,7 @@ impl ValueEnum for Encoding {
 #[derive(Clone, Debug)]
 pub struct CompareOptions {
     pub sides: [CompareSide; 2],
-    /// What backends render: as the flags say, otherwise as the file on the other side says, at that file's size.
+    /// What backends render: set by the flags, otherwise by the file on the other side, at that file's size.
     pub recipe: Recipe,
     pub samples: Option<u64>,
     pub encoding: Encoding,

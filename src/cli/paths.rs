@@ -5,7 +5,7 @@ use super::values::JsonTarget;
 use crate::system::files::ShownPath;
 use std::path::{Path, PathBuf};
 
-/// The files that a command reads and writes, each with its flag or with what it is.
+/// The files that a command reads and writes, each with its flag or its role.
 #[derive(Default)]
 pub struct Paths {
     inputs: Vec<(&'static str, PathBuf)>,

@@ -180,7 +180,6 @@ impl ReportOptions {
         !self.backends.is_empty()
     }
 
-    /// The names of the backends.
     pub fn backends(&self) -> Vec<String> {
         if self.names_backends() {
             return self.backends.clone();
@@ -252,7 +251,6 @@ impl ReportOptions {
         self.seeds.unwrap_or(self.defaults().seeds)
     }
 
-    /// Width and height of all pictures.
     pub fn size(&self) -> (u32, u32) {
         self.size.unwrap_or(self.defaults().size)
     }

@@ -85,7 +85,6 @@ fn level_named(name: &str) -> Option<Isa> {
 /// Instruction levels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Levels {
-    /// The best one.
     Auto,
     /// All that the processor has.
     All,
@@ -94,7 +93,7 @@ pub(super) enum Levels {
 }
 
 impl Levels {
-    /// The levels that are meant; `auto` chooses among those of this processor, the most capable last.
+    /// Resolves the levels; `auto` chooses among those of this processor, the most capable last.
     pub fn available(&self, auto: impl FnOnce(&[Isa]) -> Vec<Isa>) -> Result<Vec<Isa>, CliError> {
         let available = Isa::available();
         let levels = match self {

@@ -64,7 +64,7 @@ pub fn seconds(seconds: f64) -> String {
     }
 }
 
-/// The backend. If there were several, the current one comes first, each with its samples, and earlier runs come last.
+/// The backend. If there were several, the current one comes first, each with its samples; earlier runs come last.
 fn backend_words(film: &Film, status: &Status) -> Option<String> {
     let words =
         |info: &BackendInfo| format!("{} {}, {}", info.name, info.device, counted(info.lanes as u64, "lane"));
@@ -118,7 +118,7 @@ mod tests {
             camera_words(&camera),
             "from 13,2,3.5 to 1,-2,0, vfov 20 degrees, defocus 0.6 degrees, focus at 10"
         );
-        // A lens without a distance of its own is focused on what it looks at.
+        // A lens without its own focus distance focuses on `look_at`.
         let (look_from, look_at) = (DVec3::new(3.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 4.0));
         let words = camera_words(&Camera { look_from, look_at, focus_distance: None, ..camera });
         assert!(words.ends_with("focus at 5"), "{words}");

@@ -47,8 +47,7 @@ impl PassSizer {
         self.seconds_per_sample = None;
     }
 
-    /// Notes how long a pass took. The next pass should take about `target`, with at most twice as many samples as this
-    /// one.
+    /// Records how long a pass took. The next should take about `target`, with at most twice as many samples.
     pub fn measured(&mut self, samples: u64, took: Duration, target: Duration) {
         let per_sample = took.as_secs_f64() / samples.max(1) as f64;
         self.seconds_per_sample = Some(per_sample);

@@ -67,7 +67,7 @@ impl Shared {
         status.clone()
     }
 
-    /// Notes that the render thread has died.
+    /// Records that the render thread has died.
     pub(super) fn died(&self) {
         let mut status = lock(&self.status);
         status.phase = Phase::Failed("the render thread failed; its film is lost".to_owned());

@@ -55,8 +55,7 @@ pub struct Contribution {
     pub samples_per_pixel: u64,
 }
 
-/// The figures of a render. They count from its start; only the film's own figures include what the film held
-/// before.
+/// The figures of a render, counted from its start; only the film's own figures include samples that it held before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
     /// The run that this belongs to: 0 before the first start, then one more for each start.
@@ -71,7 +70,7 @@ pub struct Status {
     /// Statistics summed over the passes.
     pub stats: Stats,
     pub prepare: Duration,
-    /// What the current kernel contains, in words.
+    /// What the current kernel contains.
     pub kernel: String,
     /// What the current kernel leaves out.
     pub left_out: Vec<&'static str>,
@@ -83,7 +82,7 @@ pub struct Status {
     pub elapsed: Duration,
     /// The latest estimate of the film's error; it can be a few passes old.
     pub error: Option<ErrorEstimate>,
-    /// Why the estimate is doubtful, in words.
+    /// Why the estimate is doubtful.
     pub doubt: Option<String>,
     /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it.
     pub history: Vec<HistoryPoint>,
@@ -110,8 +109,8 @@ impl Status {
         (offered_lanes > 0).then(|| busy_lanes as f64 / offered_lanes as f64)
     }
 
-    /// The status that belongs to `film`: this one was read some passes before or after. `held_before` is the number of
-    /// samples per pixel that the film held when the render started.
+    /// This status adjusted to `film`, which may be some passes older or newer. `held_before` is the number of samples
+    /// per pixel that the film held when the render started.
     pub fn of_film(&self, film: &Film, held_before: u64) -> Status {
         let mut status = self.clone();
         let added = film.sample_count().saturating_sub(held_before);
@@ -199,13 +198,13 @@ mod tests {
         };
         assert_eq!(status.added(), 40);
         assert_eq!(status.of_film(&film(60), 20), status);
-        // A film that was read earlier has less of the backend at work.
+        // An earlier film has fewer samples of the current backend.
         let earlier = status.of_film(&film(54), 20);
         assert_eq!(earlier.contributions, [part("gpu", 30), part("cpu", 4)]);
         assert_eq!(earlier.trace, Duration::from_secs(34));
         let much_earlier = status.of_film(&film(40), 20);
         assert_eq!(much_earlier.contributions, [part("gpu", 30), part("cpu", 0)]);
-        // A backend that has added nothing yet is not the one at work.
+        // A backend that has added nothing yet is not the current one.
         status.backend = Some(info("reference"));
         let later = status.of_film(&film(64), 20);
         assert_eq!(later.contributions, [part("gpu", 30), part("cpu", 14)]);

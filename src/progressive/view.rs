@@ -1,4 +1,4 @@
-//! What is shown of a film: the picture itself, or a heat map of one of its properties.
+//! What to show of a film: the picture itself, or a heat map of one of its properties.
 
 use crate::film::Film;
 use crate::job::render::TileOccupancy;
@@ -21,7 +21,7 @@ pub enum View {
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
     Difference(Arc<ReferenceMeans>),
-    /// How full the packets were, per tile; dark where this is not known.
+    /// How full the packets were, per tile; dark where unknown.
     Occupancy,
 }
 
@@ -49,7 +49,8 @@ impl ReferenceMeans {
     }
 }
 
-/// Tells films apart: films with the same identity have the same samples and, but for a chance of 2^-64, the same sums.
+/// Distinguishes films: those with the same identity have the same samples and, but for a chance of 2^-64, the same
+/// sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FilmIdentity {
     samples: u64,

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// What [`super::Progressive`] can ask of the render thread.
+/// Requests from [`super::Progressive`] to the render thread.
 pub(super) enum RenderCommand {
     Start { run: u64, request: Box<RenderRequest>, cancel: Arc<Cancel> },
     Abandon,

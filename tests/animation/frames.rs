@@ -50,7 +50,7 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
     assert_eq!(run(&[]), [0, 8]);
     let good: Vec<_> = (0..8).map(|frame| fs::read(path(frame)).unwrap()).collect();
 
-    // Cut short, one flipped bit in the pixels, another frame, and not a picture.
+    // Truncated, one flipped bit in the pixels, another frame, and not a picture.
     fs::write(path(0), &good[0][..good[0].len() - 20]).unwrap();
     let mut flipped = good[1].clone();
     let data = flipped.windows(4).position(|word| word == b"IDAT").unwrap();

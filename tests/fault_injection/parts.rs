@@ -8,7 +8,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 use weekender::film::checkpoint;
 
-/// A power cut cannot be told from `kill -9` by the files: both leave the last film that was renamed into its place.
+/// The files of a power cut look like those of `kill -9`: both leave the last film that was renamed into place.
 #[test]
 fn a_part_that_is_killed_at_random_goes_on_and_ends_with_the_bits_of_one_run() {
     let mut dice = Dice::new();

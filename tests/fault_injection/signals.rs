@@ -56,7 +56,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         let at = at.path();
         let name = ["KILL", "INT", "TERM"][round as usize % 3];
         let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
-        // It prints its first line after it has started to listen.
+        // It prints its first line once it handles signals.
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(400)));

@@ -118,7 +118,7 @@ fn even_film(radiance: f64, samples: u64) -> Film {
     film
 }
 
-/// Samples that are alike are rounded alike, and the halves do not show it.
+/// Equal samples round alike, which the halves do not show.
 #[test]
 fn the_error_includes_what_rounding_costs() {
     for radiance in [1e-7, 3.1e-8, 1e-6, 0.3] {

@@ -84,7 +84,7 @@ fn parts_in_the_wrong_place_and_foreign_ones_are_named() {
     let mut sum = whole_parts;
     sum.merge(&film(&part(3))).unwrap();
     assert!(film(&at.join("m.exr")) == sum);
-    // The program does not replace what may be somebody's film.
+    // The program does not replace a possibly foreign film.
     for (index, words) in [("1", "0..2"), ("2", "seed")] {
         let (_, told) = ends(at, 2, &["render-part", "p", "--part", index, "--device", "cpu"]);
         assert!(told.contains(words), "{told}");

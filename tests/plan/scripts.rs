@@ -96,7 +96,7 @@ fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
         assert!(script.lines().any(|found| found == line), "{line}: {script}");
     }
     assert!(fs::read_to_string(at.join("a b/submit.sh")).unwrap().contains("afterany"));
-    // A scontrol that writes down what it is asked.
+    // A scontrol that records how it is called.
     let tools = at.join("tools");
     fs::create_dir(&tools).unwrap();
     let fake = "#!/bin/sh\necho \"$@\" >> \"$ASKED\"\necho JobState=\"$STATE\"\n";

@@ -86,7 +86,8 @@ fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_back
     let short_passes = Plan { pass_target: PAUSE, ..Plan::endless() };
     for is_switch in [false, true] {
         let (traced, is_traced) = channel();
-        // The new backend is ready once the old one holds samples that it will lose: those after the first collection.
+        // The new backend becomes ready once the old one holds samples that it will lose: those after the first
+        // collection.
         let (go_on, is_let_go_on) = channel();
         let progressive = started_with(CPU, short_passes.clone(), move |choice| {
             let fake = Fake::new(choice.name());
@@ -172,7 +173,7 @@ fn a_film_that_was_spoilt_is_begun_again() {
     assert_eq!(progressive.finish(), Some(job(2).new_film()));
 }
 
-/// A paused render and a listener that panics the next times that it is called.
+/// A paused render with a listener that panics the next `times` it is called.
 fn paused_with_a_listener_that_panics(times: u32) -> Progressive {
     let progressive = started(CPU, Plan::endless());
     wait_for(&progressive, 2);

@@ -241,7 +241,7 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     assert_eq!(progressive.finish(), Some(expected(4)));
 }
 
-/// Says that it begins, waits until it is cancelled, and says whether it was.
+/// Reports that it begins, waits until it is cancelled, and reports whether it was.
 fn until_cancelled(begun: &Sender<()>, ended: &Sender<bool>, cancel: &AtomicBool) -> RenderError {
     let _ = begun.send(());
     let begin = Instant::now();
@@ -272,7 +272,7 @@ fn abandoning_and_dropping_cancel_the_pass() {
     }
 }
 
-/// Prepares until it is cancelled, as often as this, and then works.
+/// Prepares until cancelled this many times, and then works.
 struct SlowToPrepare {
     fake: Fake,
     times: u32,

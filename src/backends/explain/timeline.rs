@@ -41,9 +41,9 @@ impl Timeline {
     }
 }
 
-/// Lays out the paths of each lane over time, as a packet traces them. With `refill`, a lane starts its next path at
-/// once; without it, the lanes start their next paths together when the longest one has ended. `paths` holds each
-/// lane's paths in order, recorded from a job with this `scene`.
+/// Lays out the paths of each lane over time as a packet traces them. With `refill`, a lane starts its next path at
+/// once; otherwise all lanes start their next paths when the longest has ended. `paths` holds each lane's paths in
+/// order, recorded from a job with this `scene`.
 pub fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timeline {
     let rays = |path: &PathRecord| -> Vec<Activity> {
         let after = |ray: usize| match path.rays[ray].hit {
@@ -70,7 +70,7 @@ pub fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timel
     Timeline { lanes }
 }
 
-/// Lets all lanes wait for the longest.
+/// Makes all lanes wait for the longest.
 fn even_out(lanes: &mut [Vec<Activity>]) {
     let longest = lanes.iter().map(Vec::len).max().unwrap_or_default();
     lanes.iter_mut().for_each(|lane| lane.resize(longest, Activity::Waits));

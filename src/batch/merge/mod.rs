@@ -51,7 +51,6 @@ fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
     }
 }
 
-/// Writes the film to each file.
 fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Description) -> Result<(), Failure> {
     out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)
 }

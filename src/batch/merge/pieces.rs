@@ -1,4 +1,4 @@
-//! The films or frames of a plan: what is there of each, and the commands for what is missing.
+//! The films or frames of a plan: what exists of each, and the commands for what is missing.
 
 use crate::film::{SampleRanges, checkpoint};
 use crate::job::plan::{Commands, Part, Plan, Work};
@@ -7,17 +7,17 @@ use crate::progressive::describe::SOFTWARE;
 use crate::system::files::{ShownPath, Stamp};
 use std::path::PathBuf;
 
-/// What is there of a film or frame.
+/// What exists of a film or frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum State {
     Whole,
-    /// A checkpoint with so many of the part's samples per pixel.
+    /// A checkpoint with this many of the part's samples per pixel.
     Unfinished {
         held: u64,
         of: u64,
     },
     Missing,
-    /// A file that is damaged, of another picture or of other samples: why, and what to do.
+    /// A file that is damaged, of another picture or of other samples, with reason and remedy.
     Wrong(String),
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Piece {
     kind: Kind,
     pub path: PathBuf,
     pub state: State,
-    /// The file that was seen last.
+    /// The file as last seen.
     seen: Option<Stamp>,
     /// Whether it is in the sum for good.
     pub is_merged: bool,
@@ -47,7 +47,7 @@ pub(super) struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// The films or frames, not looked at yet.
+    /// The films or frames, not checked yet.
     pub fn of(plan: &'a Plan) -> Self {
         let piece = |part, kind, path| Piece {
             part,
@@ -73,7 +73,7 @@ impl<'a> Pieces<'a> {
         Pieces { plan, all }
     }
 
-    /// Looks at the files that have changed since the last look, and returns these. Of a film, only the head is read.
+    /// Checks the files that changed since the last call, and returns them. Only the head of a film is read.
     pub fn look(&mut self) -> Vec<&Piece> {
         let mut changed = Vec::new();
         for piece in self.all.iter_mut().filter(|piece| piece.state != State::Whole) {
@@ -95,14 +95,14 @@ impl<'a> Pieces<'a> {
         self.lacking().next().is_none()
     }
 
-    /// How many are whole, in words.
+    /// How many are complete.
     pub fn words(&self) -> String {
         let count = self.all.len();
         let noun = if matches!(self.plan.manifest.work, Work::Samples(_)) { "parts" } else { "frames" };
         format!("{} of {count} {noun} are whole", count - self.lacking().count())
     }
 
-    /// A line on each that is not whole.
+    /// A line for each that is incomplete.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.lacking().map(Piece::line)
     }
@@ -154,7 +154,7 @@ impl Piece {
         }
     }
 
-    /// What is there of it, in words.
+    /// Its state in one line.
     pub fn line(&self) -> String {
         let Piece { part, path, state, .. } = self;
         let name = path.file_name().unwrap_or_default().shown();
@@ -169,7 +169,7 @@ impl Piece {
     }
 }
 
-/// Ascending numbers as Slurm takes them: `0,3-7,9`.
+/// Ascending numbers as Slurm writes them: `0,3-7,9`.
 fn ranges(numbers: &[usize]) -> String {
     let runs = numbers.chunk_by(|number, next| number + 1 == *next);
     let words = |run: &[usize]| match run {

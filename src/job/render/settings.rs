@@ -36,7 +36,6 @@ pub struct RenderSettings {
     pub height: u32,
     /// Most rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes nothing.
     pub max_depth: u32,
-    /// The sampler.
     pub sampler: SamplerKind,
     /// Seed of the sampler: it changes only the noise.
     pub seed: u32,

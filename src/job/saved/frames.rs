@@ -1,4 +1,4 @@
-//! Tells whether the file of a frame is there and right.
+//! Checks whether the file of a frame exists and is right.
 
 use super::difference::same_job;
 use crate::film::{Description, key};
@@ -7,19 +7,19 @@ use crate::job::recipe::{Recipe, file};
 use crate::system::files::ShownPath;
 use std::path::Path;
 
-/// What is there of a frame.
+/// State of a frame's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameState {
     /// The whole picture.
     Whole,
     /// No file.
     Missing,
-    /// A file that is damaged, of another picture, or from another version of the program: why, in words.
+    /// A file that is damaged, of another picture, or from another version of the program, with the reason.
     Wrong(String),
 }
 
 impl FrameState {
-    /// What is there of the frame that `recipe` describes. `software` is the program and its version.
+    /// Checks the file against the frame that `recipe` describes. `software` is the program and its version.
     pub fn of(path: &Path, recipe: &Recipe, software: &str) -> FrameState {
         if path.symlink_metadata().is_err() {
             return FrameState::Missing;
@@ -31,7 +31,7 @@ impl FrameState {
         let wrong = |what: String| FrameState::Wrong(format!("{} is {what}", path.shown()));
         let wanted = Description::new(&file::to_picture_toml(recipe));
         if found.recipe() != recipe_in_picture(wanted.recipe()) {
-            // A recipe that is too long for a picture is not in it.
+            // A recipe that is too long is not in the picture.
             return match same_job(wanted.recipe(), found.recipe()) {
                 Err(difference) if length_of_missing(found.recipe()).is_none() => {
                     wrong(format!("of another picture: {difference}"))

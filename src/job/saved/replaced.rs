@@ -1,23 +1,23 @@
-//! Says what would be lost if a film were replaced.
+//! Tells what would be lost if a film were replaced.
 
 use super::difference::same_job;
 use crate::film::{SampleRanges, checkpoint};
 use crate::system::files::ShownPath;
 use std::path::Path;
 
-/// What is in the place where a film is to be written.
+/// What exists where a film is to be written.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Replaced {
     /// No file, an empty one, or a device.
     Nothing,
     /// A film of the same picture, with these samples.
     Same(SampleRanges),
-    /// Something else, in words: `holds ...` or `cannot be read as a film (...)`.
+    /// Anything else: `holds ...` or `cannot be read as a film (...)`.
     Other(String),
 }
 
 impl Replaced {
-    /// Looks at the file. `recipe` is that of the film to be written.
+    /// Examines the file. `recipe` is that of the film to be written.
     pub fn at(path: &Path, recipe: &str) -> Replaced {
         if !std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0) {
             return Replaced::Nothing;
