@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_is_the_share_of_all_that_is_left_from_the_last_range() {
+    fn piece_size_follows_relative_speed() {
         // Half of what is left, times the share of the total speed: 3 in 4 and 1 in 4.
         let speeds = [Some(30.0), Some(10.0), None];
         let [fast, slow, new] = [0, 1, 2].map(|index| Pace::of(index, &speeds));

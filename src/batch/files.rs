@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_cannot_be_written_is_rescued_and_all_failures_are_named() {
+    fn unwritable_film_is_rescued_and_failures_are_named() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["gone/picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
         let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_film_of_a_part_is_to_be_moved_to_its_place() {
+    fn rescued_part_film_can_be_moved_into_place() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("missing/part-0.exr");
         let render = options(&["--out", film.to_str().unwrap()]);
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_the_render_continues_or_covers_is_not_replaced_by_a_shorter_one() {
+    fn continued_film_is_never_replaced_by_a_shorter_one() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] =
             ["a.png", "film.exr"].map(|name| directory.path().join(name).to_str().unwrap().to_owned());

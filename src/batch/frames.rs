@@ -275,14 +275,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_time_left_is_that_of_the_frames_that_are_not_done() {
+    fn time_left_covers_the_remaining_frames() {
         let words = |took| so_far(3, 4, [2, 6], took);
         assert_eq!(words((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
         assert_eq!(words((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 
     #[test]
-    fn a_run_breaks_off_only_if_there_are_frames_that_stay() {
+    fn run_breaks_off_only_with_finished_frames() {
         assert!(matches!(broken_off(anyhow!("no space"), 7, 0), Failure::Run(_)));
         let Failure::BrokeOff(error) = broken_off(anyhow!("no space"), 7, 1) else { panic!() };
         let words = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";

@@ -215,7 +215,7 @@ mod tests {
     use crate::job::output::{write_animation, write_image};
 
     #[test]
-    fn an_animated_png_has_frames_and_a_rate_and_a_still_has_none() {
+    fn animated_png_has_frames_and_a_rate() {
         let directory = tempfile::tempdir().unwrap();
         let mut recipe = Recipe::find("three-spheres").unwrap();
         (recipe.settings.width, recipe.settings.height) = (4, 3);

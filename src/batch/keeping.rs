@@ -119,7 +119,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn the_film_is_written_while_it_is_rendered_and_a_failed_write_is_tried_again() {
+    fn failed_checkpoint_writes_are_retried() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("kept/film.exr");
         let flags = ["--checkpoint", path.to_str().unwrap(), "--every", "0.1s", "--samples", "4294967296"];

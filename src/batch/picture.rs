@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_render_that_fails_has_an_exit_code_of_its_own_and_its_files() {
+    fn failed_render_has_its_own_exit_code_and_files() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
         let files = ["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()];

@@ -98,7 +98,7 @@ mod tests {
     use crate::film::ErrorEstimate;
 
     #[test]
-    fn the_condition_that_is_met_first_tells_the_time_left() {
+    fn time_left_is_that_of_the_first_condition() {
         let mut status = Status {
             samples_per_pixel: 100,
             planned_samples_per_pixel: 1100,

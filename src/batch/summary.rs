@@ -37,7 +37,7 @@ pub(super) struct Summary<'a> {
     pub samples: Option<String>,
     pub status: Status,
     pub files: Vec<PathBuf>,
-    /// The time of writing the files.
+    /// Time spent writing the files.
     pub writing: Duration,
 }
 

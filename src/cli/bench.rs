@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_those_of_the_scene_or_a_power_of_two_that_can_be_paid_for() {
+    fn samples_fit_the_path_limit() {
         let mut recipe = Recipe::builtin("metals").unwrap();
         let mut samples = |words: &str, wanted: u64| {
             recipe.samples_per_pixel = wanted;

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_an_input_that_lives_on_in_the_output_may_be_replaced() {
+    fn only_a_continued_input_may_be_replaced() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join("g.exr");
         std::fs::write(&file, "").unwrap();

@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adapter_needs_a_gpu_which_is_then_measured_even_if_there_is_none() {
+    fn adapter_flag_requires_the_gpu() {
         let names = |words: &str| parsed(words).unwrap().backends();
         assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
         assert_eq!(names("--adapter some --calibration"), ["cpu", "gpu"]);
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_has_several_times_the_samples_within_the_limit() {
+    fn reference_samples_stay_within_the_limit() {
         for (words, expected) in [
             ("--max-samples 64", 256),
             ("--max-samples 64 --calibration", 1024),

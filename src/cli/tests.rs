@@ -23,7 +23,7 @@ fn the_definition_of_all_flags_is_consistent() {
 }
 
 #[test]
-fn commands_call_the_program_in_any_directory_as_it_was_called_in_this_one() {
+fn commands_call_the_program_from_any_directory() {
     let whole = std::env::current_exe().unwrap().to_str().unwrap().to_owned();
     for (name, expected) in [
         ("weekender", "weekender"),
@@ -136,7 +136,7 @@ fn any_flag_of_the_backend_chooses_one_for_the_window() {
 }
 
 #[test]
-fn a_path_is_compared_by_the_sides_and_at_the_place_that_are_named() {
+fn diff_takes_sides_and_place_from_flags() {
     let compared = |flags: &str| match request(&format!("diff {flags}")) {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),

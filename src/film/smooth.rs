@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn both_halves_of_any_shape_are_smoothed_and_an_edge_is_its_own_neighbour() {
+    fn both_halves_are_smoothed_and_edges_repeat() {
         let mut film = Film::new(4, 3, 2);
         film.halves_mut()[0][6] = PixelSum([1600, 0, 0]);
         film.halves_mut()[1][0] = PixelSum([1600, 0, 0]);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_that_alignment_shortened_does_not_shorten_the_next() {
+    fn alignment_does_not_shorten_later_passes() {
         let (mut sizer, none) = (PassSizer::new(1).begin_with(64), SampleRanges::default());
         assert_eq!(sizer.next(&none, 4..1000, None), Some(4..8));
         sizer.measured(4, FAST, TARGET);

@@ -111,7 +111,7 @@ mod tests {
     use std::sync::atomic::AtomicU32;
 
     #[test]
-    fn only_another_phase_gives_notice_and_an_earlier_run_is_ignored() {
+    fn only_phase_changes_notify_and_earlier_runs_are_ignored() {
         let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
         let noted = Arc::clone(&count);
         shared.set_notice(Box::new(move || {

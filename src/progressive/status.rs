@@ -88,7 +88,7 @@ pub struct Status {
     pub history: Vec<HistoryPoint>,
     /// Which backends have added how many samples, in order of first appearance.
     pub contributions: Vec<Contribution>,
-    /// The names of backends that failed or could not be prepared, in order.
+    /// Backends that failed or could not be prepared, in order.
     pub given_up: Vec<&'static str>,
     /// Problems that were handled, as messages for the user.
     pub messages: Vec<String>,

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reference_is_compared_by_its_address_and_has_values_only_within_its_picture() {
+    fn references_compare_by_address_and_check_bounds() {
         let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
         let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
         assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);

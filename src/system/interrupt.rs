@@ -198,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_signal_asks_and_a_later_ctrl_c_ends() {
+    fn first_signal_asks_and_a_later_ctrl_c_ends() {
         let (shared, now) = (Shared::default(), Instant::now());
         assert_eq!(shared.exit_code(), 130);
         assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);

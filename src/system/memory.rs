@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_group_allows_its_limit_less_what_is_used_and_not_cached() {
+    fn group_allows_its_limit_less_uncached_use() {
         let group = tempfile::tempdir().unwrap();
         let free = |limit: &str, stat: &str| {
             for (name, text) in [("memory.max", limit), ("memory.current", "700\n"), ("memory.stat", stat)] {

@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn work_without_threads_for_it_is_done_by_the_caller() {
+    fn work_without_threads_runs_on_the_caller() {
         let own = thread::current().id();
         let done = threads_of(|| Builder::new().stack_size(TOO_LARGE));
         assert!(done.iter().enumerate().all(|(index, (result, _))| *result as usize == 2 * index));

@@ -72,7 +72,7 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
+fn interrupted_run_keeps_whole_frames_and_continues() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let directory = temp();
         let flags =
@@ -113,7 +113,7 @@ fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
 }
 
 #[test]
-fn a_run_that_breaks_off_says_where_and_keeps_its_frames() {
+fn failed_run_reports_where_and_keeps_its_frames() {
     let directory = temp();
     fs::create_dir_all(directory.path().join("d/frame-0002.png")).unwrap();
     let flags = ["--batch", "--size", "24x14", "--samples", "4", "--turntable=4", "--out", "d"];

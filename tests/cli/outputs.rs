@@ -63,7 +63,7 @@ fn the_list_names_scenes_stages_and_devices() {
 }
 
 #[test]
-fn progress_can_be_asked_for_where_there_is_no_terminal() {
+fn progress_can_be_forced_without_a_terminal() {
     let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
     assert!(text(&output.stderr).contains("writing"), "{}", text(&output.stderr));
 }

@@ -50,7 +50,7 @@ fn names_that_do_not_exist_are_refused() {
 }
 
 #[test]
-fn what_the_processor_lacks_is_refused_with_what_it_has() {
+fn missing_cpu_level_is_refused_with_those_available() {
     let foreign = if cfg!(target_arch = "x86_64") { "neon" } else { "avx2" };
     refused(&["--batch", "--isa", foreign], &[foreign, "portable"]);
     refused(&["--batch", "--isa", "portable", "--simd", "16"], &["16 lanes", "portable"]);

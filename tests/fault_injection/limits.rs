@@ -23,7 +23,7 @@ fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_limit_on_the_size_of_files_is_an_error_and_the_loss_is_told() {
+fn file_size_limit_is_an_error_and_the_loss_is_reported() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::create_dir(at.join("elsewhere")).unwrap();
@@ -79,7 +79,7 @@ fn films_are_read_and_written_where_no_thread_starts() {
 }
 
 #[test]
-fn the_second_run_on_one_film_is_refused_until_the_first_has_ended_or_was_killed() {
+fn second_run_on_a_film_is_refused_until_the_first_ends() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let second = |flags: &[&str]| {

@@ -36,7 +36,7 @@ fn closed(is_full: bool) -> Stdio {
 }
 
 #[test]
-fn results_that_nobody_can_read_are_a_failure_with_a_word() {
+fn unreadable_results_are_a_reported_failure() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     succeeds(&mut batch(at, "off", &["--samples", "2", "--out", "a.exr"]));

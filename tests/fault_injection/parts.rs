@@ -10,7 +10,7 @@ use weekender::film::checkpoint;
 
 /// The files of a power cut look like those of `kill -9`: both leave the last film that was renamed into place.
 #[test]
-fn a_part_that_is_killed_at_random_goes_on_and_ends_with_the_bits_of_one_run() {
+fn part_killed_at_random_ends_with_the_bits_of_one_run() {
     let mut dice = Dice::new();
     println!("dice {}", dice.seed());
     let at = TempDir::new().unwrap();

@@ -36,7 +36,7 @@ impl Dice {
 }
 
 /// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
-fn goes_on_to_the_same_bits(at: &Path, part: &str) {
+fn continues_to_the_same_bits(at: &Path, part: &str) {
     let whole = film(&at.join(part));
     let samples = whole.samples().end() + 3;
     let range = format!("0..{samples}");
@@ -47,7 +47,7 @@ fn goes_on_to_the_same_bits(at: &Path, part: &str) {
 }
 
 #[test]
-fn signals_at_any_moment_leave_a_film_that_goes_on() {
+fn signals_at_any_moment_leave_a_resumable_film() {
     let mut dice = Dice::new();
     println!("dice {}", dice.seed());
     let (mut films, mut unfinished) = (0, 0);
@@ -73,7 +73,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
         if at.join("g.exr").exists() {
             films += 1;
-            goes_on_to_the_same_bits(at, "g.exr");
+            continues_to_the_same_bits(at, "g.exr");
             let left: Vec<String> = names(at).into_iter().filter(|name| name.ends_with(".part")).collect();
             assert!(left.is_empty(), "the next run clears up: {left:?}");
         }
@@ -83,7 +83,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
 }
 
 #[test]
-fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
+fn kill_loses_only_samples_since_the_last_write() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
@@ -94,11 +94,11 @@ fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
     signal(&child, "KILL");
     wait(&mut child);
     assert!(!at.join("g.png").exists());
-    goes_on_to_the_same_bits(at, "g.exr");
+    continues_to_the_same_bits(at, "g.exr");
 }
 
 #[test]
-fn signals_while_files_are_written_wait_for_them_and_are_answered() {
+fn signals_wait_for_file_writes_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // A pipe accepts a picture as slowly as its reader wants.

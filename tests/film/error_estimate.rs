@@ -137,7 +137,7 @@ fn the_error_includes_what_rounding_costs() {
 }
 
 #[test]
-fn noise_that_is_less_than_rounding_does_not_count() {
+fn noise_below_rounding_does_not_count() {
     let mut film = even_film(0.3, 64);
     film.halves_mut()[1][7].0[2] += 1;
     let error = film.error().unwrap();
@@ -145,7 +145,7 @@ fn noise_that_is_less_than_rounding_does_not_count() {
 }
 
 #[test]
-fn every_channel_counts_in_the_error_and_dark_ones_count_more_in_the_relative_one() {
+fn all_channels_count_and_dark_ones_more_in_rel_mse() {
     // Two halves of one sample each, of two pixels.
     let halves = [[[0.75, 0.25, 0.5], [0.0, 1.0, 0.125]], [[0.25, 0.25, 1.0], [0.5, 0.25, 0.0625]]];
     let mut film = Film::new(2, 1, 2);

@@ -46,7 +46,7 @@ fn load_error(path: &Path) -> CheckpointError {
 }
 
 #[test]
-fn what_is_no_film_file_is_refused_with_the_reason() {
+fn invalid_film_files_are_refused_with_the_reason() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     let input = |error| match error {
@@ -206,7 +206,7 @@ fn other_channels_are_not_those_of_a_film() {
 }
 
 #[test]
-fn the_head_of_a_film_file_tells_everything_but_the_sums() {
+fn head_has_everything_but_the_sums() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     let mut film = noisy_film(5, 3, 1, &[2..4, 9..12]);

@@ -37,7 +37,7 @@ fn the_order_of_samples_does_not_matter() {
 }
 
 #[test]
-fn what_is_no_radiance_is_rejected_and_the_picture_stays_finite() {
+fn invalid_radiance_is_rejected_and_the_picture_stays_finite() {
     let mut film = Film::new(1, 1, 1);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-30];
     let mut rejected = 0;
@@ -138,7 +138,7 @@ fn rows_are_the_picture_s_rows() {
 }
 
 #[test]
-fn a_film_may_have_all_that_its_samples_can_give_and_no_more() {
+fn sums_are_limited_by_the_sample_count() {
     let most = u64::from(FIXED_POINT_MAX);
     // Of five samples, three are in the first half.
     let samples = SampleRanges::from_ranges([0..5]).unwrap();

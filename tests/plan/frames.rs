@@ -124,7 +124,7 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
 
 #[cfg(unix)]
 #[test]
-fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
+fn ended_watch_reports_what_is_wrong_and_missing() {
     use std::io::{BufRead, BufReader, Read};
     let at = TempDir::new().unwrap();
     let at = at.path();

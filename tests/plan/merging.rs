@@ -4,7 +4,7 @@ use super::common::{PICTURE, damage, ends, film, part_path, plan, render_part, s
 use tempfile::TempDir;
 
 #[test]
-fn what_is_there_is_merged_and_what_is_missing_is_named() {
+fn existing_parts_are_merged_and_missing_ones_named() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "32", "--parts", "4"]);
@@ -32,7 +32,7 @@ fn what_is_there_is_merged_and_what_is_missing_is_named() {
 }
 
 #[test]
-fn a_damaged_part_is_named_with_its_rows_and_leaves_nothing_in_the_sum() {
+fn damaged_part_is_named_with_its_rows_and_left_out() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // Several bands, so that some are added before the damage is met.
@@ -58,7 +58,7 @@ fn a_damaged_part_is_named_with_its_rows_and_leaves_nothing_in_the_sum() {
 }
 
 #[test]
-fn parts_in_the_wrong_place_and_foreign_ones_are_named() {
+fn misplaced_and_foreign_parts_are_named() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "8", "--parts", "4"]);

@@ -58,7 +58,7 @@ fn commands_name_any_directory_so_that_a_shell_finds_it() {
 }
 
 #[test]
-fn a_part_goes_on_from_its_checkpoint_and_a_whole_one_is_left_alone() {
+fn part_continues_from_its_checkpoint_unless_whole() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "64", "--parts", "2"]);

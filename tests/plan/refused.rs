@@ -31,7 +31,7 @@ fn a_directory_keeps_its_plan() {
 }
 
 #[test]
-fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
+fn changed_plan_or_other_version_is_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "8", "--parts", "2"]);
@@ -65,7 +65,7 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
 }
 
 #[test]
-fn files_of_another_origin_in_the_way_of_a_plan_are_named_and_stay() {
+fn foreign_files_in_the_way_are_named_and_kept() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::create_dir(at.join("p")).unwrap();

@@ -82,7 +82,7 @@ fn parallel_renders_and_merges() {
 /// Slurm itself is not needed: a task is its script with the variables that Slurm sets.
 #[cfg(unix)]
 #[test]
-fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
+fn slurm_task_requeues_itself_after_sigterm() {
     if !is_there("bash") {
         return;
     }

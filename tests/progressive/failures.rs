@@ -33,7 +33,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
 }
 
 #[test]
-fn when_every_backend_fails_or_panics_the_film_of_the_last_whole_pass_is_left() {
+fn last_whole_pass_survives_when_all_backends_fail() {
     for panics in [false, true] {
         let asked = Arc::new(Mutex::new(Vec::new()));
         let seen = Arc::clone(&asked);
@@ -82,7 +82,7 @@ fn samples_that_were_not_added_are_missed() {
 }
 
 #[test]
-fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_backend() {
+fn uncollected_samples_are_rendered_by_the_next_backend() {
     let short_passes = Plan { pass_target: PAUSE, ..Plan::endless() };
     for is_switch in [false, true] {
         let (traced, is_traced) = channel();
@@ -210,7 +210,7 @@ fn a_listener_that_panics_does_not_end_the_render() {
 }
 
 #[test]
-fn a_render_thread_that_dies_says_that_the_film_is_lost() {
+fn dead_render_thread_reports_the_lost_film() {
     // It panics again while the first panic is handled.
     let progressive = paused_with_a_listener_that_panics(2);
     progressive.resume();

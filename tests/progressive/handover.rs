@@ -162,7 +162,7 @@ fn another_backend_begins_with_short_passes() {
 }
 
 #[test]
-fn a_renderer_that_is_given_is_used_and_kept_for_the_next_render() {
+fn given_renderer_is_used_and_kept() {
     let made = Arc::new(Mutex::new(Vec::new()));
     let noted = Arc::clone(&made);
     let mut progressive = idle(move |choice| {
@@ -204,7 +204,7 @@ fn a_watch_sees_the_render_and_ends_with_it() {
 }
 
 #[test]
-fn a_film_is_shown_when_asked_for_and_again_only_in_another_view() {
+fn film_is_shown_on_request_and_again_only_in_another_view() {
     let mut progressive = started(CPU, Plan::samples(64));
     progressive.wait_until_over();
     assert_eq!(progressive.newest_picture(), None);

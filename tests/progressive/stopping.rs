@@ -31,7 +31,7 @@ fn a_plan_of_samples_is_met_exactly() {
 }
 
 #[test]
-fn the_first_pass_is_as_long_as_the_others_where_nobody_watches() {
+fn unwatched_first_pass_has_full_length() {
     /// The samples in the film at the end of each pass that reaches another power of two.
     fn history(trial: Option<[u64; 2]>, plan: Plan) -> Vec<u64> {
         let trial = trial.map(|times| times.map(Duration::from_millis));
@@ -85,7 +85,7 @@ fn pauses_lose_nothing() {
 }
 
 #[test]
-fn the_time_limit_includes_preparation_but_at_least_one_pass_is_rendered() {
+fn time_limit_includes_preparation_but_allows_one_pass() {
     let preparation = Duration::from_millis(100);
     for (limit, preparation) in [(1e-9, Duration::ZERO), (0.1, Duration::ZERO), (0.05, preparation)] {
         let plan = Plan::until(Stop { seconds: Some(limit), ..Stop::default() });
@@ -182,7 +182,7 @@ fn a_picture_without_light_meets_no_noise_target() {
 }
 
 #[test]
-fn samples_that_come_late_count_before_a_noise_target_ends_it() {
+fn late_samples_count_before_a_noise_target() {
     let (status, _) = ended(|index| if index < 16 { 1 << 24 } else { (1 - index % 2) << 25 }, true);
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
     assert!(status.error.unwrap().rmse > 0.01);
@@ -214,7 +214,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
 }
 
 #[test]
-fn a_stop_during_a_pass_leaves_what_was_there_before_it() {
+fn stop_during_a_pass_keeps_the_earlier_film() {
     let progressive = started_with(CPU, Plan::endless(), |choice| {
         Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) })
     });
@@ -329,7 +329,7 @@ fn a_stop_does_not_wait_for_preparation() {
 }
 
 #[test]
-fn nobody_waits_for_a_preparation_whose_render_is_abandoned() {
+fn abandoned_preparation_is_not_awaited() {
     for (is_pending, is_followed) in [(false, false), (false, true), (true, false), (true, true)] {
         let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
         let mut progressive = idle(move |choice| {
@@ -386,7 +386,7 @@ fn paused() -> (Progressive, u64) {
 }
 
 #[test]
-fn a_paused_render_can_be_stopped_taken_abandoned_or_get_another_plan() {
+fn paused_render_obeys_other_commands() {
     let (progressive, held) = paused();
     changes_nothing(&progressive, &[PAUSE]);
     progressive.stop();

@@ -65,7 +65,7 @@ fn a_member_that_fails_leaves_its_samples_to_the_others() {
 }
 
 #[test]
-fn a_member_that_spoils_its_film_leaves_all_its_samples_to_the_others() {
+fn spoiling_member_leaves_its_samples_to_the_others() {
     let (spoilt, is_spoilt) = channel();
     // The other member takes the rest only once the film is spoilt.
     let mut signal = Some(is_spoilt);

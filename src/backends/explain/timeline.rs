@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_wait_for_each_other_after_every_path_or_only_at_the_end() {
+    fn lanes_wait_after_each_path_or_only_at_the_end() {
         let mut scene = Scene::default();
         let albedo = DVec3::ONE;
         for material in [

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_printed_only_if_one_is_due_unless_it_is_announced() {
+    fn lines_are_rate_limited_unless_announced() {
         let interval = Duration::from_secs(3600);
         let mut display = Display::Lines { next: Instant::now(), interval };
         let mut printed = Vec::new();
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_shows_its_position_and_names_without_control_characters() {
+    fn bar_escapes_control_characters() {
         let bar = bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:8}] {wide_msg}", "a\u{1b}b");
         let mut display = Display::Bar(bar.clone());
         display.update(2, || "half\u{1b} done".to_owned());

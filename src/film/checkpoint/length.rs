@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tile_may_be_larger_than_its_picture_but_not_by_any_amount() {
+    fn tile_size_beyond_the_picture_is_limited() {
         let tile_size = Vec2(8192, 8192);
         let (level_mode, rounding_mode) = (LevelMode::Singular, RoundingMode::Down);
         let tiles = BlockDescription::Tiles(TileDescription { tile_size, level_mode, rounding_mode });

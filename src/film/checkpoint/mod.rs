@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+    fn short_file_is_refused_before_allocation() {
         let claim = |side: u32| {
             let bytes = file(|head| {
                 (head.width, head.height) = (side, side);

@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_recipe_beyond_the_limit_becomes_a_comment_with_its_checksum() {
+    fn long_recipe_becomes_a_comment_with_its_checksum() {
         let longest = "x".repeat(RECIPE_LIMIT);
         assert!(matches!(recipe_in_picture(&longest), Cow::Borrowed(text) if text == longest));
         assert_eq!(length_of_missing(&longest), None);

@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_end_where_the_last_of_them_begins() {
+    fn limit_is_the_start_of_the_last_level() {
         let srgb = ((254.5 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
         for (encoding, limit) in [
             (Encoding::Book(Transfer::Linear), 255.0 / 256.0),
@@ -381,7 +381,7 @@ mod tests {
 
     /// A byte of a bitmap holds eight pixels, so no PNM is shorter than an eighth of its pixel count.
     #[test]
-    fn a_pnm_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+    fn short_pnm_is_refused_before_allocation() {
         let message = |length: u64| {
             let header = io::Cursor::new(b"P6 160 100 255 ");
             decode_picture(header, length, Encoding::Srgb).unwrap_err().to_string()
@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn a_png_has_as_many_levels_as_its_bits_and_its_palette_has_256() {
+    fn png_levels_follow_bit_depth_and_palette() {
         use ::png::{
             BitDepth,
             ColorType::{self, Grayscale, Indexed},

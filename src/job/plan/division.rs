@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_divide_becomes_blocks_of_a_smaller_power() {
+    fn uneven_division_uses_smaller_blocks() {
         let Division { block, parts } = divide(0..1000, 3).unwrap();
         assert_eq!((block, parts), (16, vec![0..336, 336..672, 672..1000]));
         let Division { block, parts } = divide(0..5, 4).unwrap();

@@ -469,7 +469,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_lacks_the_samples_of_its_range_that_a_film_does_not_hold() {
+    fn missing_samples_of_a_part() {
         let part = Part { file: String::new(), samples: [8, 16] };
         let of = |ranges: &[[u64; 2]]| {
             let found = SampleRanges::from_ranges(ranges.iter().map(|[start, end]| *start..*end)).unwrap();

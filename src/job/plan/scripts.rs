@@ -101,7 +101,7 @@ mod tests {
     use crate::job::plan::{Samples, Work, divide};
 
     #[test]
-    fn scripts_have_the_numbers_and_the_quoted_commands_of_the_plan() {
+    fn scripts_have_part_numbers_and_quoted_commands() {
         let work = Samples::new(&(0..6), &divide(0..6, 3).unwrap());
         let flags = vec!["--adapter=it's $1".to_owned()];
         let manifest = Manifest { flags, ..Manifest::new(Work::Samples(work)) };

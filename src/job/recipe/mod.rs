@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_names_have_no_sign_that_a_file_system_minds() {
+    fn plain_names_suit_every_file_system() {
         assert_eq!(plain_name("field:100"), "field-100");
         assert_eq!(plain_name("a/b\\c\"d*e?f<g>h|i\0j"), "a-b-c-d-e-f-g-h-i-j");
         assert_eq!(plain_name("Köln 1_2.3-4"), "Köln 1_2.3-4");

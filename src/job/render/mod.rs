@@ -228,9 +228,7 @@ pub enum RenderError {
     /// The backend failed while adding samples, and its partial additions could not be removed: the film is unusable.
     #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
     FilmLost {
-        /// Name of the backend.
         backend: &'static str,
-        /// The backend's error message.
         reason: String,
     },
     /// The same samples were requested twice.

@@ -63,7 +63,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn what_differs_first_is_named_with_both_values() {
+    fn first_difference_is_named_with_both_values() {
         let recipe = Recipe::builtin("three-spheres").unwrap();
         let told = |change: fn(&mut Recipe)| {
             let mut other = recipe.clone();

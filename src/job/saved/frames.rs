@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_whose_recipe_is_too_long_for_a_picture_is_whole_too() {
+    fn frame_with_a_long_recipe_is_whole() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("frame.png");
         let mut recipe = Recipe::builtin("three-spheres").unwrap();

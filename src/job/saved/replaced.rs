@@ -74,7 +74,7 @@ mod tests {
     use crate::job::recipe::{Recipe, file};
 
     #[test]
-    fn what_would_be_lost_is_told_and_what_would_not_is_passed_over() {
+    fn only_real_losses_are_reported() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let mut recipe = Recipe::find("three-spheres").unwrap();

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
+    fn first_working_place_is_used_or_the_loss_is_reported() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         std::fs::write(at("file"), "").unwrap();

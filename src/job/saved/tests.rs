@@ -24,7 +24,7 @@ fn written(directory: &TempDir, name: &str, entries: &[(&str, &str)]) -> PathBuf
 }
 
 #[test]
-fn a_film_is_opened_with_its_samples_and_what_it_says() {
+fn film_opens_with_samples_and_description() {
     let directory = tempfile::tempdir().unwrap();
     let said = [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
     let path = written(&directory, "a.exr", &said);
@@ -41,7 +41,7 @@ fn a_film_is_opened_with_its_samples_and_what_it_says() {
 }
 
 #[test]
-fn a_picture_says_its_samples_and_what_has_no_name_is_called_as_its_file() {
+fn picture_has_samples_and_is_named_after_its_file() {
     let directory = tempfile::tempdir().unwrap();
     for (said, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
         let path = written(&directory, "plain.png", &[(key::SAMPLES, said)]);
@@ -69,7 +69,7 @@ fn only_the_film_of_the_same_picture_goes_on() {
 }
 
 #[test]
-fn a_film_that_its_recipe_does_not_fit_is_refused() {
+fn film_that_does_not_fit_its_recipe_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let (mut recipe, film, _) = film(&[]);
     let path = directory.path().join("a.exr");

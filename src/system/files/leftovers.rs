@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn many_writers_and_cleaners_do_not_disturb_each_other() {
+    fn writers_and_cleaners_do_not_interfere() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path();
         std::thread::scope(|scope| {

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_has_the_lock_at_a_time_and_the_others_do_not_wait_for_ever() {
+    fn lock_is_exclusive_and_waiting_is_bounded() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.lock");
         let lock = || lock_path(&path, Duration::ZERO);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_locked_by_all_its_names_and_though_it_is_replaced() {
+    fn lock_covers_all_names_and_survives_replacement() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let take = |name: &str| FileLock::take_within(&at(name), Duration::ZERO);

@@ -77,7 +77,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn bytes_that_are_not_unicode_are_replaced_in_messages_and_in_json() {
+    fn non_unicode_bytes_are_replaced_in_messages_and_json() {
         use std::os::unix::ffi::OsStrExt;
         let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
         assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");

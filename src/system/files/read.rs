@@ -110,7 +110,7 @@ mod tests {
     /// The system reports a length of 0 for this file.
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_file_that_is_longer_than_it_reports_is_read_whole_or_not_at_all() {
+    fn file_longer_than_reported_is_read_whole_or_refused() {
         let path = Path::new("/proc/version");
         let whole = fs::read(path).unwrap();
         let length = whole.len() as u64;

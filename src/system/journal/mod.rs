@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_chooses_by_module_and_level_and_an_invalid_one_is_an_error() {
+    fn filter_by_module_and_level() {
         let filter = filter_of(FILTER_OF_FILE).unwrap();
         let is_on = |level, target| filter.enabled(&metadata(level, target));
         assert!(is_on(Level::Debug, "weekender::render_gpu") && is_on(Level::Warn, "wgpu_core"));
