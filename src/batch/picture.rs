@@ -188,9 +188,12 @@ mod tests {
         let picture = Picture::lock(&options.renders[0]).unwrap();
         let (_, outcome) = picture.render(&options, &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
-        let told = failure.to_string();
-        assert!(matches!(failure, Failure::BrokeOff(_)), "{told}");
-        assert!(told.contains("it broke") && told.contains("4 samples") && told.contains("a.exr"), "{told}");
+        let message = failure.to_string();
+        assert!(matches!(failure, Failure::BrokeOff(_)), "{message}");
+        assert!(
+            message.contains("it broke") && message.contains("4 samples") && message.contains("a.exr"),
+            "{message}"
+        );
         assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
         assert!(out.exists());
     }

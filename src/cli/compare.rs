@@ -122,11 +122,11 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         .write_json(raw.json.as_ref())
         .check(&[])?;
     // Pictures of other programs do not say what they show.
-    let told = sides.iter().find_map(|side| match side {
+    let from_file = sides.iter().find_map(|side| match side {
         CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
         CompareSide::Backend { .. } => None,
     });
-    let ChosenRecipe { mut recipe, .. } = match told {
+    let ChosenRecipe { mut recipe, .. } = match from_file {
         Some(chosen) => chosen,
         None => sources::find(&raw.picture, None)?,
     };

@@ -72,8 +72,11 @@ mod tests {
         let mut run = LockedFilm::new(&path).unwrap();
         for samples in [0..2, 0..4] {
             assert_eq!(run.save(&film(&[samples]), &Description::new("r")).unwrap(), None);
-            let told = LockedFilm::new(&path).unwrap_err().to_string();
-            assert!(told.contains("g.exr is locked") && told.contains("or name another file"), "{told}");
+            let message = LockedFilm::new(&path).unwrap_err().to_string();
+            assert!(
+                message.contains("g.exr is locked") && message.contains("or name another file"),
+                "{message}"
+            );
         }
         drop(run);
         let mut next = LockedFilm::new(&path).unwrap();

@@ -77,10 +77,10 @@ fn backend_words(film: &Film, status: &Status) -> Option<String> {
         _ => {}
     }
     parts.sort_by_key(|part| Some(&part.backend) != status.backend.as_ref());
-    let told =
+    let listed =
         parts.iter().map(|part| format!("{} ({})", words(&part.backend), samples(part.samples_per_pixel)));
     let before = (earlier > 0).then(|| format!("earlier runs ({})", samples(earlier)));
-    Some(told.chain(before).collect::<Vec<_>>().join("; "))
+    Some(listed.chain(before).collect::<Vec<_>>().join("; "))
 }
 
 fn camera_words(camera: &Camera) -> String {

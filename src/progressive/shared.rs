@@ -117,14 +117,14 @@ mod tests {
         shared.set_notice(Box::new(move || {
             noted.fetch_add(1, Ordering::Relaxed);
         }));
-        let told = |run: u64, phase: Phase, samples_per_pixel: u64| {
+        let published = |run: u64, phase: Phase, samples_per_pixel: u64| {
             shared.publish(&Status { run, phase, samples_per_pixel, ..Status::default() });
             let status = shared.status();
             (status.run, status.samples_per_pixel, count.load(Ordering::Relaxed))
         };
-        assert_eq!(told(2, Phase::Tracing, 4), (2, 4, 1));
-        assert_eq!(told(2, Phase::Tracing, 8), (2, 8, 1));
-        assert_eq!(told(1, Phase::Paused, 16), (2, 8, 1));
-        assert_eq!(told(3, Phase::Paused, 0), (3, 0, 2));
+        assert_eq!(published(2, Phase::Tracing, 4), (2, 4, 1));
+        assert_eq!(published(2, Phase::Tracing, 8), (2, 8, 1));
+        assert_eq!(published(1, Phase::Paused, 16), (2, 8, 1));
+        assert_eq!(published(3, Phase::Paused, 0), (3, 0, 2));
     }
 }

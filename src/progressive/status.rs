@@ -114,14 +114,14 @@ impl Status {
     pub fn of_film(&self, film: &Film, held_before: u64) -> Status {
         let mut status = self.clone();
         let added = film.sample_count().saturating_sub(held_before);
-        let told = status.added();
-        if told > 0 && told != added {
-            status.trace = status.trace.mul_f64(added as f64 / told as f64);
+        let reported = status.added();
+        if reported > 0 && reported != added {
+            status.trace = status.trace.mul_f64(added as f64 / reported as f64);
             let at_work =
                 status.contributions.iter().position(|part| Some(&part.backend) == status.backend.as_ref());
             let at_work = at_work.unwrap_or(status.contributions.len() - 1);
             let count = &mut status.contributions[at_work].samples_per_pixel;
-            *count = (*count + added).saturating_sub(told);
+            *count = (*count + added).saturating_sub(reported);
         }
         status
     }

@@ -120,9 +120,9 @@ fn failed_run_reports_where_and_keeps_its_frames() {
     // The second run renders none, but the frames of the first are there.
     for _ in 0..2 {
         let output = weekender(directory.path(), &flags).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{told}");
-        assert!(told.contains("frame 2 failed; 2 frames before it stay"), "{told}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{message}");
+        assert!(message.contains("frame 2 failed; 2 frames before it stay"), "{message}");
     }
     assert_eq!(names(&directory.path().join("d")), ["frame-0000.png", "frame-0001.png", "frame-0002.png"]);
 }

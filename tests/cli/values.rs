@@ -69,8 +69,8 @@ fn nothing_from_outside_steers_a_terminal() {
             ["diff", "--scene", "s.toml", "--size", "9x9", "--pixel", "4,4", "--sides", "cpu,reference"];
         let output = run(directory.path(), &[&path[..], more].concat());
         assert!(!steers(&output.stdout) && !steers(&output.stderr), "{output:?}");
-        let told = text(&output.stdout) + &text(&output.stderr);
-        assert!(told.contains("a\\u{1b}[2Jb\\u{9b}c"), "{told}");
+        let message = text(&output.stdout) + &text(&output.stderr);
+        assert!(message.contains("a\\u{1b}[2Jb\\u{9b}c"), "{message}");
     }
     for arguments in
         [&["--batch", "--scene", "a\x1b[31mb"][..], &["--batch", "--out", "a\x1b]0;title\x07.png/"]]

@@ -175,10 +175,10 @@ fn a_second_signal_ends_the_program_at_once() {
         }
         signal(&child, "INT");
         let status = wait(&mut child);
-        let mut told = String::new();
-        stderr.read_to_string(&mut told).unwrap();
-        assert_eq!(status.code(), Some(130), "{told}");
-        assert!(told.contains("ended at once"), "{told}");
+        let mut message = String::new();
+        stderr.read_to_string(&mut message).unwrap();
+        assert_eq!(status.code(), Some(130), "{message}");
+        assert!(message.contains("ended at once"), "{message}");
         // The next run removes the lock.
         assert!(names(at).iter().all(|name| name.ends_with(".lock")), "nothing is written: {:?}", names(at));
         return;

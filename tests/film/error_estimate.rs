@@ -102,9 +102,9 @@ fn an_estimate_of_few_pixels_among_many_is_in_doubt() {
         assert_eq!(doubt.is_some(), is_doubted, "{noisy} of {pixels}: {doubt:?}");
     }
     let film = film_with_noise_in(1000, 50);
-    let told = film.doubt(&film.error().unwrap()).unwrap();
+    let message = film.doubt(&film.error().unwrap()).unwrap();
     // 1 / (1/50 - 1/1000) = 52.6
-    assert!(told.contains("it effectively rests on 53 of 1000 pixels, but needs 100;"), "{told}");
+    assert!(message.contains("it effectively rests on 53 of 1000 pixels, but needs 100;"), "{message}");
 }
 
 /// A film of samples that are all alike, more of them in the first half if their number is odd.

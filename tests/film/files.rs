@@ -86,11 +86,11 @@ fn another_version_is_refused() {
         std::fs::write(&path, &whole).unwrap();
         spoil(&path, needle, offset, digit);
         let error = load_error(&path);
-        let told = error.to_string();
+        let message = error.to_string();
         for part in
             [&format!("layout {layout} with samples of version {samples}"), &writer, "render it again"]
         {
-            assert!(told.contains(part), "{part} is not in {told}");
+            assert!(message.contains(part), "{part} is not in {message}");
         }
         let (path, writer) = (path.clone(), writer.clone());
         assert_eq!(error, CheckpointError::Version { path, layout, samples, writer });
@@ -188,9 +188,9 @@ fn damage_is_located() {
         std::fs::write(&path, bytes).unwrap();
         let first = row / 16 * 16;
         let rows = format!("the rows {first} to {}", (first + 15).min(69));
-        for told in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
-            let told = told.unwrap_err().to_string();
-            assert!(told.contains("is damaged") && told.contains(&rows), "{row}: {told}");
+        for result in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("is damaged") && message.contains(&rows), "{row}: {message}");
         }
     }
 }

@@ -58,8 +58,8 @@ fn make_renders_and_merges() {
     // What is lost is rendered again, and only that.
     fs::remove_file(part_path(at, "a b", 1)).unwrap();
     let again = make();
-    let told = String::from_utf8_lossy(&again.stdout);
-    assert!(again.status.success() && told.matches("is whole: samples").count() == 2, "{told}");
+    let message = String::from_utf8_lossy(&again.stdout);
+    assert!(again.status.success() && message.matches("is whole: samples").count() == 2, "{message}");
 }
 
 #[cfg(unix)]

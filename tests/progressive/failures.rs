@@ -44,7 +44,7 @@ fn last_whole_pass_survives_when_all_backends_fail() {
         });
         let status = progressive.wait_until_over();
         let reason = if panics { "a slip of the tracer" } else { "pulled out" };
-        assert!(matches!(&status.phase, Phase::Failed(told) if told.contains(reason)), "{status:?}");
+        assert!(matches!(&status.phase, Phase::Failed(message) if message.contains(reason)), "{status:?}");
         assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
         assert_eq!(progressive.finish(), Some(expected(16)));
     }
@@ -131,12 +131,12 @@ fn if_another_backend_is_not_available_the_old_one_continues() {
     wait_for(&progressive, 4);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| !status.messages.is_empty());
-    let told = format!("reference failed: {}; the cpu continues", GpuError::None);
+    let message = format!("reference failed: {}; the cpu continues", GpuError::None);
     assert_eq!(progressive.status().given_up, ["reference"]);
     // So it does for a new render.
     progressive.start(RenderRequest::new(job(2), FAILING, Plan::endless()));
     wait_for(&progressive, 4);
-    assert_eq!(stopped(progressive).messages, [told]);
+    assert_eq!(stopped(progressive).messages, [message]);
 }
 
 #[test]

@@ -73,9 +73,9 @@ mod tests {
         ] {
             let header = header((1000, 100), compression, BlockDescription::ScanLines);
             assert_eq!(check_length(&header, least), Ok(()), "{compression:?}");
-            let told =
+            let message =
                 format!("it has {} bytes, but 1000x100 pixels of 4 bytes need at least {least}", least - 1);
-            assert_eq!(check_length(&header, least - 1), Err(told));
+            assert_eq!(check_length(&header, least - 1), Err(message));
         }
     }
 
@@ -87,7 +87,7 @@ mod tests {
         let header = header((10, 10), Compression::Uncompressed, tiles);
         let least = (8192 * 8192 * 4) - (16 << 20);
         assert_eq!(check_length(&header, least), Ok(()));
-        let told = check_length(&header, least - 1).unwrap_err();
-        assert!(told.ends_with("too few for chunks of 8192x8192 pixels"), "{told}");
+        let message = check_length(&header, least - 1).unwrap_err();
+        assert!(message.ends_with("too few for chunks of 8192x8192 pixels"), "{message}");
     }
 }

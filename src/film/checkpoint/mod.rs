@@ -124,8 +124,8 @@ mod tests {
     fn an_invalid_head_is_refused_even_with_a_correct_checksum() {
         assert_eq!(opened(&file(|_| {})).unwrap().film, film());
         let refused = |change: fn(&mut Head), part: &str| {
-            let told = opened(&file(change)).unwrap_err().to_string();
-            assert!(told.contains("x.exr is damaged") && told.contains(part), "{part}: {told}");
+            let message = opened(&file(change)).unwrap_err().to_string();
+            assert!(message.contains("x.exr is damaged") && message.contains(part), "{part}: {message}");
         };
         refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
         refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");
@@ -166,9 +166,9 @@ mod tests {
             let bytes = with_attribute(bytes, b"dataWindow\0box2i\0", 8, last);
             opened(&with_attribute(bytes, b"dataWindow\0box2i\0", 12, last)).unwrap_err().to_string()
         };
-        let told = claim(SIZE_LIMIT);
-        assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{told}");
-        let told = claim(20_000);
-        assert!(told.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{told}");
+        let message = claim(SIZE_LIMIT);
+        assert!(message.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{message}");
+        let message = claim(20_000);
+        assert!(message.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{message}");
     }
 }

@@ -64,9 +64,7 @@ pub enum OutputError {
         "cannot tell the picture format of {}; let the name end in one of {}",
         path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
     )]
-    UnknownEnding {
-        path: PathBuf,
-    },
+    UnknownEnding { path: PathBuf },
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The file cannot be opened, or is not a regular file.
@@ -76,17 +74,12 @@ pub enum OutputError {
     #[error(transparent)]
     Film(#[from] CheckpointError),
     #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.shown())]
-    Read {
-        path: PathBuf,
-        reason: io::Error,
-    },
+    Read { path: PathBuf, reason: io::Error },
     #[error(
         "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
         path.shown()
     )]
-    NoDescription {
-        path: PathBuf,
-    },
+    NoDescription { path: PathBuf },
 }
 
 /// How a PPM stores its numbers.

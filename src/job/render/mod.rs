@@ -152,9 +152,7 @@ pub enum JobError {
     },
     /// The depth is out of range.
     #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
-    Depth {
-        depth: u32,
-    },
+    Depth { depth: u32 },
 }
 
 /// Statistics of a call to [`Renderer::accumulate`].
@@ -221,16 +219,10 @@ pub enum RenderError {
     Cancelled,
     /// The backend failed; another can continue from the last good film.
     #[error("{backend} failed: {reason}")]
-    Backend {
-        backend: &'static str,
-        reason: String,
-    },
+    Backend { backend: &'static str, reason: String },
     /// The backend failed while adding samples, and its partial additions could not be removed: the film is unusable.
     #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
-    FilmLost {
-        backend: &'static str,
-        reason: String,
-    },
+    FilmLost { backend: &'static str, reason: String },
     /// The same samples were requested twice.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),

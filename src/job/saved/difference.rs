@@ -65,14 +65,14 @@ mod tests {
     #[test]
     fn first_difference_is_named_with_both_values() {
         let recipe = Recipe::builtin("three-spheres").unwrap();
-        let told = |change: fn(&mut Recipe)| {
+        let difference_with = |change: fn(&mut Recipe)| {
             let mut other = recipe.clone();
             change(&mut other);
             difference(&recipe.job().unwrap(), &other.job().unwrap())
         };
-        assert_eq!(told(|_| {}), None);
+        assert_eq!(difference_with(|_| {}), None);
         // Zeros are equal whatever their signs.
-        assert_eq!(told(|recipe| recipe.camera.look_from.x = -0.0), None);
+        assert_eq!(difference_with(|recipe| recipe.camera.look_from.x = -0.0), None);
         type Change = fn(&mut Recipe);
         let cases: [(Change, &str); 8] = [
             (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
@@ -97,7 +97,7 @@ mod tests {
             ),
         ];
         for (change, expected) in cases {
-            assert_eq!(told(change).as_deref(), Some(expected));
+            assert_eq!(difference_with(change).as_deref(), Some(expected));
         }
     }
 }

@@ -81,19 +81,19 @@ mod tests {
         write(&description);
         assert_eq!(of(&recipe, "Weekender 1"), FrameState::Whole);
 
-        let told = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
+        let refused = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
             FrameState::Wrong(words) => assert!(words.contains(part), "{words} should say {part}"),
             other => panic!("{other:?}, but should say {part}"),
         };
-        told(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
+        refused(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
         let mut other = recipe.clone();
         other.settings.seed = 5;
-        told(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
+        refused(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
         description.set(key::SAMPLES, 1);
         write(&description);
-        told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
+        refused(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
         std::fs::write(&path, "no picture").unwrap();
-        told(&recipe, "Weekender 1", "frame.png");
+        refused(&recipe, "Weekender 1", "frame.png");
     }
 
     #[test]
@@ -115,9 +115,9 @@ mod tests {
         write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
         assert_eq!(FrameState::of(&path, &recipe, "Weekender 1"), FrameState::Whole);
         recipe.settings.seed = 5;
-        let told = FrameState::of(&path, &recipe, "Weekender 1");
-        assert_eq!(told, FrameState::Wrong(format!("{} is of another picture", path.shown())));
-        let told = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
-        assert!(told.contains("frame.png") && told.contains("open the scene file"), "{told}");
+        let state = FrameState::of(&path, &recipe, "Weekender 1");
+        assert_eq!(state, FrameState::Wrong(format!("{} is of another picture", path.shown())));
+        let message = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
+        assert!(message.contains("frame.png") && message.contains("open the scene file"), "{message}");
     }
 }

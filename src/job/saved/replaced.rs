@@ -90,15 +90,21 @@ mod tests {
         let found = Replaced::at(&path, &text);
         assert_eq!(found, Replaced::Same(film.samples().clone()));
         assert_eq!(found.warning(&path, |_| true), None);
-        let told = found.warning(&path, |samples| samples.end() <= 8).unwrap();
-        assert!(told.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"), "{told}");
-        let told = found.refusal(&path).unwrap();
-        assert!(told.contains("30 samples per pixel") && told.contains("--continue"), "{told}");
+        let message = found.warning(&path, |samples| samples.end() <= 8).unwrap();
+        assert!(
+            message.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"),
+            "{message}"
+        );
+        let message = found.refusal(&path).unwrap();
+        assert!(message.contains("30 samples per pixel") && message.contains("--continue"), "{message}");
 
         let found = Replaced::at(&path, &other);
-        for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
-            assert!(told.contains("another picture") && told.contains("seed is 5 here, 0 there"), "{told}");
-            assert!(!told.contains("--continue"), "{told}");
+        for message in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+            assert!(
+                message.contains("another picture") && message.contains("seed is 5 here, 0 there"),
+                "{message}"
+            );
+            assert!(!message.contains("--continue"), "{message}");
         }
 
         std::fs::write(at("empty.exr"), "").unwrap();
@@ -111,8 +117,8 @@ mod tests {
         for (content, part) in [(&b"a picture"[..], "is not an EXR file"), (&bytes, "is damaged")] {
             std::fs::write(at("no.exr"), content).unwrap();
             let found = Replaced::at(&at("no.exr"), &text);
-            for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
-                assert!(told.contains(part), "{told}");
+            for message in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+                assert!(message.contains(part), "{message}");
             }
         }
     }

@@ -63,8 +63,8 @@ fn only_the_film_of_the_same_picture_goes_on() {
     recipe.settings.seed = 5;
     let job = recipe.job().unwrap();
     for refused in [resume(&path, &job).map(|_| ()), check_resume(&path, &job)] {
-        let told = refused.unwrap_err().to_string();
-        assert!(told.contains("a.exr") && told.contains("seed is 5 here, 0 there"), "{told}");
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("a.exr") && message.contains("seed is 5 here, 0 there"), "{message}");
     }
 }
 

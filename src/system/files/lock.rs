@@ -137,8 +137,8 @@ mod tests {
         let at = |name: &str| directory.path().join(name);
         let take = |name: &str| FileLock::take_within(&at(name), Duration::ZERO);
         let lock = take("g.exr").unwrap();
-        let told = take("./g.exr").unwrap_err().to_string();
-        assert!(told.contains("g.exr is locked") && told.contains("name another file"), "{told}");
+        let message = take("./g.exr").unwrap_err().to_string();
+        assert!(message.contains("g.exr is locked") && message.contains("name another file"), "{message}");
         crate::system::files::write_text(&at("g.exr"), "a film").unwrap();
         assert!(take("g.exr").is_err());
         drop(take("h.exr").unwrap());

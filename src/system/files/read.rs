@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum InputError {
     #[error("cannot read {}: {reason}; check its name and whether you may read it", path.shown())]
-    Unreadable {
-        path: PathBuf,
-        reason: String,
-    },
+    Unreadable { path: PathBuf, reason: String },
     /// The path is a directory, a device or a pipe.
     #[error("{} is {kind}, but a file is needed; name a regular file", path.shown())]
     NotFile {

@@ -36,15 +36,9 @@ pub enum JournalError {
         "{VARIABLE} is {value:?}, which is not a log filter ({reason}); write a level such as info, or a level for each \
          module such as warn,weekender=debug; levels are error, warn, info, debug, trace and off"
     )]
-    Filter {
-        value: String,
-        reason: String,
-    },
+    Filter { value: String, reason: String },
     #[error("--log {}: {source}; choose a file in a directory that you can write to", path.display())]
-    File {
-        path: PathBuf,
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
 }
 
 struct Journal {
