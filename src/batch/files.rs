@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_another_run_writes_is_locked() {
+    fn film_of_another_run_is_locked() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
         let run = |flags: &[&str]| lock(&options(flags));
@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_that_would_be_lost_are_warned_of() {
+    fn loss_of_samples_is_warned_of() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
         put(Path::new(&film), &options(&[]), 0..32);

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_failure_says_why_and_where_the_samples_are() {
+    fn failure_names_reason_and_place_of_samples() {
         let options = options(&["--checkpoint", "k.exr"]);
         let mut film = options.job.new_film();
         film.record(0..6, 0).unwrap();

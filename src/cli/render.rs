@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_a_render_is_what_was_asked_for() {
+    fn renders_end_as_requested() {
         for (flags, range, seconds, noise) in [
             ("--stage metal", Some(0..128), None, None),
             ("--samples 7 --noise-target 0.01", Some(0..7), None, Some(0.01)),

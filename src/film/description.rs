@@ -99,7 +99,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_key_that_is_set_again_keeps_its_place() {
+    fn resetting_a_key_keeps_its_place() {
         let mut description = Description::new("");
         description.set(key::SAMPLES, 1);
         description.set(key::SEED, 7);
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_that_no_file_can_hold_are_changed_or_ignored() {
+    fn unstorable_entries_are_changed_or_ignored() {
         let mut description = Description::new("a\r\nb\rc\n");
         description.set("", "x");
         description.set(RECIPE_KEY, "x");

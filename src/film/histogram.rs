@@ -66,7 +66,7 @@ mod tests {
     use crate::film::PixelSum;
 
     #[test]
-    fn a_bin_begins_where_it_says() {
+    fn bin_starts_match_their_stops() {
         for number in 0..BINS {
             let begin = Histogram::stop_of(number).exp2();
             assert_eq!(bin(begin * (1.0 + 1e-9)), number);

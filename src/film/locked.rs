@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_began_anew_does_not_replace_what_the_file_has() {
+    fn restarted_film_does_not_replace_the_file() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
         checkpoint::save(&path, &film(&[0..4]), &Description::new("r")).unwrap();

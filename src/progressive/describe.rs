@@ -105,7 +105,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_camera_is_told_with_all_its_numbers() {
+    fn camera_text_has_all_numbers() {
         let camera = Camera {
             look_from: DVec3::new(13.0, 2.0, 3.5),
             look_at: DVec3::new(1.0, -2.0, 0.0),

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_known_of_the_next_backends_speed() {
+    fn next_backends_speed_is_unknown() {
         let (mut sizer, none) = (PassSizer::new(2), SampleRanges::default());
         let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
         sizer.measured(2, 10 * TARGET, TARGET);

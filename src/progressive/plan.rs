@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_are_long_where_a_stop_is_heeded_and_nobody_watches() {
+    fn unwatched_passes_that_heed_stops_are_long() {
         let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
         let to_a_noise = Stop { noise: Some(0.1), ..Stop::default() };
         for (plan, heeds_stop, factor) in [

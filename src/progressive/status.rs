@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_status_that_fits_its_film_stays_as_it_is() {
+    fn matching_status_is_unchanged() {
         let info = |name| BackendInfo { name, device: String::new(), lanes: 8, threads: 1 };
         let part = |name, samples_per_pixel| Contribution { backend: info(name), samples_per_pixel };
         let mut status = Status {

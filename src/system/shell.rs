@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shell_finds_the_words_again() {
+    fn quoted_words_survive_a_shell() {
         let words = ["weekender", "--size=8x4", "a b", "it's", "$HOME", "", "back\\slash", "ö*?", "-1,2,3"];
         let line = line(words);
         assert_eq!(shlex::split(&line).unwrap(), words);

@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_and_beginnings_are_recognised() {
+    fn typos_and_prefixes_are_recognised() {
         let names = ["glass-refract", "glass-tir", "glass-schlick", "sky", "metal"];
         assert_eq!(similar_names("matal", names), ["metal"]);
         assert_eq!(similar_names("sk", names), ["sky"]);
@@ -45,7 +45,7 @@ mod tests {
     }
 
     #[test]
-    fn few_names_are_offered_and_the_likeliest_first() {
+    fn few_names_are_offered_most_similar_first() {
         let near = |wanted: &str, names: &[&'static str]| similar_names(wanted, names.iter().copied());
         // Three of six letters may be wrong.
         assert_eq!(near("abcdef", &["abwxyz", "abcxyz", "abcdxf"]), ["abcdxf", "abcxyz"]);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_names_what_is_near() {
+    fn messages_name_similar_names() {
         assert_eq!(or_nearest(&["a", "b"]), "did you mean a or b? --list shows all");
         assert_eq!(or_nearest(&[]), "--list shows all");
     }

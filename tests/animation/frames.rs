@@ -38,7 +38,7 @@ fn a_frame_alone_has_the_same_bits_as_in_a_run() {
 }
 
 #[test]
-fn whole_frames_are_kept_and_others_are_rendered_again() {
+fn only_incomplete_frames_are_rendered_again() {
     let directory = temp();
     let run = |more: &[&str]| {
         let json = render(directory.path(), &[&["--turntable=8", "--out", "d"], more].concat());

@@ -228,7 +228,7 @@ fn at_and_focused(frame: u32, x: f64, focus: f64) -> Keyframe {
 
 /// Between 0, 1 and 0 a path without curvature at its ends is `1.5 t - 0.5 t^3`, there and back.
 #[test]
-fn a_path_begins_and_ends_without_curvature() {
+fn path_has_no_curvature_at_its_ends() {
     let keyframes = [(0, 0.0), (8, 1.0), (16, 0.0)].map(|(frame, x)| at_and_focused(frame, x, 0.0));
     let path = keyframed(keyframes.to_vec());
     for frame in 0..=8 {

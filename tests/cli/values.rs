@@ -57,7 +57,7 @@ fn missing_cpu_level_is_refused_with_those_available() {
 }
 
 #[test]
-fn nothing_from_outside_steers_a_terminal() {
+fn outside_text_cannot_control_a_terminal() {
     let directory = temp();
     let steers = |bytes: &[u8]| text(bytes).chars().any(|c| c.is_control() && c != '\n');
     let scene = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n\
@@ -83,7 +83,7 @@ fn nothing_from_outside_steers_a_terminal() {
 }
 
 #[test]
-fn a_report_has_each_target_once_and_the_chosen_one_first() {
+fn report_targets_are_unique_with_the_chosen_one_first() {
     let targets = |flags: &[&str]| {
         let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
         let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {

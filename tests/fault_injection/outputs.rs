@@ -6,7 +6,7 @@ use std::process::Stdio;
 use tempfile::TempDir;
 
 #[test]
-fn what_is_only_said_never_ends_a_run() {
+fn informational_output_never_ends_a_run() {
     for is_full in [true, false] {
         let at = TempDir::new().unwrap();
         let at = at.path();

@@ -144,7 +144,7 @@ fn signals_wait_for_file_writes_and_are_answered() {
 }
 
 #[test]
-fn a_signal_that_arrives_twice_is_one() {
+fn repeated_signal_counts_once() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
@@ -188,7 +188,7 @@ fn a_second_signal_ends_the_program_at_once() {
 
 /// What nohup does for SIGHUP, and a shell without job control for SIGINT.
 #[test]
-fn a_signal_that_was_ignored_at_the_start_stays_ignored() {
+fn initially_ignored_signals_stay_ignored() {
     for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
         let at = TempDir::new().unwrap();
         let at = at.path();

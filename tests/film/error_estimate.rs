@@ -32,7 +32,7 @@ fn the_error_is_right_for_halves_of_different_counts() {
 }
 
 #[test]
-fn the_estimate_knows_how_far_off_it_may_be() {
+fn stated_uncertainty_matches_the_spread() {
     // 400 small films with different samples: compares the spread of their estimates with the stated uncertainty.
     let errors: Vec<_> =
         (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();

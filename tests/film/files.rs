@@ -11,7 +11,7 @@ use weekender::system::files::InputError;
 
 proptest! {
     #[test]
-    fn a_film_file_gives_back_the_film(
+    fn film_files_round_trip(
         width in 1_u32..9,
         height in 1_u32..9,
         halves in 1_usize..=2,
@@ -99,7 +99,7 @@ fn another_version_is_refused() {
 
 /// A film of layout 4, as it was first written, with two bands and both halves.
 #[test]
-fn a_film_that_was_written_long_ago_is_read() {
+fn old_film_file_is_read() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/layout-4.exr"));
     let FilmFile { film, description } = checkpoint::load(path).unwrap();
     assert_eq!((film.width(), film.height(), film.samples().to_string()), (20, 18, "0..4".to_owned()));
@@ -196,7 +196,7 @@ fn damage_is_located() {
 }
 
 #[test]
-fn other_channels_are_not_those_of_a_film() {
+fn foreign_channels_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();

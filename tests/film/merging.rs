@@ -94,7 +94,7 @@ fn merged_time_is_unknown_if_any_is() {
 
 /// Each thread that reads the film has several of its 25 bands, and the last one is damaged.
 #[test]
-fn a_damaged_film_leaves_the_sum_as_it_was() {
+fn damaged_film_leaves_the_sum_unchanged() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name);
     for (name, range) in [("a.exr", 0..2), ("b.exr", 2..4)] {

@@ -78,7 +78,7 @@ fn film_of(values: &[f64]) -> Film {
 }
 
 #[test]
-fn bytes_step_where_the_book_has_them_step() {
+fn bytes_step_where_the_book_steps() {
     // (b / 256)^2 is exact in fixed point for every byte b.
     for byte in 0..=255_u8 {
         let edge = (f64::from(byte) / 256.0).powi(2);

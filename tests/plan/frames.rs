@@ -160,7 +160,7 @@ fn ended_watch_reports_what_is_wrong_and_missing() {
 }
 
 #[test]
-fn what_cannot_be_planned_by_frames_is_refused() {
+fn invalid_frame_plans_are_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (flags, parts) in [

@@ -37,7 +37,7 @@ fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
 }
 
 #[test]
-fn commands_name_any_directory_so_that_a_shell_finds_it() {
+fn commands_quote_directories_for_the_shell() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let directory = "it's a \"plan\" for $HOME & Köln; *";
@@ -99,7 +99,7 @@ fn part_continues_from_its_checkpoint_unless_whole() {
 }
 
 #[test]
-fn a_damaged_part_is_put_aside_and_rendered_again() {
+fn damaged_part_is_moved_aside_and_rendered_again() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "4", "--parts", "2"]);
@@ -139,7 +139,7 @@ fn the_environment_of_a_task_chooses_its_part() {
 /// As when a scheduler starts a task again on another machine while the first one still runs.
 #[cfg(unix)]
 #[test]
-fn the_second_of_two_runs_of_one_part_is_refused() {
+fn second_run_of_a_part_is_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "4294967296", "--parts", "2"]);

@@ -92,7 +92,7 @@ fn foreign_files_in_the_way_are_named_and_kept() {
 }
 
 #[test]
-fn what_cannot_be_planned_or_merged_is_refused() {
+fn invalid_plans_and_merges_are_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::write(at.join("file"), "").unwrap();

@@ -23,7 +23,7 @@ fn is_there(tool: &str) -> bool {
 }
 
 #[test]
-fn json_has_the_words_of_every_command() {
+fn json_has_every_command() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let json = plan(at, "p q", &["--samples", "8", "--parts", "2", "--format", "json", "--every", "2m"]);

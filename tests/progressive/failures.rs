@@ -70,7 +70,7 @@ fn a_panic_while_preparing_tracing_or_looking_ends_nothing() {
 }
 
 #[test]
-fn samples_that_were_not_added_are_missed() {
+fn missing_samples_are_noticed() {
     let progressive = started_with(CPU, Plan::samples(64), |choice| {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         if *choice == CPU { forgetful() } else { Box::new(fake) }
@@ -121,7 +121,7 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
 }
 
 #[test]
-fn if_another_backend_is_not_available_the_old_one_continues() {
+fn old_backend_continues_if_another_is_unavailable() {
     let mut progressive = Progressive::with_factory(Box::new(|choice| match *choice == FAILING {
         true => Err(BackendError::Gpu(GpuError::None)),
         false => Ok(Box::new(Fake::new("cpu"))),
@@ -140,7 +140,7 @@ fn if_another_backend_is_not_available_the_old_one_continues() {
 }
 
 #[test]
-fn a_pending_backend_that_panics_can_be_tried_again() {
+fn panicked_pending_backend_can_be_retried() {
     let mut is_first = true;
     let progressive = started_with(CPU, Plan::endless(), move |choice| {
         assert!(*choice == CPU || !std::mem::take(&mut is_first), "no such backend");
@@ -157,7 +157,7 @@ fn a_pending_backend_that_panics_can_be_tried_again() {
 }
 
 #[test]
-fn a_film_that_was_spoilt_is_begun_again() {
+fn spoilt_film_is_restarted() {
     let progressive = started_with(CPU, Plan::samples(100), |choice| match *choice == CPU {
         true => spoiling("cpu", || ()),
         false => Box::new(Fake::new(choice.name())),
@@ -222,7 +222,7 @@ fn dead_render_thread_reports_the_lost_film() {
 
 /// A panic of the real tracer in the middle of a tile.
 #[test]
-fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
+fn panic_in_a_tile_leaves_the_film_unchanged() {
     let recipe = Recipe::find("three-spheres").unwrap();
     for estimate_error in [false, true] {
         let size = RenderSettings { width: 100, height: 70, estimate_error, ..recipe.settings };

@@ -16,7 +16,7 @@ use weekender::render_gpu::GpuError;
 use weekender::stages::Transfer;
 
 #[test]
-fn another_backend_goes_on_with_the_same_film() {
+fn another_backend_continues_the_same_film() {
     let progressive = started(CPU, Plan::samples(3000));
     for (backend, at) in [(other_cpu(), 4), (CPU, 100), (FAILING, 500), (other_cpu(), 600)] {
         wait_for(&progressive, at);
@@ -81,7 +81,7 @@ fn continued(film: Film, plan: Plan) -> Progressive {
 }
 
 #[test]
-fn a_film_goes_on_where_it_has_gaps() {
+fn gaps_of_a_film_are_filled() {
     let progressive = continued(film([3..5, 10..30]), Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
@@ -258,7 +258,7 @@ fn a_preview_is_smooth_and_its_first_pass_is_long_enough() {
 }
 
 #[test]
-fn the_status_describes_the_backend_at_work() {
+fn status_describes_the_current_backend() {
     const PREPARATION: Duration = Duration::from_millis(20);
     let progressive = started_with(CPU, Plan::endless(), |choice| {
         let (name, message) = (choice.name(), Some("a layer is too thin"));

@@ -200,7 +200,7 @@ fn the_error_at_the_end_is_that_of_the_whole_film() {
 }
 
 #[test]
-fn a_stop_keeps_the_film_and_can_be_taken_back() {
+fn stop_keeps_the_film_and_can_be_undone() {
     let progressive = started(CPU, Plan::samples(2000));
     wait_for(&progressive, 8);
     progressive.stop();
@@ -420,7 +420,7 @@ fn paused_render_obeys_other_commands() {
 }
 
 #[test]
-fn requests_out_of_season_change_nothing() {
+fn untimely_requests_change_nothing() {
     let mut progressive = idle(usual);
     changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
     assert_eq!(progressive.status(), Status::default());

@@ -82,7 +82,7 @@ fn spoiling_member_leaves_its_samples_to_the_others() {
 }
 
 #[test]
-fn when_every_member_has_failed_the_film_is_unchanged() {
+fn film_is_unchanged_when_every_member_fails() {
     for members in [vec![fake("cpu", Some(0)), fake("gpu", Some(0))], vec![forgetful()]] {
         let mut together = Together::new(members);
         let mut film = job(2).new_film();

@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn glass_bends_and_reflects_as_the_laws_say() {
+    fn glass_follows_the_laws() {
         use DielectricLaws::{RefractOnly, Schlick, TotalReflection};
         // The sine is divided by 1.5: its square is 2/9.
         let bent = DVec3::new((2.0_f64 / 9.0).sqrt(), -(7.0_f64 / 9.0).sqrt(), 0.0);
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sentence_names_angles_and_chance() {
+    fn sentences_name_angles_and_chance() {
         let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
         let at_30 = Some(DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0));
         let mirror = Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 };

@@ -63,7 +63,7 @@ mod tests {
 
     /// 400,000 bytes of pixels and 16 bytes for each chunk, of 1, 16 or 32 rows.
     #[test]
-    fn a_file_needs_as_many_bytes_as_can_become_its_pixels() {
+    fn file_must_be_long_enough_for_its_pixels() {
         for (compression, least) in [
             (Compression::Uncompressed, 100 * 16 + 400_000),
             (Compression::RLE, 100 * 16 + 6250),

@@ -181,7 +181,7 @@ mod tests {
     use crate::film::{Description, checkpoint::save};
 
     #[test]
-    fn another_film_that_is_copied_into_the_file_is_noticed() {
+    fn film_replaced_while_read_is_noticed() {
         let directory = tempfile::tempdir().unwrap();
         let [path, other] = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
         for (path, samples) in [(&path, 0..4), (&other, 4..6)] {

@@ -454,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manifest_is_read_as_it_was_written() {
+    fn manifests_round_trip() {
         let division = divide(7..50, 3).unwrap();
         let turn = Some(Turn::DegreesPerFrame(-1.1));
         let rate = FrameRate { frames: 30_000, seconds: 1001 };

@@ -62,7 +62,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_frame_is_whole_if_all_that_made_it_is_the_same() {
+    fn frame_is_whole_only_if_all_inputs_match() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("frame.png");
         let mut recipe = Recipe::builtin("three-spheres").unwrap();

@@ -53,7 +53,7 @@ fn picture_has_samples_and_is_named_after_its_file() {
 }
 
 #[test]
-fn only_the_film_of_the_same_picture_goes_on() {
+fn only_a_film_of_the_same_picture_continues() {
     let directory = tempfile::tempdir().unwrap();
     let path = written(&directory, "a.exr", &[]);
     let mut recipe = film(&[]).0;
@@ -85,7 +85,7 @@ fn film_that_does_not_fit_its_recipe_is_refused() {
 }
 
 #[test]
-fn what_a_file_is_decides_how_it_is_refused() {
+fn refusal_depends_on_the_kind_of_file() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     for name in ["text.exr", "text.png"] {

@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_is_released_in_time_is_had() {
+    fn lock_released_in_time_is_acquired() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.exr");
         let first = FileLock::take(&path).unwrap();

@@ -70,7 +70,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn a_shown_path_is_one_line_without_control_characters() {
+    fn shown_paths_are_one_line_without_control_characters() {
         assert_eq!(Path::new("a\nb\u{1b}[31m\u{202e}c.png").shown(), "a\\nb\\u{1b}[31m\\u{202e}c.png");
         assert_eq!(Path::new("Köln/it's a.png").shown(), "Köln/it's a.png");
     }
