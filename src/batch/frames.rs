@@ -137,8 +137,8 @@ impl<'a> Run<'a> {
             Event::Status(_, status) => {
                 let (done, count) = (self.done(), self.options.frames.len() as u32);
                 let took = (self.rendering, self.rendered);
-                let words = || so_far(frame, status.samples_per_pixel, [done, count], took);
-                self.display.update(u64::from(done), words);
+                let progress = || so_far(frame, status.samples_per_pixel, [done, count], took);
+                self.display.update(u64::from(done), progress);
             }
         });
         if let Phase::Failed(reason) = &status.phase {
@@ -252,8 +252,8 @@ fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
         return Failure::Run(error);
     }
     let done = counted(u64::from(done), "frame");
-    let words = format!("frame {frame} failed; {done} before it stay, and the same command continues");
-    Failure::BrokeOff(error.context(words))
+    let context = format!("frame {frame} failed; {done} before it stay, and the same command continues");
+    Failure::BrokeOff(error.context(context))
 }
 
 /// The progress of the animation: current frame and its samples, frames done and in total, and how long rendering took
@@ -276,16 +276,16 @@ mod tests {
 
     #[test]
     fn time_left_covers_the_remaining_frames() {
-        let words = |took| so_far(3, 4, [2, 6], took);
-        assert_eq!(words((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
-        assert_eq!(words((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
+        let progress = |took| so_far(3, 4, [2, 6], took);
+        assert_eq!(progress((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
+        assert_eq!(progress((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 
     #[test]
     fn run_breaks_off_only_with_finished_frames() {
         assert!(matches!(broken_off(anyhow!("no space"), 7, 0), Failure::Run(_)));
         let Failure::BrokeOff(error) = broken_off(anyhow!("no space"), 7, 1) else { panic!() };
-        let words = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
-        assert_eq!(format!("{error:#}"), words);
+        let expected = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
+        assert_eq!(format!("{error:#}"), expected);
     }
 }

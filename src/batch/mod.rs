@@ -134,9 +134,9 @@ fn json_file(target: Option<&JsonTarget>) -> Option<&std::path::PathBuf> {
 }
 
 fn create_directory(directory: &Path) -> Result<(), Failure> {
-    let words = || format!("cannot create the directory {}; choose another with --out", directory.shown());
+    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
     let created = if directory.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(directory) };
-    created.with_context(words).map_err(Failure::Input)
+    created.with_context(context).map_err(Failure::Input)
 }
 
 /// Prints the scenes, stages and devices to choose from.
@@ -168,9 +168,9 @@ mod tests {
 
     /// The options of a batch render of 4x3 pixels with these `flags`.
     pub(super) fn batch(flags: &[&str]) -> BatchOptions {
-        let words = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
-        let words = words.into_iter().chain(flags.iter().copied());
-        let Request::Batch(options) = parse(words.map(Into::into)).unwrap() else { panic!("{flags:?}") };
+        let arguments = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
+        let arguments = arguments.into_iter().chain(flags.iter().copied());
+        let Request::Batch(options) = parse(arguments.map(Into::into)).unwrap() else { panic!("{flags:?}") };
         *options
     }
 

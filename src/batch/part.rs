@@ -90,8 +90,8 @@ fn render_samples(
     let found = find(&path, plan, part)?;
     match found {
         Some(found) if part.missing(found.film.samples()) == 0 => {
-            let words = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
-            print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
+            let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
+            print_beside(batch.json.as_ref(), &text).map_err(Failure::Run)?;
             let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found).json());
             write_figures(&batch, summaries.collect()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
@@ -149,8 +149,8 @@ fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Fail
 fn put_aside(path: &Path, damaged: &CheckpointError) -> anyhow::Result<()> {
     let mut aside = path.as_os_str().to_owned();
     aside.push(".damaged");
-    let words = || format!("cannot rename {} to {}", path.shown(), aside.shown());
-    std::fs::rename(path, &aside).with_context(words)?;
+    let context = || format!("cannot rename {} to {}", path.shown(), aside.shown());
+    std::fs::rename(path, &aside).with_context(context)?;
     console::note(&format!(
         "warning: {damaged}; it is now {}, and the part is rendered again",
         aside.shown()

@@ -45,8 +45,8 @@ pub(super) fn check_ending(
     ending: &'static str,
 ) -> Result<(), CliError> {
     let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
-    let words = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
-    if is_so { Ok(()) } else { Err(CliError::Refused(words())) }
+    let message = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
+    if is_so { Ok(()) } else { Err(CliError::Refused(message())) }
 }
 
 /// Number of lanes; `None` leaves the choice to the backend.

@@ -41,14 +41,14 @@ impl LockedFilm {
             self.held = film.samples().clone();
             return Ok(None);
         }
-        let words = format!("holds the samples {} of this picture", self.held);
+        let holds = format!("holds the samples {} of this picture", self.held);
         if self.held.contains(film.samples()) {
             let path = self.path.shown();
             return Ok(Some(format!(
-                "{path} {words}, more than this run has rendered, so it is left unchanged"
+                "{path} {holds}, more than this run has rendered, so it is left unchanged"
             )));
         }
-        let reason = format!("it {words}, and this run has only {}", film.samples());
+        let reason = format!("it {holds}, and this run has only {}", film.samples());
         Err(WriteError { path: self.path.clone(), reason: io::Error::other(reason) })
     }
 }

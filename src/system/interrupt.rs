@@ -132,7 +132,7 @@ impl Interrupt {
         let seen = Arc::clone(&shared);
         let answer = move |code| match seen.signalled(code, Instant::now()) {
             Answer::Nothing => wake(),
-            Answer::Say(words) => console::note(&words),
+            Answer::Say(message) => console::note(&message),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");
                 std::process::exit(i32::from(seen.exit_code()));
@@ -232,7 +232,7 @@ mod tests {
         let writing = interrupt.while_writing("film.exr");
         for late in 0..3 {
             let answer = interrupt.0.signalled(INTERRUPTED, now + late * ECHO);
-            assert!(matches!(&answer, Answer::Say(words) if words.contains("film.exr")), "{answer:?}");
+            assert!(matches!(&answer, Answer::Say(message) if message.contains("film.exr")), "{answer:?}");
         }
         drop(writing);
         assert!(interrupt.is_set());

@@ -126,7 +126,7 @@ impl Piece {
                 match FrameState::of(&self.path, &recipe, SOFTWARE) {
                     FrameState::Whole => State::Whole,
                     FrameState::Missing => State::Missing,
-                    FrameState::Wrong(words) => State::Wrong(words),
+                    FrameState::Wrong(reason) => State::Wrong(reason),
                 }
             }
             (Kind::Film(part), _) => match checkpoint::read_head(&self.path) {
@@ -164,7 +164,7 @@ impl Piece {
                 format!("part {part}: {name} has {held} of {of} samples per pixel")
             }
             State::Missing => format!("part {part}: {name} is missing"),
-            State::Wrong(words) => format!("part {part}: {words}"),
+            State::Wrong(reason) => format!("part {part}: {reason}"),
         }
     }
 }
@@ -172,11 +172,11 @@ impl Piece {
 /// Ascending numbers as Slurm writes them: `0,3-7,9`.
 fn ranges(numbers: &[usize]) -> String {
     let runs = numbers.chunk_by(|number, next| number + 1 == *next);
-    let words = |run: &[usize]| match run {
+    let text = |run: &[usize]| match run {
         [first, _, .., last] => format!("{first}-{last}"),
         few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(","),
     };
-    runs.map(words).collect::<Vec<_>>().join(",")
+    runs.map(text).collect::<Vec<_>>().join(",")
 }
 
 #[cfg(test)]
@@ -185,14 +185,14 @@ mod tests {
 
     #[test]
     fn three_numbers_in_a_row_are_a_range() {
-        for (numbers, words) in [
+        for (numbers, expected) in [
             (&[][..], ""),
             (&[4], "4"),
             (&[1, 2], "1,2"),
             (&[0, 1, 2, 4, 6, 8, 9, 10], "0-2,4,6,8-10"),
             (&[3, 4, 6, 7, 8], "3,4,6-8"),
         ] {
-            assert_eq!(ranges(numbers), words);
+            assert_eq!(ranges(numbers), expected);
         }
     }
 }

@@ -206,7 +206,7 @@ impl Merging<'_> {
 fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for piece in pieces.iter_mut().filter(|piece| fits(&piece.state) && !piece.is_merged) {
-        let words = match sum.add(&piece.path, same_job) {
+        let reason = match sum.add(&piece.path, same_job) {
             Ok(_) => {
                 piece.is_merged = piece.state == State::Whole;
                 continue;
@@ -216,7 +216,7 @@ fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) -
             }
             Err(error) => error.to_string(),
         };
-        piece.state = State::Wrong(words);
+        piece.state = State::Wrong(reason);
         wrong.push(piece.line());
     }
     wrong

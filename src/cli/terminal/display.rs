@@ -37,24 +37,24 @@ impl Display {
         matches!(self, Display::Bar(_))
     }
 
-    /// Shows `words` at step `position`. A line is printed only if one is due.
-    pub fn update(&mut self, position: u64, words: impl FnOnce() -> String) {
+    /// Shows `text` at step `position`. A line is printed only if one is due.
+    pub fn update(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
             Display::Lines { next, .. } if Instant::now() < *next => {}
-            _ => self.announce(position, words),
+            _ => self.announce(position, text),
         }
     }
 
-    /// Shows `words` at step `position` even if no line is due.
-    pub fn announce(&mut self, position: u64, words: impl FnOnce() -> String) {
+    /// Shows `text` at step `position` even if no line is due.
+    pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
             Display::Bar(bar) => {
                 bar.set_position(position);
-                bar.set_message(console::printable(&words()).into_owned());
+                bar.set_message(console::printable(&text()).into_owned());
             }
             Display::Lines { next, interval } => {
                 *next = Instant::now() + *interval;
-                console::note(&words());
+                console::note(&text());
             }
             Display::Off => {}
         }

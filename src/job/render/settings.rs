@@ -150,7 +150,7 @@ mod tests {
         }
         assert_eq!(RenderSettings::NAMED.len(), others.len());
         assert_eq!((width, height), (800, 450));
-        let words = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings).to_string());
-        assert_eq!(words.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
+        let values = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings).to_string());
+        assert_eq!(values.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
     }
 }

@@ -50,8 +50,8 @@ fn named_values(job: &RenderJob) -> Vec<(String, String)> {
     let mut values: Vec<_> = values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
     // By their names in scene files.
     if let Ok(serde_json::Value::Object(rules)) = serde_json::to_value(job.rules()) {
-        let words = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
-        values.extend(rules.into_iter().map(words));
+        let text = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
+        values.extend(rules.into_iter().map(text));
     }
     values
 }

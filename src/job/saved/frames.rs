@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(of(&recipe, "Weekender 1"), FrameState::Whole);
 
         let refused = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
-            FrameState::Wrong(words) => assert!(words.contains(part), "{words} should say {part}"),
+            FrameState::Wrong(reason) => assert!(reason.contains(part), "{reason} should say {part}"),
             other => panic!("{other:?}, but should say {part}"),
         };
         refused(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");

@@ -68,11 +68,11 @@ pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
     Ok(())
 }
 
-fn filter_of(words: &str) -> Result<Filter, JournalError> {
+fn filter_of(filter: &str) -> Result<Filter, JournalError> {
     let mut builder = env_filter::Builder::new();
-    match builder.try_parse(words) {
+    match builder.try_parse(filter) {
         Ok(builder) => Ok(builder.build()),
-        Err(error) => Err(JournalError::Filter { value: words.to_owned(), reason: error.to_string() }),
+        Err(error) => Err(JournalError::Filter { value: filter.to_owned(), reason: error.to_string() }),
     }
 }
 

@@ -84,13 +84,13 @@ pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
-        FileError::at(text, name, error.span().unwrap_or_default().start, in_toml_words(error))
+        FileError::at(text, name, error.span().unwrap_or_default().start, toml_message(error))
     })?;
     recipe_of(raw, name).map_err(|refusal| FileError::at(text, name, refusal.place.start, refusal.reason))
 }
 
 /// Puts a TOML error on one line, with the key's path and without Rust's terms.
-fn in_toml_words(mut error: toml::de::Error) -> String {
+fn toml_message(mut error: toml::de::Error) -> String {
     error.set_input(None);
     [
         ("unknown field", "unknown key"),
@@ -337,7 +337,7 @@ fn material_of(
         }),
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
-            let material = material.map_err(|error| format!("{what}: {}", in_toml_words(error)))?;
+            let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
             material.validate(what).map_err(|error| error.to_string())?;
             let mut name = format!("sphere-{sphere}");
             while index_of.contains_key(&name) {
