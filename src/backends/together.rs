@@ -320,7 +320,7 @@ mod tests {
 
     #[test]
     fn piece_size_follows_relative_speed() {
-        // Half of what is left, times the share of the total speed: 3 in 4 and 1 in 4.
+        // Half of what is left, times the share of the total speed: 3/4 and 1/4.
         let speeds = [Some(30.0), Some(10.0), None];
         let [fast, slow, new] = [0, 1, 2].map(|index| Pace::of(index, &speeds));
         let take = |left: Vec<Range<u64>>, pace| {
@@ -336,7 +336,7 @@ mod tests {
         // The fast member would trace six samples while the slow one traces a grain of two.
         assert_eq!(take(one(0..5), slow).0, None);
         assert_eq!(take(one(0..6), slow).0, Some(0..2));
-        // An odd sample at the end is a piece of its own.
+        // An odd last sample is its own piece.
         assert_eq!(take(one(8..9), fast), (Some(8..9), vec![]));
         assert_eq!(take(vec![], fast), (None, vec![]));
     }

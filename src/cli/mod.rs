@@ -45,7 +45,7 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// What the program is to do.
+/// What the program should do.
 #[derive(Debug)]
 pub enum Request {
     /// Print the version and, with `is_verbose`, details of the build and the machine.

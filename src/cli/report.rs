@@ -175,7 +175,7 @@ impl ReportOptions {
         if self.calibration { &CALIBRATION } else { &RACE }
     }
 
-    /// Whether backends were named; otherwise they may be missing.
+    /// Whether backends were named; the default ones may be missing.
     pub fn names_backends(&self) -> bool {
         !self.backends.is_empty()
     }

@@ -18,7 +18,7 @@ pub struct ErrorEstimate {
 /// The error estimate is doubtful if it effectively rests on fewer pixels than this.
 const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 
-/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
+/// It is doubtful only if they are also less than this share of all pixels, because small pictures have few pixels.
 const DOMINANT_SHARE: f64 = 0.2;
 
 /// A doubtful estimate must be below a target by this many of its standard deviations.

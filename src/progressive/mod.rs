@@ -38,7 +38,7 @@ use worker::{RenderCommand, Worker};
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
-/// What a render thread is asked to render.
+/// A render to start.
 pub struct RenderRequest {
     pub job: RenderJob,
     pub backend: BackendChoice,

@@ -70,8 +70,8 @@ impl Plan {
         Plan::until(Stop::default())
     }
 
-    /// The duration for which the first pass can be planned, once it is known how long a sample takes. `None` if passes
-    /// should begin short: because someone watches, or because the error is to be estimated early.
+    /// The duration to plan the first pass for, once the time per sample is known. `None` if passes should start short,
+    /// because someone watches or because the error should be estimated early.
     pub fn first_pass_target(&self) -> Option<Duration> {
         let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
         let limit = self.stop.time_limit().unwrap_or(Duration::MAX);

@@ -88,7 +88,7 @@ impl Worker {
                 return;
             }
             RenderCommand::Take(taker) => {
-                // If the receiver is gone, nobody needs the film.
+                // If the receiver is gone, nobody wants the film.
                 let _ = taker.send(self.take_film());
                 return;
             }

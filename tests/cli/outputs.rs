@@ -1,4 +1,4 @@
-//! What is written, where, and which outputs are refused.
+//! Outputs: what is written where, and which ones are refused.
 
 use super::common::{film, names, refused, refused_in, render, run, temp, text};
 use serde_json::Value;

@@ -15,7 +15,7 @@ pub const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
 pub const PICTURE: [&str; 8] =
     ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
 
-/// A render that never ends by itself and keeps its film.
+/// An endless render that keeps its film.
 pub const ENDLESS: [&str; 8] =
     ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
 

@@ -27,7 +27,7 @@ fn part_killed_at_random_ends_with_the_bits_of_one_run() {
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(500)));
-        // Every fourth one is asked to end.
+        // Every fourth run is asked to end instead of killed.
         let asked = round % 4 == 3;
         signal(&child, if asked { "TERM" } else { "KILL" });
         drop(stderr);

@@ -32,7 +32,7 @@ proptest! {
         checkpoint::save(&path, &film, &description()).unwrap();
         let file = checkpoint::load(&path).unwrap();
         prop_assert!(file.film == film && file.description == description());
-        // The same film always becomes the same bytes.
+        // The same film always gives the same bytes.
         let again = directory.path().join("again.exr");
         checkpoint::save(&again, &film, &description()).unwrap();
         prop_assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
@@ -177,7 +177,7 @@ fn damage_is_located() {
     let film = noisy_film(40, 70, 2, &[0..4]);
     checkpoint::save(&path, &film, &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
-    // Each row is a chunk: its number, the length of its bytes, and these.
+    // Each row is a chunk: its number, its length in bytes, and the bytes.
     for row in [0_u32, 17, 47, 69] {
         let chunks = (8..whole.len() - 8).filter(|place| whole[*place..place + 4] == row.to_le_bytes());
         let chunk = chunks.max().unwrap();

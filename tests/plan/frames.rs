@@ -37,7 +37,7 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     let flags = ["--turntable=7", "--fps", "12"];
     let lines = plan(at, &[&flags[..], &["--parts", "3"]].concat());
     assert_eq!(lines.lines().count(), 3, "{lines}");
-    // The same plan once more says again what it divides.
+    // Planning again repeats what it divides.
     let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "3"]].concat();
     let message = ends(at, 0, &again).1;
     assert!(message.contains("3 parts of 2 to 3 frames"), "{message}");

@@ -1,4 +1,4 @@
-//! What a merge of unfinished, damaged and foreign parts says, and what it makes of the others.
+//! Merging unfinished, damaged and foreign parts: what is reported, and what becomes of the others.
 
 use super::common::{PICTURE, damage, ends, film, part_path, plan, render_part, succeeds, whole};
 use tempfile::TempDir;

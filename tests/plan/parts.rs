@@ -49,7 +49,7 @@ fn commands_quote_directories_for_the_shell() {
     succeeds(at, &["merge", directory, "--out", "merged.exr"]);
     assert!(film(&at.join("merged.exr")) == whole(at, "0..4", &[]));
     std::fs::remove_file(part_path(at, directory, 1)).unwrap();
-    // The command for what is missing is ready for a shell, too.
+    // The command for what is missing is quoted for a shell, too.
     let (message, _) = ends(at, 1, &["merge", directory, "--check"]);
     let line = message.lines().last().unwrap();
     let shell = std::process::Command::new("sh").arg("-c").arg(line).current_dir(at).output().unwrap();
@@ -92,7 +92,7 @@ fn part_continues_from_its_checkpoint_unless_whole() {
         assert_eq!(message.contains("part 1 is whole"), target == "-");
     }
     assert_eq!(modified(), before);
-    // Only the unfinished one is asked for.
+    // The remedy lists only the unfinished part.
     let (message, _) = ends(at, 1, &["merge", "p", "--check"]);
     assert!(message.contains("part 0: part-0.exr is missing") && message.contains("--array=0 "), "{message}");
     assert!(message.contains("--part 0") && !message.contains("--part 1"), "{message}");

@@ -7,7 +7,7 @@ use std::process::Command;
 use tempfile::TempDir;
 
 #[cfg(unix)]
-/// A program whose name a shell and make take apart if it is not quoted.
+/// A program whose name a shell and make would split if it were not quoted.
 fn awkward_program(at: &Path) -> String {
     let path = at.join("it's $HOME's weekender");
     std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_weekender"), &path).unwrap();
@@ -55,7 +55,7 @@ fn make_renders_and_merges() {
     let made = make();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
-    // What is lost is rendered again, and only that.
+    // Only what was lost is rendered again.
     fs::remove_file(part_path(at, "a b", 1)).unwrap();
     let again = make();
     let message = String::from_utf8_lossy(&again.stdout);

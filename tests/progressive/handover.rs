@@ -217,7 +217,7 @@ fn film_is_shown_on_request_and_again_only_in_another_view() {
     let view = View::Luminance([-8.0, 4.0]);
     progressive.set_view(view.clone());
     assert_eq!(picture(&progressive, 64).rgb8, view.resolve(&expected(64), Transfer::Gamma2, None));
-    // A render that starts anew keeps the view.
+    // A restarted render keeps the view.
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
     progressive.wait_until_over();
     let picture = picture(&progressive, 4);
@@ -225,7 +225,7 @@ fn film_is_shown_on_request_and_again_only_in_another_view() {
     assert_eq!(picture.rgb8, view.resolve(&expected(4), Transfer::Gamma2, None));
 }
 
-/// The first picture is worth the wait for what the device holds.
+/// The first picture is worth waiting for the device's samples.
 #[test]
 fn the_first_picture_is_collected() {
     let mut progressive = idle(|choice| Box::new(Holding::new(Fake::new(choice.name()), 1000, |_, _| ())));

@@ -364,7 +364,7 @@ const PAUSE: Ask = Progressive::pause;
 const RESUME: Ask = Progressive::resume;
 const STOP: Ask = Progressive::stop;
 
-/// Sends these requests; the phase and the samples must stay as they are.
+/// Sends these requests; phase and samples must not change.
 fn changes_nothing(progressive: &Progressive, requests: &[Ask]) {
     let before = settled(progressive);
     for (number, ask) in requests.iter().enumerate() {

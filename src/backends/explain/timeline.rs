@@ -33,7 +33,7 @@ impl Timeline {
         self.len() == 0
     }
 
-    /// The share of lanes at work, `0..=1`, over all steps.
+    /// Share of lanes that trace, `0..=1`, over all steps.
     pub fn share_at_work(&self) -> f64 {
         let all = (self.len() * self.lanes.len()).max(1);
         let waiting = self.lanes.iter().flatten().filter(|activity| **activity == Activity::Waits).count();

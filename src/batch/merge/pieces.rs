@@ -30,7 +30,7 @@ pub(super) struct Piece {
     pub state: State,
     /// The file as last seen.
     seen: Option<Stamp>,
-    /// Whether it is in the sum for good.
+    /// Whether its final version is in the sum.
     pub is_merged: bool,
 }
 
@@ -107,7 +107,7 @@ impl<'a> Pieces<'a> {
         self.lacking().map(Piece::line)
     }
 
-    /// How to render what is missing: a heading, and the commands, one a line.
+    /// How to render what is missing: a heading, then one command per line.
     pub fn remedy(&self, program: &str) -> String {
         let mut parts: Vec<usize> = self.lacking().map(|piece| piece.part).collect();
         parts.dedup();

@@ -49,7 +49,7 @@ pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, Outp
 /// As [`read_picture`], from a reader of `length` bytes.
 ///
 /// # Errors
-/// What is wrong with the file, or the reader's error.
+/// A description of what is wrong with the file, or the reader's error.
 pub fn decode_picture(
     mut reader: impl BufRead + Seek,
     length: u64,

@@ -47,7 +47,7 @@ pub struct Manifest {
     pub result: String,
 }
 
-/// What is divided, and its parts.
+/// The work and its parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Work {

@@ -27,7 +27,7 @@ impl SamplerKind {
     }
 }
 
-/// The numbers of a job other than those of scene and camera.
+/// The numbers of a job besides those of scene and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderSettings {
     /// Picture width in pixels, `1..=16384`.

@@ -1,4 +1,4 @@
-//! Tests of what is opened, and as what.
+//! Tests of opening files of each kind.
 
 use super::*;
 use crate::job::output::write_image;

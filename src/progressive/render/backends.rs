@@ -9,7 +9,7 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A renderer and what it was made from.
+/// A renderer and the choice it was made from.
 pub type Backend = (BackendChoice, Box<dyn Renderer>);
 
 /// Runs `work`, turning a panic into an error of `backend`. The film is then unchanged, as renderers promise.
