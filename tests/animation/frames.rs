@@ -117,7 +117,7 @@ fn failed_run_reports_where_and_keeps_its_frames() {
     let directory = temp();
     fs::create_dir_all(directory.path().join("d/frame-0002.png")).unwrap();
     let flags = ["--batch", "--size", "24x14", "--samples", "4", "--turntable=4", "--out", "d"];
-    // The second run renders none, but the frames of the first are there.
+    // The second run renders none, but keeps the frames of the first.
     for _ in 0..2 {
         let output = weekender(directory.path(), &flags).output().unwrap();
         let message = String::from_utf8_lossy(&output.stderr);

@@ -106,10 +106,10 @@ fn signals_wait_for_file_writes_and_are_answered() {
     let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
     let mut child = batch(at, "on", &flags).spawn().unwrap();
     let stderr = BufReader::new(child.stderr.take().unwrap());
-    let (said, lines) = std::sync::mpsc::channel();
+    let (sender, lines) = std::sync::mpsc::channel();
     let listener = std::thread::spawn(move || {
         for line in stderr.lines().map_while(Result::ok) {
-            said.send(line).unwrap();
+            sender.send(line).unwrap();
         }
     });
     let hear = |part: &str| {

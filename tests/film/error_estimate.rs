@@ -39,8 +39,8 @@ fn stated_uncertainty_matches_the_spread() {
     let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
     let middle = mean(&|k| errors[k].rmse);
     let spread = mean(&|k| (errors[k].rmse - middle).powi(2)).sqrt();
-    let said = mean(&|k| errors[k].rmse_deviation);
-    assert!((said / spread - 1.0).abs() < 0.15, "said {said}, was {spread}");
+    let stated = mean(&|k| errors[k].rmse_deviation);
+    assert!((stated / spread - 1.0).abs() < 0.15, "stated {stated}, was {spread}");
     assert_eq!(Film::new(4, 3, 2).error(), None);
 }
 

@@ -1,4 +1,4 @@
-//! A renderer that can be told to fail.
+//! A renderer that fails on request.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -62,9 +62,9 @@ fn a_panic_while_preparing_tracing_or_looking_ends_nothing() {
     progressive.inspect(|_| unreachable!("a slip of the onlooker"));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    let said = status.messages.join("; ");
+    let messages = status.messages.join("; ");
     for slip in ["no such backend", "a slip of the tracer", "a slip of the onlooker"] {
-        assert!(said.contains(slip), "{said}");
+        assert!(messages.contains(slip), "{messages}");
     }
     assert_eq!(progressive.finish(), Some(expected(2000)));
 }
@@ -88,17 +88,17 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
         let (traced, is_traced) = channel();
         // The new backend becomes ready once the old one holds samples that it will lose: those after the first
         // collection.
-        let (go_on, is_let_go_on) = channel();
+        let (release, is_released) = channel();
         let progressive = started_with(CPU, short_passes.clone(), move |choice| {
             let fake = Fake::new(choice.name());
             if *choice == CPU {
                 let traced = traced.clone();
-                // The test may have heard enough.
+                // The test may have stopped listening.
                 let tell = move |_: &_, good_collections| _ = traced.send(good_collections);
                 return Box::new(Holding::new(fake, u32::from(is_switch), tell));
             }
             if is_switch {
-                is_let_go_on.recv_timeout(PATIENCE).unwrap();
+                is_released.recv_timeout(PATIENCE).unwrap();
             }
             Box::new(fake)
         });
@@ -106,7 +106,7 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
         if is_switch {
             progressive.switch_backend(other_cpu());
             while is_traced.recv_timeout(PATIENCE).unwrap() != 0 {}
-            go_on.send(()).unwrap();
+            release.send(()).unwrap();
             wait_until(&progressive, |status| !status.messages.is_empty());
         } else {
             progressive.pause();
@@ -115,8 +115,8 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
         }
         let samples = progressive.status().samples_per_pixel;
         wait_for(&progressive, samples + 64);
-        let said = stopped(progressive).messages;
-        assert!(said.len() == 1 && said[0].starts_with("cpu failed: pulled out"), "{said:?}");
+        let messages = stopped(progressive).messages;
+        assert!(messages.len() == 1 && messages[0].starts_with("cpu failed: pulled out"), "{messages:?}");
     }
 }
 
@@ -149,8 +149,8 @@ fn panicked_pending_backend_can_be_retried() {
     wait_for(&progressive, 2);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| !status.messages.is_empty());
-    let said = progressive.status().messages;
-    assert_eq!(said, ["reference failed: its preparation ended by a panic; the cpu continues"]);
+    let messages = progressive.status().messages;
+    assert_eq!(messages, ["reference failed: its preparation ended by a panic; the cpu continues"]);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| status.contributions.len() == 2);
     stopped(progressive);
@@ -196,14 +196,17 @@ fn a_listener_that_panics_does_not_end_the_render() {
     let held = progressive.status().samples_per_pixel;
     progressive.resume();
     wait_for(&progressive, held + 16);
-    let said = stopped(progressive).messages.join("; ");
-    assert!(said.contains("a slip of the listener") && said.contains("continues the same picture"), "{said}");
+    let messages = stopped(progressive).messages.join("; ");
+    assert!(
+        messages.contains("a slip of the listener") && messages.contains("continues the same picture"),
+        "{messages}"
+    );
 
     let progressive = started(CPU, Plan::samples(8));
     progressive.wait_until_over();
     listen_and_panic(&progressive, 1);
     progressive.ask_for_picture();
-    // The next command brings the news.
+    // The next command delivers the message.
     progressive.inspect(|_| ());
     wait_until(&progressive, |status| !status.messages.is_empty());
     assert_eq!(progressive.finish(), Some(expected(8)));

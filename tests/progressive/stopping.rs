@@ -219,7 +219,7 @@ fn stop_during_a_pass_keeps_the_earlier_film() {
         Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) })
     });
     wait_for(&progressive, 2);
-    // A render that goes on can be stopped again.
+    // A resumed render can be stopped again.
     for _ in 0..2 {
         progressive.stop();
         let status = progressive.wait_until_over();

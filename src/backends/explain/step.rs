@@ -256,7 +256,7 @@ mod tests {
         }
     }
 
-    fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
+    fn explained(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
         let job = Stage::find(stage).unwrap().recipe().job().unwrap();
         let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);
         Step { origin, direction, throughput, hit: Some(top(is_outside)), event }.sentence(&job)
@@ -268,11 +268,11 @@ mod tests {
         let at_30 = Some(DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0));
         let mirror = Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 };
         assert!(
-            said("metal", at_60, true, Event::Scattered(mirror))
+            explained("metal", at_60, true, Event::Scattered(mirror))
                 .starts_with("Mirror: the ray arrives at 60° ")
         );
         // Rounding may make a unit vector slightly longer.
-        let along = said("metal", 1.000_001 * DVec3::NEG_Y, true, Event::Scattered(mirror));
+        let along = explained("metal", 1.000_001 * DVec3::NEG_Y, true, Event::Scattered(mirror));
         assert!(along.contains(" at 0° "), "{along}");
         for (stage, is_outside, refracted, refracts, parts) in [
             (
@@ -289,7 +289,7 @@ mod tests {
         ] {
             let (mirrored, reflectance, coin) = (DVec3::Y, 0.125, 0.75);
             let lobe = Lobe::Glass { mirrored, refracted, reflectance, coin, refracts };
-            let sentence = said(stage, at_60, is_outside, Event::Scattered(lobe));
+            let sentence = explained(stage, at_60, is_outside, Event::Scattered(lobe));
             assert!(parts.iter().all(|part| sentence.contains(part)), "{sentence}");
         }
     }

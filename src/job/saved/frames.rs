@@ -39,13 +39,13 @@ impl FrameState {
                 _ => wrong("of another picture".to_owned()),
             };
         }
-        let said = |key| found.get(key).unwrap_or("unknown");
+        let entry = |key| found.get(key).unwrap_or("unknown");
         let samples = recipe.samples_per_pixel.to_string();
-        if said(key::SAMPLES) != samples {
-            return wrong(format!("of {} samples per pixel, not {samples}", said(key::SAMPLES)));
+        if entry(key::SAMPLES) != samples {
+            return wrong(format!("of {} samples per pixel, not {samples}", entry(key::SAMPLES)));
         }
-        if said(key::SOFTWARE) != software {
-            return wrong(format!("from {}, not {software}", said(key::SOFTWARE)));
+        if entry(key::SOFTWARE) != software {
+            return wrong(format!("from {}, not {software}", entry(key::SOFTWARE)));
         }
         match check_frame(path, [recipe.settings.width, recipe.settings.height]) {
             Ok(()) => FrameState::Whole,

@@ -26,8 +26,9 @@ fn written(directory: &TempDir, name: &str, entries: &[(&str, &str)]) -> PathBuf
 #[test]
 fn film_opens_with_samples_and_description() {
     let directory = tempfile::tempdir().unwrap();
-    let said = [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
-    let path = written(&directory, "a.exr", &said);
+    let entries =
+        [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
+    let path = written(&directory, "a.exr", &entries);
     let opened = open(&path).unwrap();
     assert_eq!((opened.recipe.name.as_str(), opened.stage.map(|stage| stage.id)), ("balls", Some("metal")));
     let Content::Film(read) = opened.content else { panic!("no film") };
@@ -43,10 +44,10 @@ fn film_opens_with_samples_and_description() {
 #[test]
 fn picture_has_samples_and_is_named_after_its_file() {
     let directory = tempfile::tempdir().unwrap();
-    for (said, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
-        let path = written(&directory, "plain.png", &[(key::SAMPLES, said)]);
+    for (entry, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
+        let path = written(&directory, "plain.png", &[(key::SAMPLES, entry)]);
         let opened = open(&path).unwrap();
-        let Content::Picture { samples: found } = opened.content else { panic!("{said}") };
+        let Content::Picture { samples: found } = opened.content else { panic!("{entry}") };
         assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
         assert!(matches!(open_film(&path), Err(OpenError::Film(CheckpointError::NotExr { .. }))));
     }
