@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cancelled_layer_says_so_and_glass_is_white() {
+    fn layers_can_be_cancelled_and_glass_is_white() {
         let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
         recipe.settings.max_depth = 1;
         assert_eq!(image(Layer::Albedo, &recipe, 1).mean([8, 9]), [1.0; 3]);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_hit_a_layer_shows_the_sky() {
+    fn layers_show_the_sky_on_a_miss() {
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
         let sky = Sky { bottom: DVec3::X, top: DVec3::Y };
         recipe.scene = Arc::new(Scene { sky, ..Scene::default() });

@@ -32,8 +32,8 @@ pub enum BackendChoice {
 }
 
 impl BackendChoice {
-    /// The best choice for this machine: a GPU if there is one, otherwise the widest CPU kernel. If any option of the
-    /// CPU is set, the CPU.
+    /// The best choice for this machine: a GPU if there is one, otherwise the widest CPU kernel; always the CPU if any
+    /// CPU option is set.
     pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
         let is_gpu = cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit);
         if is_gpu { BackendChoice::Gpu(gpu) } else { BackendChoice::Cpu(cpu) }
@@ -126,7 +126,7 @@ pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError>
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
         BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),
         BackendChoice::Both(cpu, gpu) => {
-            // The GPU first, because it may not be available.
+            // The GPU first, because it may be unavailable.
             let gpu = GpuRenderer::new(gpu.clone())?;
             Box::new(Together::new(vec![Box::new(CpuRenderer::new(*cpu)?), Box::new(gpu)]))
         }
@@ -136,7 +136,7 @@ pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError>
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BackendListing {
-    /// The `--device` that uses it.
+    /// The `--device` value that selects it.
     pub device: &'static str,
     /// Instruction level or adapter, with its options.
     pub about: String,
@@ -174,8 +174,8 @@ fn listing(levels: Vec<Isa>, adapters: &[AdapterInfo]) -> Vec<BackendListing> {
 /// How long to wait for a backend to close.
 const CLOSING_PATIENCE: Duration = Duration::from_secs(1);
 
-/// Closes a failed backend on its own thread, because a driver that hangs would block the caller. Other backends are
-/// waited for, since a driver may crash if the program ends while it is still working.
+/// Closes a failed backend on its own thread, because a hanging driver would block the caller. Waits for it briefly,
+/// since a driver may crash if the program ends while it is still working.
 pub fn close<T: Send + 'static>(backend: T) {
     let (closed, is_closed) = mpsc::channel();
     let work = move || {
@@ -183,7 +183,7 @@ pub fn close<T: Send + 'static>(backend: T) {
         // The caller may have stopped waiting.
         let _ = closed.send(());
     };
-    // If no thread can be started, it is closed here.
+    // If no thread starts, it is closed here.
     if std::thread::Builder::new().name("close".to_owned()).spawn(work).is_ok() {
         let _ = is_closed.recv_timeout(CLOSING_PATIENCE);
     }
@@ -255,7 +255,7 @@ mod tests {
         while let Some(next) = BackendChoice::fallback(&failed) {
             failed.push(next);
         }
-        // The plainest code is what has failed.
+        // The plainest code is what failed.
         let best = CpuOptions { isa: None, lanes: None, ..given };
         assert_eq!(failed[1..], [BackendChoice::Cpu(best), BackendChoice::Reference { threads: Some(3) }]);
         // Of several, the latest options count; those of other backends have none.

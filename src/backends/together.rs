@@ -1,4 +1,4 @@
-//! Several renderers at work on one film. Each takes more samples when it has finished, so faster ones take more.
+//! Several renderers working on one film. Each takes more samples when it finishes, so faster ones take more.
 
 use super::close;
 use crate::film::{Film, FilmError};
@@ -13,8 +13,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The next piece of a member is this fraction of the remaining samples, times its share of the total speed. So the
-/// members finish together without asking often.
+/// A member's next piece is this fraction of the remaining samples times its share of the total speed, so that members
+/// finish together without asking often.
 const PIECE_SHARE: f64 = 0.5;
 
 struct Member {
@@ -24,11 +24,11 @@ struct Member {
     added: u64,
 }
 
-/// Renders with all members. If one fails, it is left out from then on and the others take its samples.
+/// Renders with all members. If one fails, the others take over its samples.
 pub struct Together {
     members: Vec<Member>,
     messages: Vec<String>,
-    /// What failed members had added to the last range.
+    /// What failed members added to the last range.
     departed: Vec<(BackendInfo, u64)>,
 }
 
@@ -148,7 +148,7 @@ impl Renderer for Together {
         self.members.iter().map(|member| member.renderer.kernel()).collect::<Vec<_>>().join(" | ")
     }
 
-    /// Left out is what any member leaves out.
+    /// Lists as left out what any member leaves out.
     fn kernel_contents(&self) -> KernelContents {
         let mut all = KernelContents::default();
         for member in &self.members {
@@ -319,8 +319,8 @@ mod tests {
     }
 
     #[test]
-    fn a_piece_is_the_share_of_all_that_is_left_from_the_last_range() {
-        // Half of what is left, times the share of the total speed: 3 in 4 and 1 in 4.
+    fn piece_size_follows_relative_speed() {
+        // Half of what is left, times the share of the total speed: 3/4 and 1/4.
         let speeds = [Some(30.0), Some(10.0), None];
         let [fast, slow, new] = [0, 1, 2].map(|index| Pace::of(index, &speeds));
         let take = |left: Vec<Range<u64>>, pace| {
@@ -336,7 +336,7 @@ mod tests {
         // The fast member would trace six samples while the slow one traces a grain of two.
         assert_eq!(take(one(0..5), slow).0, None);
         assert_eq!(take(one(0..6), slow).0, Some(0..2));
-        // An odd sample at the end is a piece of its own.
+        // An odd last sample is its own piece.
         assert_eq!(take(one(8..9), fast), (Some(8..9), vec![]));
         assert_eq!(take(vec![], fast), (None, vec![]));
     }

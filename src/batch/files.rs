@@ -1,4 +1,4 @@
-//! The films and the picture of a render: locked and looked at before it begins, and written at its end.
+//! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
 use crate::cli::RenderOptions;
 use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
@@ -15,7 +15,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A film file that the render writes, and no other run meanwhile.
+/// A film file that the render writes while no other run may.
 #[derive(Clone)]
 pub(super) struct FilmPlace {
     pub path: PathBuf,
@@ -57,7 +57,7 @@ pub(super) fn lock(render: &RenderOptions) -> Result<Vec<FilmPlace>, Failure> {
     paths.map(place).collect()
 }
 
-/// Looks at the films that a render would replace. Returns warnings for the user.
+/// Checks the films that a render would replace. Returns warnings for the user.
 ///
 /// # Errors
 /// [`Failure::Input`] if `--checkpoint` is a file that the render does not continue.
@@ -89,14 +89,14 @@ pub(super) fn check(
         if let Replaced::Same(samples) = &found
             && is_kept(samples)
         {
-            // A render that is stopped early must not replace it either.
+            // A render that stops early must not replace it either.
             place.locked(|file| file.holds(samples));
         }
     }
     Ok(warnings)
 }
 
-/// The files that were written, and why others were not.
+/// Which files were written, and why others were not.
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub files: Vec<PathBuf>,
@@ -105,9 +105,9 @@ pub(super) struct Written {
     pub failures: Vec<String>,
 }
 
-/// Writes the films and the picture, calling `say` before each. If one cannot be written, the others still are. If no
-/// film could be written, it is saved in some other place, since its samples may have taken hours. `seconds_before`
-/// is the tracing time of the film's earlier samples, if known.
+/// Writes the films and the picture, calling `say` before each. A failed write does not stop the others. If no film
+/// could be written, it is saved elsewhere, since its samples may have taken hours. `seconds_before` is the tracing
+/// time of the film's earlier samples, if known.
 pub(super) fn write(
     render: &RenderOptions,
     places: &[FilmPlace],
@@ -158,8 +158,8 @@ pub(super) fn write(
     written
 }
 
-/// Does `write`, which writes `path`. A panic there is a reason like others, because the samples can still be written to
-/// another place or later.
+/// Runs `write`, which writes `path`. A panic counts as a failure, because the samples can still be written elsewhere
+/// or later.
 fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(write)).unwrap_or_else(|payload| {
         let reason = panic_text(payload.as_ref());
@@ -188,7 +188,6 @@ fn directories(render: &RenderOptions) -> Vec<PathBuf> {
     files.into_iter().flatten().map(directory).collect()
 }
 
-/// Whether the name is that of a film.
 pub(super) fn is_film(path: &Path) -> bool {
     OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr)
 }
@@ -217,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_cannot_be_written_is_rescued_and_all_failures_are_named() {
+    fn unwritable_film_is_rescued_and_failures_are_named() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["gone/picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
         let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
@@ -241,7 +240,7 @@ mod tests {
         let [path] = written.files.as_slice() else { panic!("{written:?}") };
         assert_eq!(path.parent(), Some(directory.path()));
         assert!(checkpoint::load(path).unwrap().film == film);
-        // With a film that is written, none is rescued.
+        // No film is rescued if one is written.
         let flags = ["--out", &at("picture.png"), "--checkpoint", &at("film.exr")];
         let (_, written, failures) = write_two_samples(&options(&flags));
         assert_eq!(written.files, [PathBuf::from(at("film.exr"))]);
@@ -249,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn the_film_of_a_part_is_to_be_moved_to_its_place() {
+    fn rescued_part_film_can_be_moved_into_place() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("missing/part-0.exr");
         let render = options(&["--out", film.to_str().unwrap()]);
@@ -259,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_another_run_writes_is_locked() {
+    fn film_of_another_run_is_locked() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
         let run = |flags: &[&str]| lock(&options(flags));
@@ -275,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_the_render_continues_or_covers_is_not_replaced_by_a_shorter_one() {
+    fn continued_film_is_never_replaced_by_a_shorter_one() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] =
             ["a.png", "film.exr"].map(|name| directory.path().join(name).to_str().unwrap().to_owned());
@@ -304,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_that_would_be_lost_are_warned_of() {
+    fn loss_of_samples_is_warned_of() {
         let directory = tempfile::tempdir().unwrap();
         let film = directory.path().join("k.exr").to_str().unwrap().to_owned();
         put(Path::new(&film), &options(&[]), 0..32);

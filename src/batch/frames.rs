@@ -1,5 +1,5 @@
-//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and one that is there and whole is
-//! kept, so an interrupted run is continued by the same command.
+//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
+//! the same command continues an interrupted run.
 
 use super::progress::LINE_INTERVAL;
 use super::studio::{Event, Studio};
@@ -24,8 +24,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Renders the frames that are not there yet, and makes an animated PNG of all if that is asked for. After a signal, the
-/// frame in progress is dropped.
+/// Renders the missing frames, and makes an animated PNG of all if requested. A signal drops the frame in progress.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
@@ -123,7 +122,7 @@ impl<'a> Run<'a> {
         recipe: &Recipe,
         path: &Path,
     ) -> anyhow::Result<bool> {
-        // The scene is shared by all frames, so it is validated and prepared once, as far as the camera allows.
+        // All frames share the scene, so it is validated and prepared once if the camera allows.
         let job = self.options.job.seen_by(recipe.camera, *self.options.job.settings())?;
         let plan = Studio::plan(recipe.samples_per_pixel);
         let (status, film) = studio.render(job, plan, None, |event| match event {
@@ -138,8 +137,8 @@ impl<'a> Run<'a> {
             Event::Status(_, status) => {
                 let (done, count) = (self.done(), self.options.frames.len() as u32);
                 let took = (self.rendering, self.rendered);
-                let words = || so_far(frame, status.samples_per_pixel, [done, count], took);
-                self.display.update(u64::from(done), words);
+                let progress = || so_far(frame, status.samples_per_pixel, [done, count], took);
+                self.display.update(u64::from(done), progress);
             }
         });
         if let Phase::Failed(reason) = &status.phase {
@@ -169,7 +168,6 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Makes the animated PNG.
     fn assemble(&mut self) -> anyhow::Result<()> {
         let FramesOptions { recipe, frames, names, command, .. } = self.options;
         let Some((path, rate)) = &self.options.animation else { return Ok(()) };
@@ -183,7 +181,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// The first and the last file that is done. Frames are done in their order.
+    /// The first and the last finished file. Frames finish in order.
     fn files(&self) -> Option<[PathBuf; 2]> {
         let FramesOptions { frames, names, .. } = self.options;
         let last = frames.start + self.done().checked_sub(1)?;
@@ -248,18 +246,18 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The failure of a frame before which `done` frames are whole.
+/// The failure of a frame after `done` complete ones.
 fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
     if done == 0 {
         return Failure::Run(error);
     }
     let done = counted(u64::from(done), "frame");
-    let words = format!("frame {frame} failed; {done} before it stay, and the same command continues");
-    Failure::BrokeOff(error.context(words))
+    let context = format!("frame {frame} failed; {done} before it stay, and the same command continues");
+    Failure::BrokeOff(error.context(context))
 }
 
-/// How far the animation is: the frame in work and its samples, frames done and in total, and how long rendering took for
-/// how many frames.
+/// The progress of the animation: current frame and its samples, frames done and in total, and how long rendering took
+/// for how many frames.
 fn so_far(
     frame: u32,
     samples: u64,
@@ -277,17 +275,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_time_left_is_that_of_the_frames_that_are_not_done() {
-        let words = |took| so_far(3, 4, [2, 6], took);
-        assert_eq!(words((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
-        assert_eq!(words((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
+    fn time_left_covers_the_remaining_frames() {
+        let progress = |took| so_far(3, 4, [2, 6], took);
+        assert_eq!(progress((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
+        assert_eq!(progress((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 
     #[test]
-    fn a_run_breaks_off_only_if_there_are_frames_that_stay() {
+    fn run_breaks_off_only_with_finished_frames() {
         assert!(matches!(broken_off(anyhow!("no space"), 7, 0), Failure::Run(_)));
         let Failure::BrokeOff(error) = broken_off(anyhow!("no space"), 7, 1) else { panic!() };
-        let words = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
-        assert_eq!(format!("{error:#}"), words);
+        let expected = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
+        assert_eq!(format!("{error:#}"), expected);
     }
 }

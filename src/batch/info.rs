@@ -62,7 +62,7 @@ struct Info {
     parts: Option<usize>,
     command: Option<String>,
     #[serde(skip)]
-    error_words: Option<String>,
+    error_text: Option<String>,
 }
 
 impl Info {
@@ -140,13 +140,13 @@ impl Info {
         }
     }
 
-    /// Adds what a film says, and the error that its sums tell, if there is memory for them.
+    /// Adds what a film says and, if there is memory for its sums, its error.
     fn with_film(self, path: &Path) -> anyhow::Result<Info> {
         let head = match checkpoint::read_head(path) {
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
             head => head?,
         };
-        let (error, words) = match checkpoint::load(path) {
+        let (error, error_text) = match checkpoint::load(path) {
             Ok(read) => match read.film.error() {
                 Some(error) => (Some(error), error.words()),
                 None => (None, format!("not estimated: {}", read.film.why_no_error())),
@@ -164,25 +164,25 @@ impl Info {
             sample_version: Some(checkpoint::SAMPLE_VERSION),
             rmse_estimate: error.map(|error| error.rmse),
             rmse_deviation: error.map(|error| error.rmse_deviation),
-            error_words: Some(words),
+            error_text: Some(error_text),
             ..self
         })
     }
 
-    /// The samples, with all that is said about them.
-    fn samples_words(&self) -> Option<String> {
+    /// The samples, with everything said about them.
+    fn samples_text(&self) -> Option<String> {
         let version = self.sample_version.map(|version| format!("version {version}"));
         let rejected = self.rejected_samples.map(|count| counted(count, "rejected sample"));
         let rate =
             self.frames_per_second.map(|rate| format!("{} frames per second", (rate * 1e5).round() / 1e5));
-        let words = [
+        let text = [
             Some(format!("{} per pixel", self.samples_per_pixel?)),
             self.sample_ranges.as_ref().map(|ranges| format!(" ({ranges})")),
             self.frames.as_ref().map(|frames| format!(" of the frames {frames}")),
             self.parts.map(|parts| format!(" in {}", counted(parts as u64, "part"))),
         ];
-        let words: String = words.into_iter().flatten().collect();
-        Some([Some(words), rate, version, rejected].into_iter().flatten().collect::<Vec<_>>().join(", "))
+        let text: String = text.into_iter().flatten().collect();
+        Some([Some(text), rate, version, rejected].into_iter().flatten().collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -194,8 +194,8 @@ impl fmt::Display for Info {
             (*kind, Some(format!("{}, {}{version}", self.file.shown(), memory::words(self.bytes)))),
             ("scene", Some(format!("{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"))),
             ("stage", self.stage.clone()),
-            ("samples", self.samples_words()),
-            ("error", self.error_words.clone()),
+            ("samples", self.samples_text()),
+            ("error", self.error_text.clone()),
             ("time", self.trace_seconds.map(|time| format!("{} of tracing", seconds(time)))),
             ("backend", self.backend.clone()),
             ("program", self.program.clone()),
@@ -215,7 +215,7 @@ mod tests {
     use crate::job::output::{write_animation, write_image};
 
     #[test]
-    fn an_animated_png_has_frames_and_a_rate_and_a_still_has_none() {
+    fn animated_png_has_frames_and_a_rate() {
         let directory = tempfile::tempdir().unwrap();
         let mut recipe = Recipe::find("three-spheres").unwrap();
         (recipe.settings.width, recipe.settings.height) = (4, 3);

@@ -9,15 +9,15 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::thread::Builder;
 use std::time::Instant;
 
-/// Has the film written at intervals, from a copy and by a thread of its own. If there is no memory for that, the tracer
-/// waits while it is written.
+/// Has the film written at intervals, from a copy on its own thread. Without memory for a copy, the tracer waits while
+/// it is written.
 pub(super) struct Keeper {
     writer: Arc<Writer>,
-    /// When the last writing ended.
+    /// When the last write ended.
     last: Instant,
-    /// Samples per pixel in the last film that was to be written.
+    /// Samples per pixel in the film last sent for writing.
     asked: u64,
-    /// The outcome of a writing under way: samples per pixel, and a note for the user; or why it failed.
+    /// Outcome of the write in progress: samples per pixel and a note for the user, or why it failed.
     pending: Option<Receiver<Outcome>>,
     /// Samples per pixel in the file.
     kept: Option<u64>,
@@ -54,7 +54,7 @@ impl Keeper {
         Keeper { writer, last: Instant::now(), asked: held_before, pending: None, kept: None }
     }
 
-    /// Has the film written if it is time. Returns a warning about the last writing, if there is one.
+    /// Starts a write if it is time. Returns a warning about the last one, if there is one.
     pub fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let outcome = self.pending.as_ref().map(Receiver::try_recv);
         let warning = match outcome {
@@ -101,7 +101,7 @@ impl Keeper {
                 note
             }
             Err(reason) => {
-                // Trying again makes sense even without new samples.
+                // Retry even without new samples.
                 self.asked = 0;
                 Some(format!("{reason}; rendering continues, and writing will be tried again"))
             }
@@ -119,7 +119,7 @@ mod tests {
     use std::time::Duration;
 
     #[test]
-    fn the_film_is_written_while_it_is_rendered_and_a_failed_write_is_tried_again() {
+    fn failed_checkpoint_writes_are_retried() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("kept/film.exr");
         let flags = ["--checkpoint", path.to_str().unwrap(), "--every", "0.1s", "--samples", "4294967296"];

@@ -63,7 +63,7 @@ fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<Exit
     let (mut failure, mut printed) = (None, Ok(()));
     for picture in pictures {
         let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
-        // The pictures are rendered even if the figures cannot be printed.
+        // Render the pictures even if the figures cannot be printed.
         printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
         summaries.push(summary.json());
         failure = outcome.err();
@@ -87,7 +87,7 @@ fn write_figures(options: &BatchOptions, mut summaries: Vec<serde_json::Value>) 
     write_json(&Envelope::of(content), target)
 }
 
-/// The end of a run. `figures` is the outcome of printing and writing its figures.
+/// The result of a run. `figures` is the outcome of printing and writing its figures.
 fn ended(
     failure: Option<Failure>,
     figures: anyhow::Result<()>,
@@ -115,7 +115,7 @@ pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Checks for everything that could otherwise fail after rendering.
+/// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         create_directory(directory)?;
@@ -134,9 +134,9 @@ fn json_file(target: Option<&JsonTarget>) -> Option<&std::path::PathBuf> {
 }
 
 fn create_directory(directory: &Path) -> Result<(), Failure> {
-    let words = || format!("cannot create the directory {}; choose another with --out", directory.shown());
+    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
     let created = if directory.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(directory) };
-    created.with_context(words).map_err(Failure::Input)
+    created.with_context(context).map_err(Failure::Input)
 }
 
 /// Prints the scenes, stages and devices to choose from.
@@ -168,13 +168,13 @@ mod tests {
 
     /// The options of a batch render of 4x3 pixels with these `flags`.
     pub(super) fn batch(flags: &[&str]) -> BatchOptions {
-        let words = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
-        let words = words.into_iter().chain(flags.iter().copied());
-        let Request::Batch(options) = parse(words.map(Into::into)).unwrap() else { panic!("{flags:?}") };
+        let arguments = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
+        let arguments = arguments.into_iter().chain(flags.iter().copied());
+        let Request::Batch(options) = parse(arguments.map(Into::into)).unwrap() else { panic!("{flags:?}") };
         *options
     }
 
-    /// Those of its picture.
+    /// The options of its picture.
     pub(super) fn options(flags: &[&str]) -> RenderOptions {
         batch(flags).renders.remove(0)
     }

@@ -1,5 +1,5 @@
-//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the part's
-//! last checkpoint or from the frames that are there, and ends at once if the part is whole.
+//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the
+//! part's last checkpoint or the existing frames, and ends at once if the part is complete.
 
 use super::picture::Picture;
 use super::summary::Summary;
@@ -90,8 +90,8 @@ fn render_samples(
     let found = find(&path, plan, part)?;
     match found {
         Some(found) if part.missing(found.film.samples()) == 0 => {
-            let words = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
-            print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
+            let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
+            print_beside(batch.json.as_ref(), &text).map_err(Failure::Run)?;
             let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found).json());
             write_figures(&batch, summaries.collect()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
@@ -103,7 +103,7 @@ fn render_samples(
     }
 }
 
-/// The figures of a part of which nothing was left to render.
+/// Figures of a part with nothing left to render.
 fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary<'a> {
     let film = &found.film;
     let status = Status {
@@ -117,7 +117,7 @@ fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary
     Summary { render, samples, status, files: vec![render.out.clone()], writing: Duration::ZERO }
 }
 
-/// The film of the part, if there is one to continue. A damaged one is put aside.
+/// The part's film, if there is one to continue. A damaged one is moved aside.
 fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(None);
@@ -149,8 +149,8 @@ fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Fail
 fn put_aside(path: &Path, damaged: &CheckpointError) -> anyhow::Result<()> {
     let mut aside = path.as_os_str().to_owned();
     aside.push(".damaged");
-    let words = || format!("cannot rename {} to {}", path.shown(), aside.shown());
-    std::fs::rename(path, &aside).with_context(words)?;
+    let context = || format!("cannot rename {} to {}", path.shown(), aside.shown());
+    std::fs::rename(path, &aside).with_context(context)?;
     console::note(&format!(
         "warning: {damaged}; it is now {}, and the part is rendered again",
         aside.shown()

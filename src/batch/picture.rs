@@ -23,7 +23,7 @@ pub(super) struct Picture<'a> {
     /// The film to continue.
     pub resumed: Option<SavedFilm>,
     places: Vec<FilmPlace>,
-    /// What the user must know before it begins.
+    /// Warnings to print before it begins.
     warnings: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Picture<'a> {
         Ok(Picture { render, resumed: None, places, warnings })
     }
 
-    /// Looks at the files that the render would replace.
+    /// Checks the files that the render would replace.
     ///
     /// # Errors
     /// [`Failure::Input`] if one must not be replaced.
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_render_that_fails_has_an_exit_code_of_its_own_and_its_files() {
+    fn failed_render_has_its_own_exit_code_and_files() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
         let files = ["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()];
@@ -188,15 +188,18 @@ mod tests {
         let picture = Picture::lock(&options.renders[0]).unwrap();
         let (_, outcome) = picture.render(&options, &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
-        let told = failure.to_string();
-        assert!(matches!(failure, Failure::BrokeOff(_)), "{told}");
-        assert!(told.contains("it broke") && told.contains("4 samples") && told.contains("a.exr"), "{told}");
+        let message = failure.to_string();
+        assert!(matches!(failure, Failure::BrokeOff(_)), "{message}");
+        assert!(
+            message.contains("it broke") && message.contains("4 samples") && message.contains("a.exr"),
+            "{message}"
+        );
         assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
         assert!(out.exists());
     }
 
     #[test]
-    fn a_failure_says_why_and_where_the_samples_are() {
+    fn failure_names_reason_and_place_of_samples() {
         let options = options(&["--checkpoint", "k.exr"]);
         let mut film = options.job.new_film();
         film.record(0..6, 0).unwrap();

@@ -62,7 +62,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What was divided, in words.
+/// What was divided.
 fn about(plan: &Plan) -> String {
     let (settings, lengths) = (plan.job.settings(), plan.manifest.work.lengths());
     let [shortest, longest] = [lengths.iter().min(), lengths.iter().max()].map(|it| it.copied().unwrap_or(0));

@@ -51,8 +51,7 @@ impl Progress {
     }
 }
 
-/// How far the render is, in words. `elapsed` has passed since its begin, and `left` are the seconds to its end, if that can
-/// be predicted.
+/// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.
 fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
     if status.phase == Phase::Preparing {
         return "preparing the scene".to_owned();
@@ -99,7 +98,7 @@ mod tests {
     use crate::film::ErrorEstimate;
 
     #[test]
-    fn the_condition_that_is_met_first_tells_the_time_left() {
+    fn time_left_is_that_of_the_first_condition() {
         let mut status = Status {
             samples_per_pixel: 100,
             planned_samples_per_pixel: 1100,

@@ -19,11 +19,10 @@ pub struct Studio<'a> {
 
 /// What happens during a render.
 pub enum Event<'a> {
-    /// Something that the user should know.
     Warning(&'a str),
-    /// After a signal, the render is told to stop.
+    /// A signal arrived, and the render will stop.
     Stopping,
-    /// The state of the render, which comes every [`Progressive::LOOK`] at least.
+    /// The render's state, at least one per [`Progressive::LOOK`].
     Status(&'a Progressive, &'a Status),
 }
 
@@ -39,13 +38,13 @@ impl<'a> Studio<'a> {
         Ok(Studio { backend, renderer, progressive, interrupt })
     }
 
-    /// A plan for this many samples per pixel, in the passes of a render that nobody looks at.
+    /// A plan for this many samples per pixel, in passes for a render that nobody watches.
     pub fn plan(samples: u64) -> Plan {
         Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(samples)) }
     }
 
-    /// Renders a picture, or continues its `film`, until the plan's end or a signal. Returns the last status and the film
-    /// as far as it got. A panic in `look` ends the render as a failure.
+    /// Renders a picture, or continues its `film`, until the plan ends or a signal arrives. Returns the last status and
+    /// the film so far. A panic in `look` ends the render as a failure.
     pub fn render(
         &mut self,
         job: RenderJob,

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
 
-/// What all figures in JSON begin with.
+/// The start of all figures in JSON.
 #[derive(Serialize)]
 pub(super) struct Envelope<T: Serialize> {
     schema: u32,
@@ -37,7 +37,7 @@ pub(super) struct Summary<'a> {
     pub samples: Option<String>,
     pub status: Status,
     pub files: Vec<PathBuf>,
-    /// The time of writing the files.
+    /// Time spent writing the files.
     pub writing: Duration,
 }
 
@@ -104,7 +104,7 @@ impl Summary<'_> {
         })
     }
 
-    /// The lines that tell what rendered it.
+    /// Lines about what rendered it.
     fn backend_lines(&self) -> Vec<(&'static str, String)> {
         let Status { backend: Some(backend), kernel, left_out, contributions, .. } = &self.status else {
             return Vec::new();

@@ -89,8 +89,8 @@ mod tests {
             lacks: None,
         };
         let text = Build { commit: "" }.details(&["One", "Other"].map(adapter));
-        let told = "adapters      One (discrete GPU, Vulkan, driver 1.2)\n              \
+        let expected = "adapters      One (discrete GPU, Vulkan, driver 1.2)\n              \
                     Other (discrete GPU, Vulkan, driver 1.2)\n";
-        assert!(text.ends_with(told), "{text}");
+        assert!(text.ends_with(expected), "{text}");
     }
 }

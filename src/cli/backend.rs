@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn flags_of_another_device_are_refused() {
+    fn other_devices_flags_are_refused() {
         for (flags, parts) in [
             ("--device cpu --adapter some", ["--adapter", "the GPU"]),
             ("--device reference --adapter some", ["--adapter", "the GPU"]),

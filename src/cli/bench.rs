@@ -86,7 +86,7 @@ pub struct BenchScene {
     pub samples: u64,
 }
 
-/// Scenes that are measured if none is named.
+/// Scenes measured by default.
 const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 
 /// Most paths of a run by default.
@@ -120,17 +120,14 @@ impl BenchOptions {
         self.isa.available(|available| available.last().copied().into_iter().collect())
     }
 
-    /// Number of threads of the rows with several threads.
     pub fn threads(&self) -> usize {
         self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
     }
 
-    /// Number of runs of each row.
     pub fn runs(&self) -> usize {
         self.runs.unwrap_or(if self.quick { 3 } else { 5 })
     }
 
-    /// Approximate time limit of a run.
     pub fn run_limit_seconds(&self) -> f64 {
         self.run_limit.unwrap_or(match (self.features, self.quick) {
             (false, false) => 10.0,
@@ -227,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_those_of_the_scene_or_a_power_of_two_that_can_be_paid_for() {
+    fn samples_fit_the_path_limit() {
         let mut recipe = Recipe::builtin("metals").unwrap();
         let mut samples = |words: &str, wanted: u64| {
             recipe.samples_per_pixel = wanted;

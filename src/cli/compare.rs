@@ -64,7 +64,7 @@ impl ValueEnum for Encoding {
 #[derive(Clone, Debug)]
 pub struct CompareOptions {
     pub sides: [CompareSide; 2],
-    /// What backends render: as the flags say, otherwise as the file on the other side says, at that file's size.
+    /// What backends render: set by the flags, otherwise by the file on the other side, at that file's size.
     pub recipe: Recipe,
     pub samples: Option<u64>,
     pub encoding: Encoding,
@@ -122,11 +122,11 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         .write_json(raw.json.as_ref())
         .check(&[])?;
     // Pictures of other programs do not say what they show.
-    let told = sides.iter().find_map(|side| match side {
+    let from_file = sides.iter().find_map(|side| match side {
         CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
         CompareSide::Backend { .. } => None,
     });
-    let ChosenRecipe { mut recipe, .. } = match told {
+    let ChosenRecipe { mut recipe, .. } = match from_file {
         Some(chosen) => chosen,
         None => sources::find(&raw.picture, None)?,
     };

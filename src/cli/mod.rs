@@ -45,10 +45,10 @@ use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// What the program is to do.
+/// What the program should do.
 #[derive(Debug)]
 pub enum Request {
-    /// Print the version, and with `is_verbose` also what the build and the machine are like.
+    /// Print the version and, with `is_verbose`, details of the build and the machine.
     Version {
         is_verbose: bool,
     },
@@ -158,11 +158,11 @@ pub fn command() -> clap::Command {
     Raw::command()
 }
 
-/// The file of `--log`, which is needed before the flags are validated. A command line that clap does not accept has
-/// none; [`parse`] says what is wrong with it.
+/// The file of `--log`, needed before the flags are validated. `None` if clap does not accept the command line;
+/// [`parse`] then says what is wrong.
 ///
 /// # Errors
-/// If its name does not end in `.log`: so a log never replaces a picture.
+/// If its name does not end in `.log`, so that a log never replaces a picture.
 pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
     let matches = command().try_get_matches_from(arguments).ok();
     let log = matches.and_then(|matches| matches.get_one::<PathBuf>("log").cloned());
@@ -213,7 +213,6 @@ fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
     })
 }
 
-/// The command line as a whole.
 struct Line<'a> {
     /// How commands call this program.
     program: String,
@@ -228,7 +227,7 @@ impl Line<'_> {
         self.matches.value_source(flag) == Some(ValueSource::CommandLine)
     }
 
-    /// Those of these flags that are given, as words.
+    /// Arguments for those of `flags` that are given.
     fn words(&self, flags: &[&str]) -> Vec<String> {
         let value = |flag: &str| self.matches.get_raw(flag).into_iter().flatten().next();
         let given = flags.iter().filter(|flag| self.is_given(flag));
@@ -236,7 +235,7 @@ impl Line<'_> {
     }
 }
 
-/// How commands call this program: by its name if the shell has found it, otherwise with its directory.
+/// How commands call this program: by name if the shell found it, otherwise with its directory.
 fn program(first: Option<&OsString>) -> String {
     const NAME: &str = "weekender";
     let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
@@ -244,8 +243,8 @@ fn program(first: Option<&OsString>) -> String {
     path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
 }
 
-/// The words of the command line, quoted for a shell, with file names instead of paths: pictures are passed on, and their
-/// author's directories are private.
+/// The command line quoted for a shell, with file names instead of paths: pictures are shared, and the directories of
+/// their authors are private.
 fn recorded(arguments: &[OsString]) -> String {
     let shortened = |word: &OsString| {
         let word = word.to_string_lossy();

@@ -5,7 +5,7 @@ use super::values::JsonTarget;
 use crate::system::files::ShownPath;
 use std::path::{Path, PathBuf};
 
-/// The files that a command reads and writes, each with its flag or with what it is.
+/// The files that a command reads and writes, each with its flag or its role.
 #[derive(Default)]
 pub struct Paths {
     inputs: Vec<(&'static str, PathBuf)>,
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_an_input_that_lives_on_in_the_output_may_be_replaced() {
+    fn only_a_continued_input_may_be_replaced() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join("g.exr");
         std::fs::write(&file, "").unwrap();

@@ -123,7 +123,7 @@ pub struct BatchOptions {
 pub struct WindowOptions {
     /// The picture at the start.
     pub recipe: Recipe,
-    /// The same without the changes of the flags.
+    /// The picture without the changes of the flags.
     pub unchanged: Recipe,
     /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
@@ -140,15 +140,15 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
-    /// Whether to open the usual first picture instead of what was shown last.
+    /// Whether to open the usual first picture instead of the last one.
     pub is_fresh: bool,
-    /// After how much tracing the film is saved, and how often.
+    /// Tracing time after which the film is saved, and again each time.
     pub autosave_every: Duration,
     /// The directory in which the window keeps what it shows; without one, it keeps nothing.
     pub state_directory: Option<PathBuf>,
     /// The file of the settings, which all windows share; without one, nothing is remembered.
     pub settings: Option<PathBuf>,
-    /// What kept pictures may take in that directory, bytes, if not the usual limit.
+    /// Most bytes of kept pictures in that directory, unless the usual limit applies.
     pub kept_limit: Option<u64>,
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
@@ -185,7 +185,7 @@ pub struct RenderOptions {
 /// A scene file to write.
 #[derive(Clone, Debug)]
 pub struct SaveSceneOptions {
-    /// Its content, which has been validated.
+    /// Already validated.
     pub recipe: Recipe,
     pub path: PathBuf,
 }
@@ -262,7 +262,7 @@ fn batch(flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
         let of_stage = |stage: &'static Stage| {
             let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
             let (chosen, job) = sources::changed(chosen, picture, samples)?;
-            // What one stage ignores, another needs, so there are no notes.
+            // Flags that one stage ignores may be needed by another, so there are no notes.
             render(chosen, job, &flags, directory.join(format!("{}.png", stage.id)), line)
         };
         (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>, _>>()?, Some(directory))
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_a_render_is_what_was_asked_for() {
+    fn renders_end_as_requested() {
         for (flags, range, seconds, noise) in [
             ("--stage metal", Some(0..128), None, None),
             ("--samples 7 --noise-target 0.01", Some(0..7), None, Some(0.01)),

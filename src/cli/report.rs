@@ -175,12 +175,11 @@ impl ReportOptions {
         if self.calibration { &CALIBRATION } else { &RACE }
     }
 
-    /// Whether backends were named; otherwise they may be missing.
+    /// Whether backends were named; the default ones may be missing.
     pub fn names_backends(&self) -> bool {
         !self.backends.is_empty()
     }
 
-    /// The names of the backends.
     pub fn backends(&self) -> Vec<String> {
         if self.names_backends() {
             return self.backends.clone();
@@ -252,7 +251,6 @@ impl ReportOptions {
         self.seeds.unwrap_or(self.defaults().seeds)
     }
 
-    /// Width and height of all pictures.
     pub fn size(&self) -> (u32, u32) {
         self.size.unwrap_or(self.defaults().size)
     }
@@ -320,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn an_adapter_needs_a_gpu_which_is_then_measured_even_if_there_is_none() {
+    fn adapter_flag_requires_the_gpu() {
         let names = |words: &str| parsed(words).unwrap().backends();
         assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
         assert_eq!(names("--adapter some --calibration"), ["cpu", "gpu"]);
@@ -331,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_has_several_times_the_samples_within_the_limit() {
+    fn reference_samples_stay_within_the_limit() {
         for (words, expected) in [
             ("--max-samples 64", 256),
             ("--max-samples 64 --calibration", 1024),

@@ -23,7 +23,7 @@ fn the_definition_of_all_flags_is_consistent() {
 }
 
 #[test]
-fn commands_call_the_program_in_any_directory_as_it_was_called_in_this_one() {
+fn commands_call_the_program_from_any_directory() {
     let whole = std::env::current_exe().unwrap().to_str().unwrap().to_owned();
     for (name, expected) in [
         ("weekender", "weekender"),
@@ -108,7 +108,7 @@ fn a_plan_has_its_format_its_flags_and_its_frames() {
 }
 
 #[test]
-fn frames_are_those_that_are_named_or_one_turn() {
+fn frames_default_to_one_turn() {
     for (flags, frames, samples, animation) in [
         ("--turntable=4 --samples 3 --out no-such", 0..4, 3, None),
         ("--frames 3..5 --turntable=90 --samples 2 --out no-such.png", 3..5, 2, Some([30, 1])),
@@ -124,7 +124,7 @@ fn frames_are_those_that_are_named_or_one_turn() {
 }
 
 #[test]
-fn any_flag_of_the_backend_chooses_one_for_the_window() {
+fn backend_flags_choose_the_windows_backend() {
     let is_given = |flags: &str| match request(flags) {
         Ok(Request::Window(options)) => options.is_device_given,
         other => panic!("{other:?}"),
@@ -136,7 +136,7 @@ fn any_flag_of_the_backend_chooses_one_for_the_window() {
 }
 
 #[test]
-fn a_path_is_compared_by_the_sides_and_at_the_place_that_are_named() {
+fn diff_takes_sides_and_place_from_flags() {
     let compared = |flags: &str| match request(&format!("diff {flags}")) {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),

@@ -45,8 +45,8 @@ pub(super) fn check_ending(
     ending: &'static str,
 ) -> Result<(), CliError> {
     let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
-    let words = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
-    if is_so { Ok(()) } else { Err(CliError::Refused(words())) }
+    let message = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
+    if is_so { Ok(()) } else { Err(CliError::Refused(message())) }
 }
 
 /// Number of lanes; `None` leaves the choice to the backend.
@@ -85,7 +85,6 @@ fn level_named(name: &str) -> Option<Isa> {
 /// Instruction levels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Levels {
-    /// The best one.
     Auto,
     /// All that the processor has.
     All,
@@ -94,7 +93,7 @@ pub(super) enum Levels {
 }
 
 impl Levels {
-    /// The levels that are meant; `auto` chooses among those of this processor, the most capable last.
+    /// Resolves the levels; `auto` chooses among those of this processor, the most capable last.
     pub fn available(&self, auto: impl FnOnce(&[Isa]) -> Vec<Isa>) -> Result<Vec<Isa>, CliError> {
         let available = Isa::available();
         let levels = match self {

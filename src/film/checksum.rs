@@ -14,14 +14,12 @@ impl Default for Checksum {
 }
 
 impl Checksum {
-    /// Adds a word.
     pub fn word(&mut self, word: u64) {
         self.0 = (self.0 ^ word).wrapping_mul(0x0000_0100_0000_01b3);
         // The product only carries upwards: without this step, high bits of a word would affect few bits.
         self.0 ^= self.0 >> 32;
     }
 
-    /// Adds several words.
     pub fn words(&mut self, words: &[u64]) {
         words.iter().for_each(|word| self.word(*word));
     }

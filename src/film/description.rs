@@ -10,29 +10,20 @@ pub const RECIPE_KEY: &str = "Weekender recipe";
 
 /// Keys that Weekender writes. Other keys are allowed.
 pub mod key {
-    /// Program and version.
     pub const SOFTWARE: &str = "Software";
-    /// The scene's name.
     pub const SCENE: &str = "Scene";
-    /// The stage's id.
     pub const STAGE: &str = "Stage";
-    /// The camera's position and settings.
     pub const CAMERA: &str = "Camera";
-    /// The sampler's name.
     pub const SAMPLER: &str = "Sampler";
-    /// The seed.
     pub const SEED: &str = "Seed";
     /// Samples per pixel.
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
-    /// Which part of the picture the file holds: its size, and its first column and row.
+    /// The part of the picture that the file holds: its size, then its first column and row.
     pub const CROP: &str = "Crop";
-    /// The number of the frame in an animation.
     pub const FRAME: &str = "Frame";
-    /// The command that rendered it.
     pub const COMMAND: &str = "Command";
-    /// The backend that rendered it.
     pub const BACKEND: &str = "Backend";
 }
 
@@ -80,7 +71,6 @@ impl Description {
         }
     }
 
-    /// The value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.entries.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
@@ -109,7 +99,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_key_that_is_set_again_keeps_its_place() {
+    fn resetting_a_key_keeps_its_place() {
         let mut description = Description::new("");
         description.set(key::SAMPLES, 1);
         description.set(key::SEED, 7);
@@ -120,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_that_no_file_can_hold_are_changed_or_ignored() {
+    fn unstorable_entries_are_changed_or_ignored() {
         let mut description = Description::new("a\r\nb\rc\n");
         description.set("", "x");
         description.set(RECIPE_KEY, "x");

@@ -2,8 +2,8 @@
 
 use super::{FIXED_POINT_SCALE, Film, ROUNDING_LIMIT};
 
-/// An estimate of the picture's error from its two halves. It is never below what rounding can cost, which the halves do
-/// not show where both are rounded the same way.
+/// An estimate of the picture's error from its two halves. Never below what rounding can cost, which halves that round
+/// alike do not show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// Root of the mean squared error over pixels and channels, linear radiance, at least [`ROUNDING_LIMIT`].
@@ -18,7 +18,7 @@ pub struct ErrorEstimate {
 /// The error estimate is doubtful if it effectively rests on fewer pixels than this.
 const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 
-/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
+/// It is doubtful only if they are also less than this share of all pixels, because small pictures have few pixels.
 const DOMINANT_SHARE: f64 = 0.2;
 
 /// A doubtful estimate must be below a target by this many of its standard deviations.
@@ -36,12 +36,12 @@ impl ErrorEstimate {
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// Whether the halves differ by no more than rounding can cost: the picture has no noise to speak of.
+    /// Whether the halves differ by no more than rounding can cost.
     pub fn is_without_noise(&self) -> bool {
         self.rmse <= ROUNDING_LIMIT
     }
 
-    /// The error in words: `2.000e-2 ± 5.0 % RMSE`, or how much rounding can cost if that is more than the noise.
+    /// The error as text: `2.000e-2 ± 5.0 % RMSE`, or what rounding can cost if that is more than the noise.
     pub fn words(&self) -> String {
         if self.is_without_noise() {
             format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding alone")
@@ -100,9 +100,9 @@ impl Film {
         })
     }
 
-    /// Whether the error of this film, of which `estimate` is the estimate, is at most `target`. An estimate that few
-    /// pixels dominate must be lower, and while no path has found any light, the error may be as large as `brightest`, the
-    /// largest radiance that a sample can have.
+    /// Whether this film's error, estimated as `estimate`, is at most `target`. An estimate dominated by few pixels
+    /// must be lower still. While no path has found light, the error may be as large as `brightest`, the largest
+    /// radiance of a sample.
     pub fn meets(&self, target: f64, estimate: Option<&ErrorEstimate>, brightest: f64) -> bool {
         match estimate {
             Some(found) if self.rests_on_few_pixels(found) => {
@@ -113,7 +113,7 @@ impl Film {
         }
     }
 
-    /// Why the estimate is doubtful: few pixels dominate it. It and its deviation are then most likely too low.
+    /// Why the estimate is doubtful: if few pixels dominate it, it and its deviation are likely too low.
     pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
         let (pixels, all) = (estimate.pixels_in_effect(), self.halves[0].len());
         self.rests_on_few_pixels(estimate).then(|| {
@@ -134,7 +134,7 @@ impl Film {
         self.halves.iter().flatten().all(|sum| sum.0 == [0; 3])
     }
 
-    /// Why [`Film::error`] has nothing to say, in words.
+    /// Why [`Film::error`] returns `None`.
     pub fn why_no_error(&self) -> &'static str {
         if self.halves.len() < 2 {
             "the film has one half"

@@ -3,8 +3,8 @@
 /// One unit of the film's fixed point is `2^-24` of radiance.
 pub const FIXED_POINT_SCALE: f64 = 16_777_216.0;
 
-/// The most that rounding its samples can cost a mean, linear radiance: half a unit of the fixed point. It costs as much
-/// where all samples of a pixel are alike, because they are then all rounded the same way, however many there are.
+/// The most that rounding its samples can cost a mean, linear radiance: half a fixed-point unit. It costs that much
+/// where all samples of a pixel are equal, because they all round the same way, however many there are.
 pub const ROUNDING_LIMIT: f64 = 0.5 / FIXED_POINT_SCALE;
 
 /// A sample's radiance is clamped to stay below this limit. It is the largest limit whose fixed-point values fit a
@@ -19,7 +19,7 @@ pub const FIXED_POINT_MAX: u32 = 2_147_483_520;
 pub struct PixelSum(pub [u64; 3]);
 
 impl PixelSum {
-    /// Adds another sum of other samples of the same pixel. It cannot overflow: see [`super::SAMPLE_LIMIT`].
+    /// Adds the sum of other samples of the same pixel. It cannot overflow: see [`super::SAMPLE_LIMIT`].
     pub fn add(&mut self, other: PixelSum) {
         for (mine, theirs) in self.0.iter_mut().zip(other.0) {
             *mine += theirs;

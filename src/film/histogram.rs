@@ -9,7 +9,6 @@ const BINS_PER_STOP: usize = 4;
 const LOWEST: i32 = -12;
 const HIGHEST: i32 = 8;
 
-/// Number of bins.
 const BINS: usize = (HIGHEST - LOWEST) as usize * BINS_PER_STOP;
 
 /// Counts of pixels by linear radiance, for each channel.
@@ -17,7 +16,6 @@ const BINS: usize = (HIGHEST - LOWEST) as usize * BINS_PER_STOP;
 pub struct Histogram {
     /// Counts per bin, red, green and blue, from dark to bright. Darker and brighter values are in the outer bins.
     pub bins: [Vec<u32>; 3],
-    /// Pixels in the picture.
     pub pixels: u32,
     /// Pixels with a channel at or above white.
     pub clipped: u32,
@@ -26,7 +24,7 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The stops at the two ends.
+    /// The lowest and the highest stop.
     pub const STOPS: [f64; 2] = [LOWEST as f64, HIGHEST as f64];
 
     /// Counts the pixels of a film. `white` is the radiance that is shown as white.
@@ -56,7 +54,7 @@ impl Histogram {
 /// The bin of a value, from the exponent and the first bits of the fraction of its binary form.
 fn bin(value: f64) -> usize {
     const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
-    // Zero and what is below the range have the smallest exponents.
+    // Zero and values below the range have the smallest exponents.
     let rank = (value.max(0.0).to_bits() >> (FRACTION_BITS - BINS_PER_STOP.ilog2())) as i64;
     let first = (i64::from(LOWEST) + 1023) * BINS_PER_STOP as i64;
     (rank - first).clamp(0, BINS as i64 - 1) as usize
@@ -68,7 +66,7 @@ mod tests {
     use crate::film::PixelSum;
 
     #[test]
-    fn a_bin_begins_where_it_says() {
+    fn bin_starts_match_their_stops() {
         for number in 0..BINS {
             let begin = Histogram::stop_of(number).exp2();
             assert_eq!(bin(begin * (1.0 + 1e-9)), number);

@@ -1,11 +1,11 @@
-//! A film file that one run writes again and again, and no other run meanwhile.
+//! A film file that one run writes repeatedly while no other run may.
 
 use super::{Description, Film, SampleRanges, checkpoint};
 use crate::system::files::{FileLock, LockedError, ShownPath, WriteError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A film file that is locked until this is dropped.
+/// A film file, locked until this is dropped.
 #[derive(Debug)]
 pub struct LockedFilm {
     path: PathBuf,
@@ -24,14 +24,14 @@ impl LockedFilm {
         Ok(LockedFilm { path: path.to_owned(), held: SampleRanges::default(), _lock: lock })
     }
 
-    /// Notes that the file holds these samples of the film. None of them is replaced by a film without it, such as one
-    /// that began anew because its device was lost.
+    /// Notes that the file holds these samples of the film. A film that lacks any of them will not replace it, such as
+    /// one that restarted because its device was lost.
     pub fn holds(&mut self, samples: &SampleRanges) {
         self.held = samples.clone();
     }
 
-    /// Replaces the file by `film`. A film whose samples are all in the file, which holds others too, is not written;
-    /// this returns a note for the user then.
+    /// Replaces the file with `film`. If the file already holds all of the film's samples and more, writes nothing and
+    /// returns a note for the user.
     ///
     /// # Errors
     /// [`WriteError`], also if the film and the file each have samples that the other lacks. The file is unchanged.
@@ -41,14 +41,14 @@ impl LockedFilm {
             self.held = film.samples().clone();
             return Ok(None);
         }
-        let words = format!("holds the samples {} of this picture", self.held);
+        let holds = format!("holds the samples {} of this picture", self.held);
         if self.held.contains(film.samples()) {
             let path = self.path.shown();
             return Ok(Some(format!(
-                "{path} {words}, more than this run has rendered, so it is left unchanged"
+                "{path} {holds}, more than this run has rendered, so it is left unchanged"
             )));
         }
-        let reason = format!("it {words}, and this run has only {}", film.samples());
+        let reason = format!("it {holds}, and this run has only {}", film.samples());
         Err(WriteError { path: self.path.clone(), reason: io::Error::other(reason) })
     }
 }
@@ -72,8 +72,11 @@ mod tests {
         let mut run = LockedFilm::new(&path).unwrap();
         for samples in [0..2, 0..4] {
             assert_eq!(run.save(&film(&[samples]), &Description::new("r")).unwrap(), None);
-            let told = LockedFilm::new(&path).unwrap_err().to_string();
-            assert!(told.contains("g.exr is locked") && told.contains("or name another file"), "{told}");
+            let message = LockedFilm::new(&path).unwrap_err().to_string();
+            assert!(
+                message.contains("g.exr is locked") && message.contains("or name another file"),
+                "{message}"
+            );
         }
         drop(run);
         let mut next = LockedFilm::new(&path).unwrap();
@@ -84,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_began_anew_does_not_replace_what_the_file_has() {
+    fn restarted_film_does_not_replace_the_file() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
         checkpoint::save(&path, &film(&[0..4]), &Description::new("r")).unwrap();

@@ -28,12 +28,12 @@ pub enum MergeError {
     Film { first: PathBuf, other: PathBuf, reason: FilmError },
 }
 
-/// The sum of the films of several files. Adding a film needs memory for that film besides the sum.
+/// The sum of the films of several files. Adding one needs memory for it besides the sum.
 #[derive(Clone, Debug)]
 pub struct FilmSum {
     film: Film,
     description: Description,
-    /// The file or plan that decides what the others must be films of.
+    /// The file or plan that the others must match.
     first: PathBuf,
     parts: Vec<Part>,
 }
@@ -76,11 +76,11 @@ impl FilmSum {
         Ok(FilmSum { film: film.try_copy()?, description, first, parts })
     }
 
-    /// Adds the film in a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and
-    /// returns what differs if their jobs differ.
+    /// Adds the film of a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and
+    /// returns what differs if their jobs do.
     ///
     /// # Errors
-    /// [`MergeError`]; the sum is as before.
+    /// [`MergeError`]; the sum is then unchanged.
     pub fn add(
         &mut self,
         path: &Path,
@@ -106,13 +106,12 @@ impl FilmSum {
         Ok(film.samples().clone())
     }
 
-    /// The sum.
     pub fn film(&self) -> &Film {
         &self.film
     }
 
-    /// The description of the sum: that of its beginning, with the samples of all films, the backends of all, and the sum
-    /// of their seconds if all films have them.
+    /// The description of the sum: the first film's, with the samples of all films, all their backends, and the sum of
+    /// their seconds if all have them.
     pub fn description(&self) -> Description {
         let mut description = self.description.clone();
         description.set(key::SAMPLES, self.film.sample_count());

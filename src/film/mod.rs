@@ -147,7 +147,7 @@ impl Film {
         &self.samples
     }
 
-    /// The number of samples, over all pixels, that were left out because they were NaN, infinite or negative.
+    /// Samples, over all pixels, that were left out because they were NaN, infinite or negative.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
@@ -206,7 +206,7 @@ impl Film {
     }
 }
 
-/// What to do about a film that does not fit into memory.
+/// Remedy for a film that does not fit into memory.
 const SMALLER_FILM: &str =
     "choose a smaller picture, halve the film with --estimate-error off, or close other programs";
 

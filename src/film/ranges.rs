@@ -48,7 +48,6 @@ impl SampleRanges {
         }
     }
 
-    /// The number of samples in the set.
     pub fn count(&self) -> u64 {
         self.count
     }

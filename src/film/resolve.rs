@@ -57,12 +57,12 @@ impl Film {
         bytes
     }
 
-    /// The same, where a sum of `unit` is white.
+    /// Resolves rows so that a sum of `unit` is white.
     fn resolve_sums(&self, rows: Range<u32>, transfer: Transfer, unit: f64, bytes: &mut [u8]) {
         let height = self.height as usize;
         let (pixels, []) = bytes.as_chunks_mut::<3>() else { panic!("a pixel has 3 bytes") };
         assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
-        // Chosen once per row, outside the loop over its pixels.
+        // Chosen once per row, outside the pixel loop.
         for (line, row) in pixels.chunks_exact_mut(self.width as usize).zip(rows) {
             if transfer.is_gamma(row as usize, height) {
                 self.for_each_sum(row..row + 1, line, |sum, pixel| {
@@ -82,7 +82,7 @@ impl Film {
         Film::fixed_point(self.sample_count())
     }
 
-    /// The same for `samples` samples per pixel.
+    /// As [`Film::fixed_point_of_1`], for `samples` samples per pixel.
     pub(super) fn fixed_point(samples: u64) -> f64 {
         samples.max(1) as f64 * FIXED_POINT_SCALE
     }

@@ -2,21 +2,21 @@
 
 use super::{Film, PixelSum};
 
-/// The weights of a pixel and its two neighbours add up to this.
+/// Sum of the weights of a pixel and its two neighbours.
 const WHOLE: u64 = 256;
 
 /// The largest weight of a neighbour: 1, 2, 1 is the filter of a quadratic B-spline.
 const SIDE: u64 = WHOLE / 4;
 
-/// Up to this many samples per pixel a film is smoothed as much as possible, and with more of them less and less.
+/// Films with at most this many samples per pixel are smoothed fully; with more samples, less and less.
 const FEW: u64 = 4;
 
-/// From this many samples per pixel on, a film is not smoothed.
+/// Films with at least this many samples per pixel are not smoothed.
 const MANY: u64 = FEW * SIDE;
 
 impl Film {
-    /// The film with each pixel averaged with its neighbours, the less the more samples it has. The filter is separable
-    /// and adds up linear radiance, so the picture does not become darker.
+    /// Averages each pixel with its neighbours, less the more samples it has. The filter is separable and adds linear
+    /// radiance, so the picture does not get darker.
     pub fn smoothed(&self) -> Film {
         let mut smooth = self.clone();
         let samples = self.sample_count();
@@ -33,7 +33,7 @@ impl Film {
     }
 }
 
-/// Averages `count` pixels with those beside them. The first and the last one are their own neighbours.
+/// Averages `count` pixels with their neighbours. The first and the last are their own neighbours.
 fn smooth_line(sums: &mut [PixelSum], start: usize, stride: usize, count: usize, side: u64) {
     let mut before = sums[start];
     for index in 0..count {
@@ -45,7 +45,7 @@ fn smooth_line(sums: &mut [PixelSum], start: usize, stride: usize, count: usize,
     }
 }
 
-/// The mean of a pixel and its two neighbours, each of which has the weight `side`.
+/// The mean of a pixel and its two neighbours, each weighted by `side`.
 fn average([before, here, after]: [PixelSum; 3], side: u64) -> PixelSum {
     PixelSum([0, 1, 2].map(|channel| {
         let sides = before.0[channel] + after.0[channel];
@@ -57,7 +57,7 @@ fn average([before, here, after]: [PixelSum; 3], side: u64) -> PixelSum {
 mod tests {
     use super::*;
 
-    /// A film of one half in which all pixels are black but one, which has this sum.
+    /// A black film of one half, except for one pixel with this sum.
     fn dot(width: u32, height: u32, at: usize, sum: u64, samples: u64) -> Film {
         let mut film = Film::new(width, height, 1);
         film.halves_mut()[0][at] = PixelSum([sum, 0, sum / 2]);
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn both_halves_of_any_shape_are_smoothed_and_an_edge_is_its_own_neighbour() {
+    fn both_halves_are_smoothed_and_edges_repeat() {
         let mut film = Film::new(4, 3, 2);
         film.halves_mut()[0][6] = PixelSum([1600, 0, 0]);
         film.halves_mut()[1][0] = PixelSum([1600, 0, 0]);

@@ -25,14 +25,14 @@ pub fn describe(
     if let Some(stage) = stage {
         description.set(key::STAGE, stage.id);
     }
-    description.set(key::CAMERA, camera_words(&recipe.camera));
+    description.set(key::CAMERA, camera_text(&recipe.camera));
     description.set(key::SAMPLER, settings.sampler.name());
     description.set(key::SEED, settings.seed);
     description.set(key::SAMPLES, film.sample_count());
     if let Some(seconds) = seconds_before {
         description.set(key::SECONDS, seconds + status.trace.as_secs_f64());
     }
-    if let Some(backends) = backend_words(film, status) {
+    if let Some(backends) = backend_text(film, status) {
         description.set(key::BACKEND, backends);
     }
     description
@@ -64,26 +64,26 @@ pub fn seconds(seconds: f64) -> String {
     }
 }
 
-/// The backend. If there were several, the current one comes first, each with its samples, and earlier runs come last.
-fn backend_words(film: &Film, status: &Status) -> Option<String> {
-    let words =
+/// The backend. If there were several, the current one comes first, each with its samples; earlier runs come last.
+fn backend_text(film: &Film, status: &Status) -> Option<String> {
+    let text =
         |info: &BackendInfo| format!("{} {}, {}", info.name, info.device, counted(info.lanes as u64, "lane"));
     let samples = |count: u64| counted(count, "sample");
     let mut parts: Vec<&Contribution> = status.contributions.iter().collect();
     let earlier = film.sample_count().saturating_sub(parts.iter().map(|part| part.samples_per_pixel).sum());
     match parts.as_slice() {
-        [] => return status.backend.as_ref().map(words),
-        [only] if earlier == 0 => return Some(words(&only.backend)),
+        [] => return status.backend.as_ref().map(text),
+        [only] if earlier == 0 => return Some(text(&only.backend)),
         _ => {}
     }
     parts.sort_by_key(|part| Some(&part.backend) != status.backend.as_ref());
-    let told =
-        parts.iter().map(|part| format!("{} ({})", words(&part.backend), samples(part.samples_per_pixel)));
+    let listed =
+        parts.iter().map(|part| format!("{} ({})", text(&part.backend), samples(part.samples_per_pixel)));
     let before = (earlier > 0).then(|| format!("earlier runs ({})", samples(earlier)));
-    Some(told.chain(before).collect::<Vec<_>>().join("; "))
+    Some(listed.chain(before).collect::<Vec<_>>().join("; "))
 }
 
-fn camera_words(camera: &Camera) -> String {
+fn camera_text(camera: &Camera) -> String {
     let (from, at) = (camera.look_from, camera.look_at);
     format!(
         "from {},{},{} to {},{},{}, vfov {} degrees, defocus {} degrees, focus at {}",
@@ -105,7 +105,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_camera_is_told_with_all_its_numbers() {
+    fn camera_text_has_all_numbers() {
         let camera = Camera {
             look_from: DVec3::new(13.0, 2.0, 3.5),
             look_at: DVec3::new(1.0, -2.0, 0.0),
@@ -115,13 +115,13 @@ mod tests {
             ..Camera::BOOK
         };
         assert_eq!(
-            camera_words(&camera),
+            camera_text(&camera),
             "from 13,2,3.5 to 1,-2,0, vfov 20 degrees, defocus 0.6 degrees, focus at 10"
         );
-        // A lens without a distance of its own is focused on what it looks at.
+        // A lens without its own focus distance focuses on `look_at`.
         let (look_from, look_at) = (DVec3::new(3.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 4.0));
-        let words = camera_words(&Camera { look_from, look_at, focus_distance: None, ..camera });
-        assert!(words.ends_with("focus at 5"), "{words}");
+        let text = camera_text(&Camera { look_from, look_at, focus_distance: None, ..camera });
+        assert!(text.ends_with("focus at 5"), "{text}");
     }
 
     #[test]
@@ -154,20 +154,20 @@ mod tests {
             |name, lanes, samples_per_pixel| Contribution { backend: info(name, lanes), samples_per_pixel };
         let mut film = Film::new(1, 1, 1);
         film.record(0..10, 0).expect("empty");
-        let words = |contributions: &[Contribution]| {
+        let text = |contributions: &[Contribution]| {
             let status = Status {
                 backend: Some(info("gpu", 64)),
                 contributions: contributions.to_vec(),
                 ..Status::default()
             };
-            backend_words(&film, &status).expect("a backend")
+            backend_text(&film, &status).expect("a backend")
         };
-        assert_eq!(words(&[]), "gpu x, 64 lanes");
-        assert_eq!(words(&[part("cpu", 8, 10)]), "cpu x, 8 lanes");
-        assert_eq!(words(&[part("cpu", 8, 4)]), "cpu x, 8 lanes (4 samples); earlier runs (6 samples)");
+        assert_eq!(text(&[]), "gpu x, 64 lanes");
+        assert_eq!(text(&[part("cpu", 8, 10)]), "cpu x, 8 lanes");
+        assert_eq!(text(&[part("cpu", 8, 4)]), "cpu x, 8 lanes (4 samples); earlier runs (6 samples)");
         let two = [part("cpu", 8, 6), part("gpu", 64, 1)];
         assert_eq!(
-            words(&two),
+            text(&two),
             "gpu x, 64 lanes (1 sample); cpu x, 8 lanes (6 samples); earlier runs (3 samples)"
         );
     }

@@ -38,7 +38,7 @@ use worker::{RenderCommand, Worker};
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
-/// What a render thread is asked to render.
+/// A render to start.
 pub struct RenderRequest {
     pub job: RenderJob,
     pub backend: BackendChoice,
@@ -92,7 +92,7 @@ impl Progressive {
         Ok(Progressive { commands, shared, run: 0, cancel: Arc::default(), thread: Some(thread) })
     }
 
-    /// Starts what `request` asks for. A render in progress is abandoned in the middle of its pass.
+    /// Starts a render. One in progress is abandoned in the middle of its pass.
     pub fn start(&mut self, request: RenderRequest) {
         self.cancel.abandon();
         self.cancel = Arc::default();
@@ -105,8 +105,8 @@ impl Progressive {
         });
     }
 
-    /// Starts what `request` asks for and returns its last status when it is over. `look` sees every status, at least
-    /// one each [`Progressive::LOOK`], and may send commands.
+    /// Starts a render and returns its last status when it is over. `look` sees every status, at least one per
+    /// [`Progressive::LOOK`], and may send commands.
     pub fn watch(&mut self, request: RenderRequest, mut look: impl FnMut(&Progressive, &Status)) -> Status {
         self.start(request);
         let this = &*self;
@@ -128,7 +128,7 @@ impl Progressive {
         }
     }
 
-    /// Longest time between two looks of [`Progressive::watch`].
+    /// Longest time between two calls of `look` in [`Progressive::watch`].
     pub const LOOK: Duration = Duration::from_millis(50);
 
     pub fn abandon(&mut self) {
@@ -146,7 +146,7 @@ impl Progressive {
         self.send(RenderCommand::Resume);
     }
 
-    /// Ends the render at the end of the pass, or while it prepares.
+    /// Ends the render at the end of the pass, or during preparation.
     pub fn stop(&self) {
         self.cancel.stop.store(true, Ordering::Relaxed);
         self.send(RenderCommand::Stop);
@@ -172,8 +172,8 @@ impl Progressive {
         self.shared.take_picture()
     }
 
-    /// Asks for one picture. The render thread resolves it as soon as there is something new to see. Without a request,
-    /// no picture is resolved.
+    /// Requests one picture. The render thread resolves it once there is something new to see, and resolves none
+    /// without a request.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
             self.send(RenderCommand::Look);

@@ -47,8 +47,7 @@ impl PassSizer {
         self.seconds_per_sample = None;
     }
 
-    /// Notes how long a pass took. The next pass should take about `target`, with at most twice as many samples as this
-    /// one.
+    /// Records how long a pass took. The next should take about `target`, with at most twice as many samples.
     pub fn measured(&mut self, samples: u64, took: Duration, target: Duration) {
         let per_sample = took.as_secs_f64() / samples.max(1) as f64;
         self.seconds_per_sample = Some(per_sample);
@@ -157,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pass_that_alignment_shortened_does_not_shorten_the_next() {
+    fn alignment_does_not_shorten_later_passes() {
         let (mut sizer, none) = (PassSizer::new(1).begin_with(64), SampleRanges::default());
         assert_eq!(sizer.next(&none, 4..1000, None), Some(4..8));
         sizer.measured(4, FAST, TARGET);
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_known_of_the_next_backends_speed() {
+    fn next_backends_speed_is_unknown() {
         let (mut sizer, none) = (PassSizer::new(2), SampleRanges::default());
         let in_a_second = |sizer: &PassSizer| sizer.next(&none, 0..100, Some(TARGET));
         sizer.measured(2, 10 * TARGET, TARGET);

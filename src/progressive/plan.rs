@@ -41,9 +41,9 @@ pub struct Plan {
     /// The first sample of each pixel. Samples that are already in the film are skipped.
     pub first_sample: u64,
     pub stop: Stop,
-    /// The duration that a pass should have, and the longest that a stop should take. Commands are obeyed between passes.
+    /// How long a pass should take, and the longest a stop should take. Commands are obeyed between passes.
     pub pass_target: Duration,
-    /// For a preview, the samples of its first pass, a power of two. Its pictures are smoothed as long as they have few
+    /// For a preview, the samples of its first pass, a power of two. Its pictures are smoothed while they have few
     /// samples.
     pub preview: Option<u64>,
 }
@@ -70,15 +70,16 @@ impl Plan {
         Plan::until(Stop::default())
     }
 
-    /// The duration for which the first pass can be planned, once it is known how long a sample takes. `None` if passes
-    /// should begin short: because someone watches, or because the error is to be estimated early.
+    /// The duration to plan the first pass for, once the time per sample is known. `None` if passes should start short,
+    /// because someone watches or because the error should be estimated early.
     pub fn first_pass_target(&self) -> Option<Duration> {
         let is_long = self.pass_target >= Plan::BATCH_PASS && self.stop.noise.is_none();
         let limit = self.stop.time_limit().unwrap_or(Duration::MAX);
         is_long.then(|| self.pass_target.min(limit))
     }
 
-    /// The duration of the passes after the first. If a stop takes at most half of it, long passes can be twice as long.
+    /// The duration of the passes after the first. Where a stop takes at most half a pass, long passes can be twice as
+    /// long.
     pub fn later_pass_target(&self, heeds_stop: bool) -> Duration {
         match self.first_pass_target() {
             Some(_) if heeds_stop => 2 * self.pass_target,
@@ -115,7 +116,7 @@ impl EndReason {
         }
     }
 
-    /// The reason in words, as in "ended by ...".
+    /// The reason, as in "ended by ...".
     pub fn words(self) -> &'static str {
         match self {
             EndReason::Samples => "the number of samples",
@@ -146,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_are_long_where_a_stop_is_heeded_and_nobody_watches() {
+    fn unwatched_passes_that_heed_stops_are_long() {
         let batch = |stop| Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(stop) };
         let to_a_noise = Stop { noise: Some(0.1), ..Stop::default() };
         for (plan, heeds_stop, factor) in [

@@ -67,7 +67,7 @@ impl Shared {
         status.clone()
     }
 
-    /// Notes that the render thread has died.
+    /// Records that the render thread has died.
     pub(super) fn died(&self) {
         let mut status = lock(&self.status);
         status.phase = Phase::Failed("the render thread failed; its film is lost".to_owned());
@@ -111,20 +111,20 @@ mod tests {
     use std::sync::atomic::AtomicU32;
 
     #[test]
-    fn only_another_phase_gives_notice_and_an_earlier_run_is_ignored() {
+    fn only_phase_changes_notify_and_earlier_runs_are_ignored() {
         let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
         let noted = Arc::clone(&count);
         shared.set_notice(Box::new(move || {
             noted.fetch_add(1, Ordering::Relaxed);
         }));
-        let told = |run: u64, phase: Phase, samples_per_pixel: u64| {
+        let published = |run: u64, phase: Phase, samples_per_pixel: u64| {
             shared.publish(&Status { run, phase, samples_per_pixel, ..Status::default() });
             let status = shared.status();
             (status.run, status.samples_per_pixel, count.load(Ordering::Relaxed))
         };
-        assert_eq!(told(2, Phase::Tracing, 4), (2, 4, 1));
-        assert_eq!(told(2, Phase::Tracing, 8), (2, 8, 1));
-        assert_eq!(told(1, Phase::Paused, 16), (2, 8, 1));
-        assert_eq!(told(3, Phase::Paused, 0), (3, 0, 2));
+        assert_eq!(published(2, Phase::Tracing, 4), (2, 4, 1));
+        assert_eq!(published(2, Phase::Tracing, 8), (2, 8, 1));
+        assert_eq!(published(1, Phase::Paused, 16), (2, 8, 1));
+        assert_eq!(published(3, Phase::Paused, 0), (3, 0, 2));
     }
 }

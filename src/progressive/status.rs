@@ -55,8 +55,7 @@ pub struct Contribution {
     pub samples_per_pixel: u64,
 }
 
-/// The figures of a render. They count from its start; only the film's own figures include what the film held
-/// before.
+/// The figures of a render, counted from its start; only the film's own figures include samples that it held before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
     /// The run that this belongs to: 0 before the first start, then one more for each start.
@@ -71,7 +70,7 @@ pub struct Status {
     /// Statistics summed over the passes.
     pub stats: Stats,
     pub prepare: Duration,
-    /// What the current kernel contains, in words.
+    /// What the current kernel contains.
     pub kernel: String,
     /// What the current kernel leaves out.
     pub left_out: Vec<&'static str>,
@@ -83,13 +82,13 @@ pub struct Status {
     pub elapsed: Duration,
     /// The latest estimate of the film's error; it can be a few passes old.
     pub error: Option<ErrorEstimate>,
-    /// Why the estimate is doubtful, in words.
+    /// Why the estimate is doubtful.
     pub doubt: Option<String>,
     /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it.
     pub history: Vec<HistoryPoint>,
     /// Which backends have added how many samples, in order of first appearance.
     pub contributions: Vec<Contribution>,
-    /// The names of backends that failed or could not be prepared, in order.
+    /// Backends that failed or could not be prepared, in order.
     pub given_up: Vec<&'static str>,
     /// Problems that were handled, as messages for the user.
     pub messages: Vec<String>,
@@ -110,19 +109,19 @@ impl Status {
         (offered_lanes > 0).then(|| busy_lanes as f64 / offered_lanes as f64)
     }
 
-    /// The status that belongs to `film`: this one was read some passes before or after. `held_before` is the number of
-    /// samples per pixel that the film held when the render started.
+    /// This status adjusted to `film`, which may be some passes older or newer. `held_before` is the number of samples
+    /// per pixel that the film held when the render started.
     pub fn of_film(&self, film: &Film, held_before: u64) -> Status {
         let mut status = self.clone();
         let added = film.sample_count().saturating_sub(held_before);
-        let told = status.added();
-        if told > 0 && told != added {
-            status.trace = status.trace.mul_f64(added as f64 / told as f64);
+        let reported = status.added();
+        if reported > 0 && reported != added {
+            status.trace = status.trace.mul_f64(added as f64 / reported as f64);
             let at_work =
                 status.contributions.iter().position(|part| Some(&part.backend) == status.backend.as_ref());
             let at_work = at_work.unwrap_or(status.contributions.len() - 1);
             let count = &mut status.contributions[at_work].samples_per_pixel;
-            *count = (*count + added).saturating_sub(told);
+            *count = (*count + added).saturating_sub(reported);
         }
         status
     }
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_status_that_fits_its_film_stays_as_it_is() {
+    fn matching_status_is_unchanged() {
         let info = |name| BackendInfo { name, device: String::new(), lanes: 8, threads: 1 };
         let part = |name, samples_per_pixel| Contribution { backend: info(name), samples_per_pixel };
         let mut status = Status {
@@ -199,13 +198,13 @@ mod tests {
         };
         assert_eq!(status.added(), 40);
         assert_eq!(status.of_film(&film(60), 20), status);
-        // A film that was read earlier has less of the backend at work.
+        // An earlier film has fewer samples of the current backend.
         let earlier = status.of_film(&film(54), 20);
         assert_eq!(earlier.contributions, [part("gpu", 30), part("cpu", 4)]);
         assert_eq!(earlier.trace, Duration::from_secs(34));
         let much_earlier = status.of_film(&film(40), 20);
         assert_eq!(much_earlier.contributions, [part("gpu", 30), part("cpu", 0)]);
-        // A backend that has added nothing yet is not the one at work.
+        // A backend that has added nothing yet is not the current one.
         status.backend = Some(info("reference"));
         let later = status.of_film(&film(64), 20);
         assert_eq!(later.contributions, [part("gpu", 30), part("cpu", 14)]);

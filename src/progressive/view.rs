@@ -1,4 +1,4 @@
-//! What is shown of a film: the picture itself, or a heat map of one of its properties.
+//! What to show of a film: the picture itself, or a heat map of one of its properties.
 
 use crate::film::Film;
 use crate::job::render::TileOccupancy;
@@ -21,7 +21,7 @@ pub enum View {
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
     Difference(Arc<ReferenceMeans>),
-    /// How full the packets were, per tile; dark where this is not known.
+    /// How full the packets were, per tile; dark where unknown.
     Occupancy,
 }
 
@@ -49,7 +49,8 @@ impl ReferenceMeans {
     }
 }
 
-/// Tells films apart: films with the same identity have the same samples and, but for a chance of 2^-64, the same sums.
+/// Distinguishes films: those with the same identity have the same samples and, but for a chance of 2^-64, the same
+/// sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FilmIdentity {
     samples: u64,
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reference_is_compared_by_its_address_and_has_values_only_within_its_picture() {
+    fn references_compare_by_address_and_check_bounds() {
         let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
         let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
         assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);

@@ -11,7 +11,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// What [`super::Progressive`] can ask of the render thread.
+/// Requests from [`super::Progressive`] to the render thread.
 pub(super) enum RenderCommand {
     Start { run: u64, request: Box<RenderRequest>, cancel: Arc<Cancel> },
     Abandon,
@@ -88,7 +88,7 @@ impl Worker {
                 return;
             }
             RenderCommand::Take(taker) => {
-                // If the receiver is gone, nobody needs the film.
+                // If the receiver is gone, nobody wants the film.
                 let _ = taker.send(self.take_film());
                 return;
             }

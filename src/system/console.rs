@@ -6,12 +6,12 @@
 use std::borrow::Cow;
 use std::io::{self, Write};
 
-/// Prints one or more lines to standard error, without control characters. Nothing happens if that fails.
+/// Prints lines to standard error, without control characters. Failures are ignored.
 pub fn note(text: &str) {
     note_painted(&(harmless(text.trim_end_matches('\n')) + "\n"));
 }
 
-/// As [`note`], for a text that may contain the program's own colours, and ends its lines itself.
+/// As [`note`], for text that may contain the program's own colours and ends its own lines.
 pub fn note_painted(text: &str) {
     let mut stderr = io::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
@@ -25,7 +25,7 @@ pub fn print(text: &str) -> io::Result<()> {
     write_out(&harmless(text))
 }
 
-/// Prints a result to standard output, unchanged: for another program, or with the program's own colours. Names in
+/// Prints a result to standard output unchanged, for other programs or with the program's own colours. Names in
 /// coloured text must have gone through [`printable`].
 ///
 /// # Errors
@@ -36,8 +36,8 @@ pub fn write_out(text: &str) -> io::Result<()> {
     stdout.flush()
 }
 
-/// A name from outside as a piece of one line that cannot control a terminal: control characters, line ends and marks
-/// that change the writing direction become `\u{1b}` and the like.
+/// Makes a name from outside safe to print as part of one line: control characters, line ends and marks that change the
+/// writing direction become `\u{1b}` and the like.
 pub fn printable(name: &str) -> Cow<'_, str> {
     let steers = |c: char| {
         c.is_control()

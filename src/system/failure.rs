@@ -10,16 +10,16 @@ pub const FAILED: u8 = 1;
 /// Exit code for a request that cannot be carried out; nothing was started.
 pub const BAD_INPUT: u8 = 2;
 
-/// Exit code of a render that stopped early; the samples until then are in its files.
+/// Exit code of a render that stopped early; its files hold the samples so far.
 pub const BROKE_OFF: u8 = 3;
 
-/// Exit code after SIGHUP, which a closing terminal sends: 128 and its number.
+/// Exit code after SIGHUP, which a closing terminal sends: 128 plus its number.
 pub const HUNG_UP: u8 = 129;
 
-/// Exit code after Ctrl-C: 128 and the number of SIGINT.
+/// Exit code after Ctrl-C: 128 plus the number of SIGINT.
 pub const INTERRUPTED: u8 = 130;
 
-/// Exit code after SIGTERM, which schedulers send before the time is up: 128 and its number.
+/// Exit code after SIGTERM, which schedulers send before the time is up: 128 plus its number.
 pub const TERMINATED: u8 = 143;
 
 /// The exit codes as `--help` explains them.
@@ -28,7 +28,7 @@ Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs di
 out, nothing was started (compare: it cannot tell); 3 the render failed, but what it had rendered is saved; 130 Ctrl-C, 143 SIGTERM, 129 \
 SIGHUP: what had been rendered is saved";
 
-/// Why the program ends without having done what was asked.
+/// Why the program ends without doing what was asked.
 #[derive(Debug)]
 pub enum Failure {
     /// The command line is invalid, or asks for help.
@@ -37,17 +37,15 @@ pub enum Failure {
     Input(anyhow::Error),
     /// Something failed during the run.
     Run(anyhow::Error),
-    /// The render failed, but what it had rendered is in its files.
+    /// The render failed, but its files hold the samples so far.
     BrokeOff(anyhow::Error),
 }
 
 impl Failure {
-    /// A failure before anything was started.
     pub fn input(error: impl Into<anyhow::Error>) -> Self {
         Failure::Input(error.into())
     }
 
-    /// A failure during the run.
     pub fn run(error: impl Into<anyhow::Error>) -> Self {
         Failure::Run(error.into())
     }

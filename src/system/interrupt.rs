@@ -1,6 +1,6 @@
-//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. Another Ctrl-C ends
-//! the program immediately, but never while files are being written. The exit code tells which signal it was. On Linux, a
-//! signal that was ignored when the program started, as SIGHUP by nohup, stays ignored.
+//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first requests an orderly end. Another Ctrl-C ends the program
+//! at once, but never while files are being written. The exit code tells which signal it was. On Linux, a signal that
+//! was ignored at the start, such as SIGHUP under nohup, stays ignored.
 
 use crate::system::console;
 use crate::system::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
@@ -28,19 +28,19 @@ struct State {
     since: Option<Instant>,
     /// The exit code of the signals that have arrived.
     exit_code: Option<u8>,
-    /// What is being written, in words.
+    /// Description of what is being written.
     writing: Option<String>,
 }
 
 impl State {
-    /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and end a program that takes too long with
-    /// SIGKILL.
+    /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and send SIGKILL to a program that takes too
+    /// long.
     fn hurries(&self) -> bool {
         self.exit_code == Some(INTERRUPTED)
     }
 }
 
-/// Calls `answer` with its exit code, on a thread of its own, whenever a signal has arrived.
+/// Calls `answer` with the exit code of each signal, on its own thread.
 #[cfg(unix)]
 fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -60,20 +60,20 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     Ok(())
 }
 
-/// The same. The system does not say which signal it was.
+/// As on Unix, but the system does not say which signal it was.
 #[cfg(not(unix))]
 fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     Ok(ctrlc::set_handler(move || answer(INTERRUPTED))?)
 }
 
-/// The signals that the program ignores, a bit each, the lowest for signal 1. Called before any is handled, they are those
-/// that it was started with. Where `/proc` does not tell, there are none.
+/// The signals that the program ignores, as a bit mask with signal 1 lowest. Called before any is handled, it returns
+/// those ignored at the start. Empty where `/proc` does not tell.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     ignored_in(&std::fs::read_to_string("/proc/self/status").unwrap_or_default())
 }
 
-/// The same from the text of `/proc/self/status`.
+/// Parses the text of `/proc/self/status`.
 #[cfg(unix)]
 fn ignored_in(status: &str) -> u64 {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -83,11 +83,9 @@ fn ignored_in(status: &str) -> u64 {
 /// The response to a signal.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
-    /// Only the flag is set.
+    /// Sets only the flag.
     Nothing,
-    /// A message is printed.
     Say(String),
-    /// The program ends.
     Exit,
 }
 
@@ -100,7 +98,7 @@ impl Shared {
         let mut state = self.state();
         let first = *state.since.get_or_insert(now);
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
-        // Whoever presses Ctrl-C wants the end, whatever else asks for it.
+        // Ctrl-C comes first: the person at the keyboard wants the end, whatever else asks for it.
         state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
             .into_iter()
             .find(|code| *code == exit_code || Some(*code) == state.exit_code);
@@ -117,7 +115,7 @@ impl Shared {
 }
 
 impl Interrupt {
-    /// Starts to handle signals. This can be done once per process.
+    /// Starts handling signals. Call it once per process.
     ///
     /// # Errors
     /// If the system refuses.
@@ -125,7 +123,7 @@ impl Interrupt {
         Self::install_with(|| {})
     }
 
-    /// Like [`Interrupt::install`]; `wake` is called, on another thread, when a signal has arrived.
+    /// Like [`Interrupt::install`], and calls `wake` on another thread when a signal has arrived.
     ///
     /// # Errors
     /// If the system refuses.
@@ -134,7 +132,7 @@ impl Interrupt {
         let seen = Arc::clone(&shared);
         let answer = move |code| match seen.signalled(code, Instant::now()) {
             Answer::Nothing => wake(),
-            Answer::Say(words) => console::note(&words),
+            Answer::Say(message) => console::note(&message),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");
                 std::process::exit(i32::from(seen.exit_code()));
@@ -155,29 +153,28 @@ impl Interrupt {
         &self.0.is_set
     }
 
-    /// Whether an end has been requested.
     pub fn is_set(&self) -> bool {
         self.0.is_set.load(Ordering::Relaxed)
     }
 
-    /// Whether somebody at a keyboard has asked for the end, and can ask again.
+    /// Whether somebody at a keyboard asked for the end and can ask again.
     pub fn is_by_hand(&self) -> bool {
         self.0.state().hurries()
     }
 
-    /// The exit code of a program that a signal has ended in good order.
+    /// Exit code of a program that ends in good order after a signal.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.0.exit_code())
     }
 
-    /// Until the result is dropped, a signal does not end the program but prints a message that names `what`.
+    /// Until the result is dropped, a signal prints a message that names `what` instead of ending the program.
     pub fn while_writing(&self, what: impl Into<String>) -> Writing<'_> {
         self.0.state().writing = Some(what.into());
         Writing(&self.0)
     }
 }
 
-/// Files are being written: see [`Interrupt::while_writing`].
+/// Guard of [`Interrupt::while_writing`].
 pub struct Writing<'a>(&'a Shared);
 
 impl Drop for Writing<'_> {
@@ -201,7 +198,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_signal_asks_and_a_later_ctrl_c_ends() {
+    fn first_signal_asks_and_a_later_ctrl_c_ends() {
         let (shared, now) = (Shared::default(), Instant::now());
         assert_eq!(shared.exit_code(), 130);
         assert_eq!(shared.signalled(HUNG_UP, now), Answer::Nothing);
@@ -235,7 +232,7 @@ mod tests {
         let writing = interrupt.while_writing("film.exr");
         for late in 0..3 {
             let answer = interrupt.0.signalled(INTERRUPTED, now + late * ECHO);
-            assert!(matches!(&answer, Answer::Say(words) if words.contains("film.exr")), "{answer:?}");
+            assert!(matches!(&answer, Answer::Say(message) if message.contains("film.exr")), "{answer:?}");
         }
         drop(writing);
         assert!(interrupt.is_set());

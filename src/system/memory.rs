@@ -1,5 +1,5 @@
-//! Checks whether data fits into memory before it is allocated. A system that overcommits memory kills the program
-//! later, and a failed allocation also ends it.
+//! Checks whether data fits into memory before it is allocated. A system that overcommits memory would kill the program
+//! later, and a failed allocation would abort it.
 //!
 //! Code that needs memory in proportion to a number from outside (films, pictures, scenes) first calls [`check`], or
 //! allocates with [`filled`].
@@ -14,9 +14,7 @@ pub struct MemoryError {
     pub what: String,
     /// Bytes needed, including what the rest of the program takes.
     pub needed_bytes: u64,
-    /// Bytes available.
     pub free_bytes: u64,
-    /// What to do.
     pub remedy: &'static str,
 }
 
@@ -29,13 +27,13 @@ pub fn words(bytes: u64) -> String {
     }
 }
 
-/// What everything else takes: program, threads, files.
+/// Everything else: program, threads, files.
 const BASE_BYTES: u64 = 64 << 20;
 
 /// Smaller sizes are not checked with the system; [`filled`] notices if the allocation fails.
 const SMALL_BYTES: u64 = 16 << 20;
 
-/// Returns an error if `bytes` do not fit, provided the system tells what is free. `what` names their purpose.
+/// Returns an error if `bytes` do not fit into the free memory that the system reports. `what` names their purpose.
 ///
 /// # Errors
 /// [`MemoryError`] with this `remedy`.
@@ -82,7 +80,7 @@ pub fn filled<T: Clone>(
     Ok(items)
 }
 
-/// Bytes available: the least of what the system and the limits of the process's control groups allow. `None` if the
+/// Available bytes: the least of what the system and the limits of the process's control groups allow. `None` if the
 /// system does not tell.
 pub fn free_bytes() -> Option<u64> {
     let of_system = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text));
@@ -95,8 +93,8 @@ fn available(meminfo: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// What the control group of the process and those around it still allow. Within a container, the process's own group is
-/// the visible root, whatever its name outside.
+/// What the process's control group and its ancestors still allow. In a container, the process's own group is the
+/// visible root, whatever its name outside.
 fn free_of_groups() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let own = groups.lines().find_map(|line| line.strip_prefix("0::"))?;
@@ -104,7 +102,7 @@ fn free_of_groups() -> Option<u64> {
     around.chain([own]).filter_map(|group| free_of_group(&format!("/sys/fs/cgroup{group}"))).min()
 }
 
-/// Cached files do not count, because the system drops them if memory is needed.
+/// Cached files do not count, because the system drops them when memory is short.
 fn free_of_group(directory: &str) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(format!("{directory}/{name}")).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
@@ -139,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_group_allows_its_limit_less_what_is_used_and_not_cached() {
+    fn group_allows_its_limit_less_uncached_use() {
         let group = tempfile::tempdir().unwrap();
         let free = |limit: &str, stat: &str| {
             for (name, text) in [("memory.max", limit), ("memory.current", "700\n"), ("memory.stat", stat)] {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-/// A number as messages print it: with an exponent if it is so large or small that plain digits would be hard to count.
+/// A number as messages print it: with an exponent where plain digits would be hard to count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number(pub f64);
 

@@ -2,22 +2,22 @@
 
 use std::borrow::Cow;
 
-/// A word in quotes, if it needs any. Vectors and the like have none, though shlex would put them around a comma.
+/// Quotes a word if necessary. Vectors such as `1,2,3` stay bare, though shlex would quote their commas.
 pub fn quoted(word: &str) -> Cow<'_, str> {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return Cow::Borrowed(word);
     }
-    // It fails for a NUL alone, which no argument can have.
+    // Fails only for NUL, which no argument can hold.
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
 
-/// A path that no program takes for a flag: `./` comes before a dash.
+/// A path that no program takes for a flag: `./` comes before a leading dash.
 pub fn operand(path: &str) -> Cow<'_, str> {
     if path.starts_with('-') { Cow::Owned(format!("./{path}")) } else { Cow::Borrowed(path) }
 }
 
-/// A command line of these words.
+/// Joins words into a command line.
 pub fn line<W: AsRef<str>>(words: impl IntoIterator<Item = W>) -> String {
     words.into_iter().map(|word| quoted(word.as_ref()).into_owned()).collect::<Vec<_>>().join(" ")
 }
@@ -27,7 +27,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shell_finds_the_words_again() {
+    fn quoted_words_survive_a_shell() {
         let words = ["weekender", "--size=8x4", "a b", "it's", "$HOME", "", "back\\slash", "ö*?", "-1,2,3"];
         let line = line(words);
         assert_eq!(shlex::split(&line).unwrap(), words);

@@ -1,9 +1,9 @@
 //! Names that the user may have meant.
 
-/// At most this many are offered.
+/// Most names offered.
 const OFFERED: usize = 4;
 
-/// Those of `names` that look like `wanted`, the likeliest first. Empty if none does.
+/// Those of `names` that look like `wanted`, most similar first.
 pub(crate) fn similar_names(
     wanted: &str,
     names: impl IntoIterator<Item = &'static str>,
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_and_beginnings_are_recognised() {
+    fn typos_and_prefixes_are_recognised() {
         let names = ["glass-refract", "glass-tir", "glass-schlick", "sky", "metal"];
         assert_eq!(similar_names("matal", names), ["metal"]);
         assert_eq!(similar_names("sk", names), ["sky"]);
@@ -45,11 +45,11 @@ mod tests {
     }
 
     #[test]
-    fn few_names_are_offered_and_the_likeliest_first() {
+    fn few_names_are_offered_most_similar_first() {
         let near = |wanted: &str, names: &[&'static str]| similar_names(wanted, names.iter().copied());
-        // Of six letters, three may be wrong.
+        // Three of six letters may be wrong.
         assert_eq!(near("abcdef", &["abwxyz", "abcxyz", "abcdxf"]), ["abcdxf", "abcxyz"]);
-        // A part of the other counts, however long that is, but not if it is hardly a word.
+        // Containing the other name counts, however long it is, unless the shared part is too short to be a word.
         assert_eq!(near("abc", &["a song of abc", "abcd"]), ["abcd", "a song of abc"]);
         assert_eq!(near("abcdefghijkl", &["kl", "mn"]), ["kl"]);
         assert_eq!(near("ab", &["a song of ab"]), [""; 0]);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_message_names_what_is_near() {
+    fn messages_name_similar_names() {
         assert_eq!(or_nearest(&["a", "b"]), "did you mean a or b? --list shows all");
         assert_eq!(or_nearest(&[]), "--list shows all");
     }

@@ -1,12 +1,12 @@
-//! Work that several threads share. A system may refuse to start a thread, for example in a full control group or at
-//! the limit on a user's processes. The threads that it does start then do all the work.
+//! Work shared among threads. A system may refuse to start a thread, for example in a full control group or at the
+//! limit on a user's processes; the threads that do start then do all the work.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, PoisonError};
 use std::thread::{self, Builder};
 
-/// Does `work` with each item, with a thread for each as far as the system starts them; the calling thread is one of
-/// them. Returns the results in the order of the items. A panic is an error of its item alone.
+/// Applies `work` to each item, on as many threads as the system starts, the caller's included. Returns the results in
+/// the order of the items. A panic is an error of its item alone.
 pub(crate) fn shared<T: Send, R: Send>(
     items: Vec<T>,
     work: impl Fn(T) -> R + Sync,
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn work_without_threads_for_it_is_done_by_the_caller() {
+    fn work_without_threads_runs_on_the_caller() {
         let own = thread::current().id();
         let done = threads_of(|| Builder::new().stack_size(TOO_LARGE));
         assert!(done.iter().enumerate().all(|(index, (result, _))| *result as usize == 2 * index));

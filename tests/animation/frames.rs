@@ -38,7 +38,7 @@ fn a_frame_alone_has_the_same_bits_as_in_a_run() {
 }
 
 #[test]
-fn whole_frames_are_kept_and_others_are_rendered_again() {
+fn only_incomplete_frames_are_rendered_again() {
     let directory = temp();
     let run = |more: &[&str]| {
         let json = render(directory.path(), &[&["--turntable=8", "--out", "d"], more].concat());
@@ -50,7 +50,7 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
     assert_eq!(run(&[]), [0, 8]);
     let good: Vec<_> = (0..8).map(|frame| fs::read(path(frame)).unwrap()).collect();
 
-    // Cut short, one flipped bit in the pixels, another frame, and not a picture.
+    // Truncated, one flipped bit in the pixels, another frame, and not a picture.
     fs::write(path(0), &good[0][..good[0].len() - 20]).unwrap();
     let mut flipped = good[1].clone();
     let data = flipped.windows(4).position(|word| word == b"IDAT").unwrap();
@@ -72,7 +72,7 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
+fn interrupted_run_keeps_whole_frames_and_continues() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let directory = temp();
         let flags =
@@ -113,16 +113,16 @@ fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
 }
 
 #[test]
-fn a_run_that_breaks_off_says_where_and_keeps_its_frames() {
+fn failed_run_reports_where_and_keeps_its_frames() {
     let directory = temp();
     fs::create_dir_all(directory.path().join("d/frame-0002.png")).unwrap();
     let flags = ["--batch", "--size", "24x14", "--samples", "4", "--turntable=4", "--out", "d"];
-    // The second run renders none, but the frames of the first are there.
+    // The second run renders none, but keeps the frames of the first.
     for _ in 0..2 {
         let output = weekender(directory.path(), &flags).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{told}");
-        assert!(told.contains("frame 2 failed; 2 frames before it stay"), "{told}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{message}");
+        assert!(message.contains("frame 2 failed; 2 frames before it stay"), "{message}");
     }
     assert_eq!(names(&directory.path().join("d")), ["frame-0000.png", "frame-0001.png", "frame-0002.png"]);
 }

@@ -82,7 +82,7 @@ fn keyframes() -> Vec<Keyframe> {
 }
 
 #[test]
-fn a_path_goes_through_its_keyframes_exactly_and_rests_beyond_them() {
+fn path_meets_its_keyframes_and_rests_beyond_them() {
     let path = keyframed(keyframes());
     for Keyframe { frame, camera } in keyframes() {
         assert_eq!(path.camera(frame), camera);
@@ -228,7 +228,7 @@ fn at_and_focused(frame: u32, x: f64, focus: f64) -> Keyframe {
 
 /// Between 0, 1 and 0 a path without curvature at its ends is `1.5 t - 0.5 t^3`, there and back.
 #[test]
-fn a_path_begins_and_ends_without_curvature() {
+fn path_has_no_curvature_at_its_ends() {
     let keyframes = [(0, 0.0), (8, 1.0), (16, 0.0)].map(|(frame, x)| at_and_focused(frame, x, 0.0));
     let path = keyframed(keyframes.to_vec());
     for frame in 0..=8 {
@@ -242,7 +242,7 @@ fn a_path_begins_and_ends_without_curvature() {
 
 /// With the slopes 1 and 1/6 over 2 and 6 frames, that at the keyframe is `3 (2 + 6) / ((2 + 12) / 1 + (4 + 6) 6)`.
 #[test]
-fn the_focus_bends_by_the_slopes_on_both_sides_and_the_shorter_side_counts_more() {
+fn focus_slope_weights_the_shorter_side_more() {
     let keyframes = [(0, 0.0), (2, 2.0), (8, 3.0)].map(|(frame, focus)| at_and_focused(frame, 0.0, focus));
     let path = keyframed(keyframes.to_vec());
     let slope = 24.0 / 74.0;

@@ -11,7 +11,7 @@ fn with(before: &str, after: &str) -> Result<Recipe, String> {
 }
 
 #[test]
-fn a_keyframe_takes_what_it_leaves_out_from_the_camera() {
+fn keyframe_inherits_omitted_keys_from_the_camera() {
     let recipe = parse(SCENE, "scene").unwrap();
     let [first, second, third] = recipe.keyframes.as_slice() else { panic!("{recipe:?}") };
     assert_eq!((first.frame, first.camera), (0, recipe.camera));

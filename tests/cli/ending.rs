@@ -44,7 +44,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     .stderr(Stdio::piped())
     .spawn()
     .unwrap();
-    // It prints its first line after it has started to listen.
+    // It prints its first line once it handles signals.
     let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
     std::io::BufRead::read_line(&mut stderr, &mut String::new()).unwrap();
     std::thread::sleep(Duration::from_millis(500));

@@ -92,7 +92,7 @@ fn films_of_other_pictures_are_not_resumed() {
 }
 
 #[test]
-fn a_checkpoint_is_never_replaced_unless_the_render_goes_on_with_it() {
+fn checkpoint_is_only_replaced_by_its_continuation() {
     let directory = temp();
     let at = |name: &str| directory.path().join(name);
     render(directory.path(), &["--samples", "32", "--checkpoint", "k.exr"]);

@@ -1,4 +1,4 @@
-//! What is written, where, and which outputs are refused.
+//! Outputs: what is written where, and which ones are refused.
 
 use super::common::{film, names, refused, refused_in, render, run, temp, text};
 use serde_json::Value;
@@ -53,7 +53,7 @@ fn every_stage_renders_into_the_directory() {
 }
 
 #[test]
-fn the_list_names_scenes_stages_and_devices() {
+fn list_names_scenes_stages_and_devices() {
     let output = run(temp().path(), &["--list"]);
     assert!(output.status.success());
     let list = text(&output.stdout);
@@ -63,7 +63,7 @@ fn the_list_names_scenes_stages_and_devices() {
 }
 
 #[test]
-fn progress_can_be_asked_for_where_there_is_no_terminal() {
+fn progress_can_be_forced_without_a_terminal() {
     let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
     assert!(text(&output.stderr).contains("writing"), "{}", text(&output.stderr));
 }
@@ -102,7 +102,7 @@ fn an_output_is_no_input_and_no_other_output() {
 }
 
 #[test]
-fn no_output_replaces_a_file_of_a_plan() {
+fn outputs_never_replace_files_of_a_plan() {
     let directory = temp();
     let plan = ["plan", "--parts", "2", "--size", "8x4", "--samples", "4", "--out"];
     for flags in [&["q"][..], &["a", "--turntable=4"]] {

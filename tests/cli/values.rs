@@ -50,14 +50,14 @@ fn names_that_do_not_exist_are_refused() {
 }
 
 #[test]
-fn what_the_processor_lacks_is_refused_with_what_it_has() {
+fn missing_cpu_level_is_refused_with_those_available() {
     let foreign = if cfg!(target_arch = "x86_64") { "neon" } else { "avx2" };
     refused(&["--batch", "--isa", foreign], &[foreign, "portable"]);
     refused(&["--batch", "--isa", "portable", "--simd", "16"], &["16 lanes", "portable"]);
 }
 
 #[test]
-fn nothing_from_outside_steers_a_terminal() {
+fn outside_text_cannot_control_a_terminal() {
     let directory = temp();
     let steers = |bytes: &[u8]| text(bytes).chars().any(|c| c.is_control() && c != '\n');
     let scene = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n\
@@ -69,8 +69,8 @@ fn nothing_from_outside_steers_a_terminal() {
             ["diff", "--scene", "s.toml", "--size", "9x9", "--pixel", "4,4", "--sides", "cpu,reference"];
         let output = run(directory.path(), &[&path[..], more].concat());
         assert!(!steers(&output.stdout) && !steers(&output.stderr), "{output:?}");
-        let told = text(&output.stdout) + &text(&output.stderr);
-        assert!(told.contains("a\\u{1b}[2Jb\\u{9b}c"), "{told}");
+        let message = text(&output.stdout) + &text(&output.stderr);
+        assert!(message.contains("a\\u{1b}[2Jb\\u{9b}c"), "{message}");
     }
     for arguments in
         [&["--batch", "--scene", "a\x1b[31mb"][..], &["--batch", "--out", "a\x1b]0;title\x07.png/"]]
@@ -83,7 +83,7 @@ fn nothing_from_outside_steers_a_terminal() {
 }
 
 #[test]
-fn a_report_has_each_target_once_and_the_chosen_one_first() {
+fn report_targets_are_unique_with_the_chosen_one_first() {
     let targets = |flags: &[&str]| {
         let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
         let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {

@@ -15,7 +15,7 @@ pub const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
 pub const PICTURE: [&str; 8] =
     ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
 
-/// A render that never ends by itself and keeps its film.
+/// An endless render that keeps its film.
 pub const ENDLESS: [&str; 8] =
     ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
 
@@ -23,8 +23,7 @@ pub fn rounds(usual: u32) -> u32 {
     std::env::var("WEEKENDER_FAULT_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
 }
 
-/// The program with all signals as usual, also if the tests are started by a script in the background, which ignores
-/// SIGINT.
+/// The program with default signals, even if a script in the background, which ignores SIGINT, started the tests.
 pub fn weekender(at: &Path, arguments: &[&str]) -> Command {
     let program = crate::program_common::weekender(at, arguments);
     let mut command = Command::new("env");

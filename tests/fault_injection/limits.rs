@@ -23,17 +23,17 @@ fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
 }
 
 #[test]
-fn a_limit_on_the_size_of_files_is_an_error_and_the_loss_is_told() {
+fn file_size_limit_is_an_error_and_the_loss_is_reported() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::create_dir(at.join("elsewhere")).unwrap();
     let flags =
         [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"]].concat();
     let output = limited(at, "ulimit -f 1", &flags);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
     for part in ["g.exr", "g.png", "ulimit -f", "the samples are lost (2 per pixel", "elsewhere"] {
-        assert!(told.contains(part), "{told} should say {part}");
+        assert!(message.contains(part), "{message} should say {part}");
     }
     assert_eq!(names(at), ["elsewhere"]);
 }
@@ -51,12 +51,12 @@ fn a_full_disk_keeps_the_samples_elsewhere() {
         [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "here/g.exr", "--out", "here/g.png"]]
             .concat();
     let output = limited(at, "true", &flags);
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
     let kept: Vec<String> =
         names(&at.join("here")).into_iter().filter(|name| name.starts_with("weekender-")).collect();
-    let [kept] = kept.as_slice() else { panic!("{told}") };
-    assert!(told.contains(kept) && told.contains("g.exr") && told.contains("g.png"), "{told}");
+    let [kept] = kept.as_slice() else { panic!("{message}") };
+    assert!(message.contains(kept) && message.contains("g.exr") && message.contains("g.png"), "{message}");
     assert_eq!(film(&at.join("here").join(kept)).sample_count(), 2);
 }
 
@@ -79,7 +79,7 @@ fn films_are_read_and_written_where_no_thread_starts() {
 }
 
 #[test]
-fn the_second_run_on_one_film_is_refused_until_the_first_has_ended_or_was_killed() {
+fn second_run_on_a_film_is_refused_until_the_first_ends() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let second = |flags: &[&str]| {
@@ -89,14 +89,14 @@ fn the_second_run_on_one_film_is_refused_until_the_first_has_ended_or_was_killed
     let mut first = batch(at, "off", &ENDLESS).spawn().unwrap();
     until("the film is not written", || at.join("g.exr").exists());
     for flags in [&["--checkpoint", "./g.exr", "--continue", "--out", "b.png"][..], &["--out", "g.exr"]] {
-        let (code, told) = second(flags);
-        assert_eq!(code, Some(2), "{told}");
-        assert!(told.contains("g.exr is locked") && told.contains("name another file"), "{told}");
+        let (code, message) = second(flags);
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains("g.exr is locked") && message.contains("name another file"), "{message}");
     }
     assert_eq!(weekender(at, &["merge", "g.exr", "--out", "h.exr"]).status().unwrap().code(), Some(0));
     signal(&first, "KILL");
     wait(&mut first);
-    let (code, told) = second(&["--checkpoint", "g.exr", "--continue", "--out", "b.png"]);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, message) = second(&["--checkpoint", "g.exr", "--continue", "--out", "b.png"]);
+    assert_eq!(code, Some(0), "{message}");
     assert_eq!(names(at), ["b.png", "g.exr", "h.exr"]);
 }

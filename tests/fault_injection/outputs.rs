@@ -6,7 +6,7 @@ use std::process::Stdio;
 use tempfile::TempDir;
 
 #[test]
-fn what_is_only_said_never_ends_a_run() {
+fn informational_output_never_ends_a_run() {
     for is_full in [true, false] {
         let at = TempDir::new().unwrap();
         let at = at.path();
@@ -36,7 +36,7 @@ fn closed(is_full: bool) -> Stdio {
 }
 
 #[test]
-fn results_that_nobody_can_read_are_a_failure_with_a_word() {
+fn unreadable_results_are_a_reported_failure() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     succeeds(&mut batch(at, "off", &["--samples", "2", "--out", "a.exr"]));

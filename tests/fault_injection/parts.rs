@@ -8,9 +8,9 @@ use std::time::Duration;
 use tempfile::TempDir;
 use weekender::film::checkpoint;
 
-/// A power cut cannot be told from `kill -9` by the files: both leave the last film that was renamed into its place.
+/// The files of a power cut look like those of `kill -9`: both leave the last film that was renamed into place.
 #[test]
-fn a_part_that_is_killed_at_random_goes_on_and_ends_with_the_bits_of_one_run() {
+fn part_killed_at_random_ends_with_the_bits_of_one_run() {
     let mut dice = Dice::new();
     println!("dice {}", dice.seed());
     let at = TempDir::new().unwrap();
@@ -27,7 +27,7 @@ fn a_part_that_is_killed_at_random_goes_on_and_ends_with_the_bits_of_one_run() {
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(500)));
-        // Every fourth one is asked to end.
+        // Every fourth run is asked to end instead of killed.
         let asked = round % 4 == 3;
         signal(&child, if asked { "TERM" } else { "KILL" });
         drop(stderr);

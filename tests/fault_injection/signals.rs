@@ -36,7 +36,7 @@ impl Dice {
 }
 
 /// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
-fn goes_on_to_the_same_bits(at: &Path, part: &str) {
+fn continues_to_the_same_bits(at: &Path, part: &str) {
     let whole = film(&at.join(part));
     let samples = whole.samples().end() + 3;
     let range = format!("0..{samples}");
@@ -47,7 +47,7 @@ fn goes_on_to_the_same_bits(at: &Path, part: &str) {
 }
 
 #[test]
-fn signals_at_any_moment_leave_a_film_that_goes_on() {
+fn signals_at_any_moment_leave_a_resumable_film() {
     let mut dice = Dice::new();
     println!("dice {}", dice.seed());
     let (mut films, mut unfinished) = (0, 0);
@@ -56,7 +56,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         let at = at.path();
         let name = ["KILL", "INT", "TERM"][round as usize % 3];
         let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
-        // It prints its first line after it has started to listen.
+        // It prints its first line once it handles signals.
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(400)));
@@ -73,7 +73,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
         if at.join("g.exr").exists() {
             films += 1;
-            goes_on_to_the_same_bits(at, "g.exr");
+            continues_to_the_same_bits(at, "g.exr");
             let left: Vec<String> = names(at).into_iter().filter(|name| name.ends_with(".part")).collect();
             assert!(left.is_empty(), "the next run clears up: {left:?}");
         }
@@ -83,7 +83,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
 }
 
 #[test]
-fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
+fn kill_loses_only_samples_since_the_last_write() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
@@ -94,11 +94,11 @@ fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
     signal(&child, "KILL");
     wait(&mut child);
     assert!(!at.join("g.png").exists());
-    goes_on_to_the_same_bits(at, "g.exr");
+    continues_to_the_same_bits(at, "g.exr");
 }
 
 #[test]
-fn signals_while_files_are_written_wait_for_them_and_are_answered() {
+fn signals_wait_for_file_writes_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // A pipe accepts a picture as slowly as its reader wants.
@@ -106,10 +106,10 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
     let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
     let mut child = batch(at, "on", &flags).spawn().unwrap();
     let stderr = BufReader::new(child.stderr.take().unwrap());
-    let (said, lines) = std::sync::mpsc::channel();
+    let (sender, lines) = std::sync::mpsc::channel();
     let listener = std::thread::spawn(move || {
         for line in stderr.lines().map_while(Result::ok) {
-            said.send(line).unwrap();
+            sender.send(line).unwrap();
         }
     });
     let hear = |part: &str| {
@@ -144,7 +144,7 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
 }
 
 #[test]
-fn a_signal_that_arrives_twice_is_one() {
+fn repeated_signal_counts_once() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
@@ -175,10 +175,10 @@ fn a_second_signal_ends_the_program_at_once() {
         }
         signal(&child, "INT");
         let status = wait(&mut child);
-        let mut told = String::new();
-        stderr.read_to_string(&mut told).unwrap();
-        assert_eq!(status.code(), Some(130), "{told}");
-        assert!(told.contains("ended at once"), "{told}");
+        let mut message = String::new();
+        stderr.read_to_string(&mut message).unwrap();
+        assert_eq!(status.code(), Some(130), "{message}");
+        assert!(message.contains("ended at once"), "{message}");
         // The next run removes the lock.
         assert!(names(at).iter().all(|name| name.ends_with(".lock")), "nothing is written: {:?}", names(at));
         return;
@@ -188,7 +188,7 @@ fn a_second_signal_ends_the_program_at_once() {
 
 /// What nohup does for SIGHUP, and a shell without job control for SIGINT.
 #[test]
-fn a_signal_that_was_ignored_at_the_start_stays_ignored() {
+fn initially_ignored_signals_stay_ignored() {
     for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
         let at = TempDir::new().unwrap();
         let at = at.path();

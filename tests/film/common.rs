@@ -51,6 +51,6 @@ pub fn same_recipe_text(first: &str, other: &str) -> Result<(), String> {
     let is_compared = |line: &&str| !line.starts_with("samples_per_pixel = ");
     let lines = |text: &str| text.lines().filter(is_compared).map(str::to_owned).collect::<Vec<_>>();
     let (first, other) = (lines(first), lines(other));
-    let told = || format!("one says `{}`, the other `{}`", first.join("`, `"), other.join("`, `"));
-    if first == other { Ok(()) } else { Err(told()) }
+    let message = || format!("one says `{}`, the other `{}`", first.join("`, `"), other.join("`, `"));
+    if first == other { Ok(()) } else { Err(message()) }
 }

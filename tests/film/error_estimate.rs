@@ -32,15 +32,15 @@ fn the_error_is_right_for_halves_of_different_counts() {
 }
 
 #[test]
-fn the_estimate_knows_how_far_off_it_may_be() {
+fn stated_uncertainty_matches_the_spread() {
     // 400 small films with different samples: compares the spread of their estimates with the stated uncertainty.
     let errors: Vec<_> =
         (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();
     let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
     let middle = mean(&|k| errors[k].rmse);
     let spread = mean(&|k| (errors[k].rmse - middle).powi(2)).sqrt();
-    let said = mean(&|k| errors[k].rmse_deviation);
-    assert!((said / spread - 1.0).abs() < 0.15, "said {said}, was {spread}");
+    let stated = mean(&|k| errors[k].rmse_deviation);
+    assert!((stated / spread - 1.0).abs() < 0.15, "stated {stated}, was {spread}");
     assert_eq!(Film::new(4, 3, 2).error(), None);
 }
 
@@ -102,9 +102,9 @@ fn an_estimate_of_few_pixels_among_many_is_in_doubt() {
         assert_eq!(doubt.is_some(), is_doubted, "{noisy} of {pixels}: {doubt:?}");
     }
     let film = film_with_noise_in(1000, 50);
-    let told = film.doubt(&film.error().unwrap()).unwrap();
+    let message = film.doubt(&film.error().unwrap()).unwrap();
     // 1 / (1/50 - 1/1000) = 52.6
-    assert!(told.contains("it effectively rests on 53 of 1000 pixels, but needs 100;"), "{told}");
+    assert!(message.contains("it effectively rests on 53 of 1000 pixels, but needs 100;"), "{message}");
 }
 
 /// A film of samples that are all alike, more of them in the first half if their number is odd.
@@ -118,7 +118,7 @@ fn even_film(radiance: f64, samples: u64) -> Film {
     film
 }
 
-/// Samples that are alike are rounded alike, and the halves do not show it.
+/// Equal samples round alike, which the halves do not show.
 #[test]
 fn the_error_includes_what_rounding_costs() {
     for radiance in [1e-7, 3.1e-8, 1e-6, 0.3] {
@@ -137,7 +137,7 @@ fn the_error_includes_what_rounding_costs() {
 }
 
 #[test]
-fn noise_that_is_less_than_rounding_does_not_count() {
+fn noise_below_rounding_does_not_count() {
     let mut film = even_film(0.3, 64);
     film.halves_mut()[1][7].0[2] += 1;
     let error = film.error().unwrap();
@@ -145,7 +145,7 @@ fn noise_that_is_less_than_rounding_does_not_count() {
 }
 
 #[test]
-fn every_channel_counts_in_the_error_and_dark_ones_count_more_in_the_relative_one() {
+fn all_channels_count_and_dark_ones_more_in_rel_mse() {
     // Two halves of one sample each, of two pixels.
     let halves = [[[0.75, 0.25, 0.5], [0.0, 1.0, 0.125]], [[0.25, 0.25, 1.0], [0.5, 0.25, 0.0625]]];
     let mut film = Film::new(2, 1, 2);

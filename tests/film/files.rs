@@ -11,7 +11,7 @@ use weekender::system::files::InputError;
 
 proptest! {
     #[test]
-    fn a_film_file_gives_back_the_film(
+    fn film_files_round_trip(
         width in 1_u32..9,
         height in 1_u32..9,
         halves in 1_usize..=2,
@@ -32,7 +32,7 @@ proptest! {
         checkpoint::save(&path, &film, &description()).unwrap();
         let file = checkpoint::load(&path).unwrap();
         prop_assert!(file.film == film && file.description == description());
-        // The same film always becomes the same bytes.
+        // The same film always gives the same bytes.
         let again = directory.path().join("again.exr");
         checkpoint::save(&again, &film, &description()).unwrap();
         prop_assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap());
@@ -46,7 +46,7 @@ fn load_error(path: &Path) -> CheckpointError {
 }
 
 #[test]
-fn what_is_no_film_file_is_refused_with_the_reason() {
+fn invalid_film_files_are_refused_with_the_reason() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     let input = |error| match error {
@@ -86,11 +86,11 @@ fn another_version_is_refused() {
         std::fs::write(&path, &whole).unwrap();
         spoil(&path, needle, offset, digit);
         let error = load_error(&path);
-        let told = error.to_string();
+        let message = error.to_string();
         for part in
             [&format!("layout {layout} with samples of version {samples}"), &writer, "render it again"]
         {
-            assert!(told.contains(part), "{part} is not in {told}");
+            assert!(message.contains(part), "{part} is not in {message}");
         }
         let (path, writer) = (path.clone(), writer.clone());
         assert_eq!(error, CheckpointError::Version { path, layout, samples, writer });
@@ -99,7 +99,7 @@ fn another_version_is_refused() {
 
 /// A film of layout 4, as it was first written, with two bands and both halves.
 #[test]
-fn a_film_that_was_written_long_ago_is_read() {
+fn old_film_file_is_read() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/layout-4.exr"));
     let FilmFile { film, description } = checkpoint::load(path).unwrap();
     assert_eq!((film.width(), film.height(), film.samples().to_string()), (20, 18, "0..4".to_owned()));
@@ -177,7 +177,7 @@ fn damage_is_located() {
     let film = noisy_film(40, 70, 2, &[0..4]);
     checkpoint::save(&path, &film, &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
-    // Each row is a chunk: its number, the length of its bytes, and these.
+    // Each row is a chunk: its number, its length in bytes, and the bytes.
     for row in [0_u32, 17, 47, 69] {
         let chunks = (8..whole.len() - 8).filter(|place| whole[*place..place + 4] == row.to_le_bytes());
         let chunk = chunks.max().unwrap();
@@ -188,15 +188,15 @@ fn damage_is_located() {
         std::fs::write(&path, bytes).unwrap();
         let first = row / 16 * 16;
         let rows = format!("the rows {first} to {}", (first + 15).min(69));
-        for told in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
-            let told = told.unwrap_err().to_string();
-            assert!(told.contains("is damaged") && told.contains(&rows), "{row}: {told}");
+        for result in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("is damaged") && message.contains(&rows), "{row}: {message}");
         }
     }
 }
 
 #[test]
-fn other_channels_are_not_those_of_a_film() {
+fn foreign_channels_are_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
@@ -206,7 +206,7 @@ fn other_channels_are_not_those_of_a_film() {
 }
 
 #[test]
-fn the_head_of_a_film_file_tells_everything_but_the_sums() {
+fn head_has_everything_but_the_sums() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     let mut film = noisy_film(5, 3, 1, &[2..4, 9..12]);

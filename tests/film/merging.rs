@@ -24,7 +24,7 @@ fn merged_films_have_rejected_the_samples_of_both() {
 }
 
 #[test]
-fn films_that_do_not_go_together_are_left_as_they_were() {
+fn mismatched_films_are_unchanged() {
     let mut film = noisy_film(4, 3, 2, &[0..10]);
     let before = film.clone();
     let error = film.merge(&noisy_film(4, 3, 2, &[20..30, 8..12])).unwrap_err();
@@ -80,7 +80,7 @@ fn merged_files_are_the_film_of_one_run() {
 
 /// A sum that leaves one of them out would be too short.
 #[test]
-fn the_time_of_a_merged_film_is_unknown_if_that_of_one_film_is() {
+fn merged_time_is_unknown_if_any_is() {
     let directory = tempfile::tempdir().unwrap();
     let paths = ["known.exr", "unknown.exr"].map(|name| directory.path().join(name));
     checkpoint::save(&paths[0], &noisy_film(2, 2, 2, &[0..2]), &description()).unwrap();
@@ -94,7 +94,7 @@ fn the_time_of_a_merged_film_is_unknown_if_that_of_one_film_is() {
 
 /// Each thread that reads the film has several of its 25 bands, and the last one is damaged.
 #[test]
-fn a_damaged_film_leaves_the_sum_as_it_was() {
+fn damaged_film_leaves_the_sum_unchanged() {
     let directory = tempfile::tempdir().unwrap();
     let path = |name: &str| directory.path().join(name);
     for (name, range) in [("a.exr", 0..2), ("b.exr", 2..4)] {

@@ -68,7 +68,7 @@ proptest! {
 }
 
 #[test]
-fn a_set_of_samples_may_reach_the_last_number_and_no_further() {
+fn sample_indices_end_at_the_limit() {
     let mut samples = SampleRanges::default();
     samples.insert(1..SAMPLE_LIMIT).unwrap();
     assert_eq!(samples.count_in_half(0, 2) + samples.count_in_half(1, 2), samples.count());

@@ -37,7 +37,7 @@ fn the_order_of_samples_does_not_matter() {
 }
 
 #[test]
-fn what_is_no_radiance_is_rejected_and_the_picture_stays_finite() {
+fn invalid_radiance_is_rejected_and_the_picture_stays_finite() {
     let mut film = Film::new(1, 1, 1);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-30];
     let mut rejected = 0;
@@ -78,7 +78,7 @@ fn film_of(values: &[f64]) -> Film {
 }
 
 #[test]
-fn bytes_step_where_the_book_has_them_step() {
+fn bytes_step_where_the_book_steps() {
     // (b / 256)^2 is exact in fixed point for every byte b.
     for byte in 0..=255_u8 {
         let edge = (f64::from(byte) / 256.0).powi(2);
@@ -138,7 +138,7 @@ fn rows_are_the_picture_s_rows() {
 }
 
 #[test]
-fn a_film_may_have_all_that_its_samples_can_give_and_no_more() {
+fn sums_are_limited_by_the_sample_count() {
     let most = u64::from(FIXED_POINT_MAX);
     // Of five samples, three are in the first half.
     let samples = SampleRanges::from_ranges([0..5]).unwrap();

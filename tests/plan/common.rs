@@ -25,9 +25,9 @@ pub fn run(at: &Path, arguments: &[&str]) -> Output {
 /// Runs a command that must end with `code`. Returns standard output and standard error.
 pub fn ends(at: &Path, code: i32, arguments: &[&str]) -> (String, String) {
     let output = run(at, arguments);
-    let (out, told) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{told}");
-    (out, told)
+    let (out, message) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{message}");
+    (out, message)
 }
 
 pub fn succeeds(at: &Path, arguments: &[&str]) -> String {

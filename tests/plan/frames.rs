@@ -37,10 +37,10 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     let flags = ["--turntable=7", "--fps", "12"];
     let lines = plan(at, &[&flags[..], &["--parts", "3"]].concat());
     assert_eq!(lines.lines().count(), 3, "{lines}");
-    // The same plan once more says again what it divides.
+    // Planning again repeats what it divides.
     let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "3"]].concat();
-    let told = ends(at, 0, &again).1;
-    assert!(told.contains("3 parts of 2 to 3 frames"), "{told}");
+    let message = ends(at, 0, &again).1;
+    assert!(message.contains("3 parts of 2 to 3 frames"), "{message}");
     for line in lines.lines().rev() {
         let words = shlex::split(line).unwrap();
         assert_eq!(words[1], "render-part");
@@ -101,8 +101,8 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
     bytes[end] ^= 1;
     fs::write(frame(&planned, 5), bytes).unwrap();
     for arguments in [&["merge", "p", "--check"][..], &["merge", "p", "--out", "a.png"]] {
-        let (out, told) = ends(at, 1, arguments);
-        let all = out + &told;
+        let (out, message) = ends(at, 1, arguments);
+        let all = out + &message;
         for words in [
             "part 0: frame-0003.png is missing",
             "part 0: ",
@@ -124,7 +124,7 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
 
 #[cfg(unix)]
 #[test]
-fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
+fn ended_watch_reports_what_is_wrong_and_missing() {
     use std::io::{BufRead, BufReader, Read};
     let at = TempDir::new().unwrap();
     let at = at.path();
@@ -133,7 +133,7 @@ fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
         super::common::command(at, &["merge", "p", "--watch", "--every", "0.1s", "--out", "t.png"]);
     let mut child = watch.stderr(Stdio::piped()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
-    let mut told_until = |words: &str| -> Vec<String> {
+    let mut lines_until = |words: &str| -> Vec<String> {
         let mut lines = Vec::new();
         for line in stderr.by_ref().lines().map(Result::unwrap) {
             lines.push(line);
@@ -144,23 +144,23 @@ fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
         panic!("{words} is not in {lines:?}");
     };
     // It has seen that there is no frame yet.
-    told_until("0 of 2 frames are whole");
+    lines_until("0 of 2 frames are whole");
     fs::write(at.join("no-picture"), "no picture").unwrap();
     fs::rename(at.join("no-picture"), frame(&at.join("p"), 0)).unwrap();
     succeeds(at, &["render-part", "p", "--part", "1", "--device", "cpu"]);
-    let told = told_until("1 of 2 frames are whole");
-    assert!(told.iter().any(|line| line.starts_with("warning: part 0: ")), "{told:?}");
+    let lines = lines_until("1 of 2 frames are whole");
+    assert!(lines.iter().any(|line| line.starts_with("warning: part 0: ")), "{lines:?}");
     let killed = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(killed.success());
-    told_until("1 of 2 frames are whole");
-    told_until("interrupted; the same command continues");
-    told_until("--part 0");
+    lines_until("1 of 2 frames are whole");
+    lines_until("interrupted; the same command continues");
+    lines_until("--part 0");
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(!at.join("t.png").exists());
 }
 
 #[test]
-fn what_cannot_be_planned_by_frames_is_refused() {
+fn invalid_frame_plans_are_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (flags, parts) in [
@@ -170,24 +170,24 @@ fn what_cannot_be_planned_by_frames_is_refused() {
         (&["--fps", "9", "--parts", "2"], &["--fps", "--frames"]),
     ] {
         let output = run(at, &[&["plan", "--out", "p", "--samples", "4"], flags].concat());
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
         for part in parts {
-            assert!(told.contains(part), "{part}: {told}");
+            assert!(message.contains(part), "{part}: {message}");
         }
         assert!(!at.join("p").exists());
     }
     let sampled = ["plan", "--out", "q", "--sample-range", "4..8", "--turntable=9", "--parts", "2"];
     assert!(ends(at, 2, &sampled).1.contains("--sample-range"));
     plan(at, &["--turntable=3", "--parts", "3"]);
-    let (_, told) = ends(at, 2, &["merge", "p", "--out", "a.exr"]);
-    assert!(told.contains("a.exr") && told.contains(".png"), "{told}");
+    let (_, message) = ends(at, 2, &["merge", "p", "--out", "a.exr"]);
+    assert!(message.contains("a.exr") && message.contains(".png"), "{message}");
     // The directory keeps its plan.
     for other in
         [&["--turntable=6", "--parts", "3"][..], &["--parts", "3"], &["--turntable=3", "--parts", "1"]]
     {
-        let (_, told) = ends(at, 2, &[&["plan", "--out", "p"], &SMALL[..], other].concat());
-        assert!(told.contains("holds the plan of another picture"), "{told}");
+        let (_, message) = ends(at, 2, &[&["plan", "--out", "p"], &SMALL[..], other].concat());
+        assert!(message.contains("holds the plan of another picture"), "{message}");
     }
     let manifest = fs::read_to_string(at.join("p/plan.json")).unwrap();
     fs::write(at.join("p/plan.json"), manifest.replacen("\"frames\": [\n    0,", "\"frames\": [\n    1,", 1))

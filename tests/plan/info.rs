@@ -32,8 +32,8 @@ fn files_say_what_they_are() {
     assert!(json("a b.exr")["rmse_estimate"].as_f64().unwrap() > 0.0);
 
     // The command is the one that made the file, and makes the same one again.
-    let told = succeeds(at, &["info", "a b.exr"]);
-    let command = told.lines().find_map(|line| line.strip_prefix("command  ")).unwrap();
+    let message = succeeds(at, &["info", "a b.exr"]);
+    let command = message.lines().find_map(|line| line.strip_prefix("command  ")).unwrap();
     let words = shlex::split(command).unwrap();
     assert_eq!(words[0], "weekender");
     assert_eq!(json("a.png")["command"], command);
@@ -51,7 +51,7 @@ fn files_say_what_they_are() {
         "RMSE",
         "program  Weekender",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(message.contains(words), "{words}: {message}");
     }
     std::fs::write(at.join("x.exr"), "x").unwrap();
     let (_, refused) = ends(at, 2, &["info", "x.exr"]);

@@ -1,10 +1,10 @@
-//! What a merge of unfinished, damaged and foreign parts says, and what it makes of the others.
+//! Merging unfinished, damaged and foreign parts: what is reported, and what becomes of the others.
 
 use super::common::{PICTURE, damage, ends, film, part_path, plan, render_part, succeeds, whole};
 use tempfile::TempDir;
 
 #[test]
-fn what_is_there_is_merged_and_what_is_missing_is_named() {
+fn existing_parts_are_merged_and_missing_ones_named() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "32", "--parts", "4"]);
@@ -13,10 +13,10 @@ fn what_is_there_is_merged_and_what_is_missing_is_named() {
     // Part 1 is unfinished, part 2 missing.
     whole(at, "8..11", &[]);
     std::fs::rename(at.join("one-run.exr"), part_path(at, "p", 1)).unwrap();
-    let (out, told) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
+    let (out, message) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
     assert!(out.contains("19 of 32 samples per pixel (0..11, 24..32); 2 of 4 parts are whole"), "{out}");
     for part in ["part-1.exr has 3 of 8 samples", "part-2.exr is missing", "--part 1", "--part 2"] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(message.contains(part), "{part}: {message}");
     }
     let so_far = film(&at.join("m.exr"));
     let mut sum = whole(at, "0..11", &[]);
@@ -32,7 +32,7 @@ fn what_is_there_is_merged_and_what_is_missing_is_named() {
 }
 
 #[test]
-fn a_damaged_part_is_named_with_its_rows_and_leaves_nothing_in_the_sum() {
+fn damaged_part_is_named_with_its_rows_and_left_out() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // Several bands, so that some are added before the damage is met.
@@ -45,20 +45,20 @@ fn a_damaged_part_is_named_with_its_rows_and_leaves_nothing_in_the_sum() {
     let other = film(&part_path(at, "p", 1));
     damage(&part_path(at, "p", 0));
     for arguments in [&["merge", "p", "--check"][..], &["merge", "p", "--out", "m.exr"]] {
-        let (out, told) = ends(at, 1, arguments);
-        let all = out + &told;
+        let (out, message) = ends(at, 1, arguments);
+        let all = out + &message;
         assert!(all.contains("part-0.exr is damaged: the rows ") && all.contains("--part 0"), "{all}");
         assert!(!all.contains("--part 1"), "{all}");
     }
     assert!(film(&at.join("m.exr")) == other, "what was added of the damaged film is taken away again");
     // Without a plan, nothing is merged.
-    let (_, told) = ends(at, 2, &["merge", "p/part-0.exr", "p/part-1.exr", "--out", "x.exr"]);
-    assert!(told.contains("part-0.exr is damaged"), "{told}");
+    let (_, message) = ends(at, 2, &["merge", "p/part-0.exr", "p/part-1.exr", "--out", "x.exr"]);
+    assert!(message.contains("part-0.exr is damaged"), "{message}");
     assert!(!at.join("x.exr").exists());
 }
 
 #[test]
-fn parts_in_the_wrong_place_and_foreign_ones_are_named() {
+fn misplaced_and_foreign_parts_are_named() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "8", "--parts", "4"]);
@@ -79,15 +79,15 @@ fn parts_in_the_wrong_place_and_foreign_ones_are_named() {
     ] {
         assert!(checked.contains(words), "{words}: {checked}");
     }
-    let (out, told) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
-    assert!(out.contains("(0..2, 6..8)") && told.contains("seed is 0 here, 9 there"), "{out}{told}");
+    let (out, message) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
+    assert!(out.contains("(0..2, 6..8)") && message.contains("seed is 0 here, 9 there"), "{out}{message}");
     let mut sum = whole_parts;
     sum.merge(&film(&part(3))).unwrap();
     assert!(film(&at.join("m.exr")) == sum);
-    // The program does not replace what may be somebody's film.
+    // The program does not replace a possibly foreign film.
     for (index, words) in [("1", "0..2"), ("2", "seed")] {
-        let (_, told) = ends(at, 2, &["render-part", "p", "--part", index, "--device", "cpu"]);
-        assert!(told.contains(words), "{told}");
+        let (_, message) = ends(at, 2, &["render-part", "p", "--part", index, "--device", "cpu"]);
+        assert!(message.contains(words), "{message}");
     }
 }
 
@@ -105,7 +105,7 @@ fn films_without_a_plan_are_checked_for_gaps_and_overlaps() {
     render("24..26", "e.exr", &["--seed", "1"]);
     render("26..27", "f.exr", &[]);
     damage(&at.join("f.exr"));
-    let (told, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr", "d.exr", "e.exr", "f.exr"]);
+    let (message, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr", "d.exr", "e.exr", "f.exr"]);
     for words in [
         "a.exr and d.exr both hold the samples 6..8",
         "samples 8..13 are missing",
@@ -113,13 +113,13 @@ fn films_without_a_plan_are_checked_for_gaps_and_overlaps() {
         "f.exr is damaged",
         "19 samples per pixel (0..8, 13..24) in 2 of 5 films",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(message.contains(words), "{words}: {message}");
     }
-    let (_, told) = ends(at, 2, &["merge", "--out", "m.exr", "a.exr", "./a.exr"]);
-    assert!(told.contains("./a.exr is named twice; name it once"), "{told}");
+    let (_, message) = ends(at, 2, &["merge", "--out", "m.exr", "a.exr", "./a.exr"]);
+    assert!(message.contains("./a.exr is named twice; name it once"), "{message}");
     // The command fills the gap.
-    let (told, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr"]);
-    let words = shlex::split(told.lines().last().unwrap()).unwrap();
+    let (message, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr"]);
+    let words = shlex::split(message.lines().last().unwrap()).unwrap();
     let arguments: Vec<&str> = words.iter().skip(1).map(String::as_str).collect();
     succeeds(at, &[&arguments[..], &["--device", "cpu", "--threads", "2"]].concat());
     assert!(

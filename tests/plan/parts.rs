@@ -19,11 +19,11 @@ fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
             assert!(line.contains(&format!("--part {part} --device=cpu --threads=2")), "{line}");
             render_part(at, &directory, part as u32);
         }
-        let told = succeeds(at, &["merge", &directory, "--out", "merged.exr", "--out", "merged.png"]);
+        let message = succeeds(at, &["merge", &directory, "--out", "merged.exr", "--out", "merged.png"]);
         let (start, end) = range.split_once("..").unwrap();
         let count = end.parse::<u64>().unwrap() - start.parse::<u64>().unwrap();
         let words = format!("{count} of {count} samples per pixel ({range})");
-        assert!(told.contains(&words) && told.contains("merged.png"), "{told}");
+        assert!(message.contains(&words) && message.contains("merged.png"), "{message}");
         let kept: Vec<&str> = flags
             .chunks(2)
             .filter(|pair| !["--parts", "--samples", "--sample-range"].contains(&pair[0]))
@@ -37,7 +37,7 @@ fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
 }
 
 #[test]
-fn commands_name_any_directory_so_that_a_shell_finds_it() {
+fn commands_quote_directories_for_the_shell() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let directory = "it's a \"plan\" for $HOME & Köln; *";
@@ -49,16 +49,16 @@ fn commands_name_any_directory_so_that_a_shell_finds_it() {
     succeeds(at, &["merge", directory, "--out", "merged.exr"]);
     assert!(film(&at.join("merged.exr")) == whole(at, "0..4", &[]));
     std::fs::remove_file(part_path(at, directory, 1)).unwrap();
-    // The command for what is missing is ready for a shell, too.
-    let (told, _) = ends(at, 1, &["merge", directory, "--check"]);
-    let line = told.lines().last().unwrap();
+    // The command for what is missing is quoted for a shell, too.
+    let (message, _) = ends(at, 1, &["merge", directory, "--check"]);
+    let line = message.lines().last().unwrap();
     let shell = std::process::Command::new("sh").arg("-c").arg(line).current_dir(at).output().unwrap();
     assert!(shell.status.success(), "{line}{}", String::from_utf8_lossy(&shell.stderr));
     succeeds(at, &["merge", directory, "--check"]);
 }
 
 #[test]
-fn a_part_goes_on_from_its_checkpoint_and_a_whole_one_is_left_alone() {
+fn part_continues_from_its_checkpoint_unless_whole() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "64", "--parts", "2"]);
@@ -83,23 +83,23 @@ fn a_part_goes_on_from_its_checkpoint_and_a_whole_one_is_left_alone() {
     // A scheduler that repeats a command reads the same JSON again.
     for target in ["-", "p1.json"] {
         let part = ["render-part", "p", "--part", "1", "--device", "cpu", "--json", target];
-        let (out, told) = ends(at, 0, &part);
+        let (out, message) = ends(at, 0, &part);
         let json = if target == "-" { out } else { std::fs::read_to_string(at.join(target)).unwrap() };
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         assert_eq!((&json["added_samples_per_pixel"], &json["samples_per_pixel"]), (&0.into(), &32.into()));
         assert_eq!((&json["ended_by"], &json["files"][0]), (&"samples".into(), &"p/part-1.exr".into()));
         assert!(json["rmse_estimate"].is_number() && json["paths"] == 0, "{json}");
-        assert_eq!(told.contains("part 1 is whole"), target == "-");
+        assert_eq!(message.contains("part 1 is whole"), target == "-");
     }
     assert_eq!(modified(), before);
-    // Only the unfinished one is asked for.
-    let (told, _) = ends(at, 1, &["merge", "p", "--check"]);
-    assert!(told.contains("part 0: part-0.exr is missing") && told.contains("--array=0 "), "{told}");
-    assert!(told.contains("--part 0") && !told.contains("--part 1"), "{told}");
+    // The remedy lists only the unfinished part.
+    let (message, _) = ends(at, 1, &["merge", "p", "--check"]);
+    assert!(message.contains("part 0: part-0.exr is missing") && message.contains("--array=0 "), "{message}");
+    assert!(message.contains("--part 0") && !message.contains("--part 1"), "{message}");
 }
 
 #[test]
-fn a_damaged_part_is_put_aside_and_rendered_again() {
+fn damaged_part_is_moved_aside_and_rendered_again() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "4", "--parts", "2"]);
@@ -113,9 +113,9 @@ fn a_damaged_part_is_put_aside_and_rendered_again() {
         } else {
             damage(&path)
         }
-        let (_, told) =
+        let (_, message) =
             ends(at, 0, &["render-part", "p", "--part", "0", "--device", "cpu", "--threads", "2"]);
-        assert!(told.contains("part-0.exr.damaged") && told.contains("rendered again"), "{told}");
+        assert!(message.contains("part-0.exr.damaged") && message.contains("rendered again"), "{message}");
         assert!(aside.exists() && film(&path) == good);
     }
 }
@@ -139,7 +139,7 @@ fn the_environment_of_a_task_chooses_its_part() {
 /// As when a scheduler starts a task again on another machine while the first one still runs.
 #[cfg(unix)]
 #[test]
-fn the_second_of_two_runs_of_one_part_is_refused() {
+fn second_run_of_a_part_is_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "4294967296", "--parts", "2"]);
@@ -148,8 +148,8 @@ fn the_second_of_two_runs_of_one_part_is_refused() {
     while !part_path(at, "p", 0).exists() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    let (_, told) = ends(at, 2, &part);
-    assert!(told.contains("part-0.exr is locked"), "{told}");
+    let (_, message) = ends(at, 2, &part);
+    assert!(message.contains("part-0.exr is locked"), "{message}");
     let killed = std::process::Command::new("kill").arg(first.id().to_string()).status().unwrap();
     assert!(killed.success());
     assert_eq!(first.wait().unwrap().code(), Some(143));

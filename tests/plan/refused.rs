@@ -20,8 +20,8 @@ fn a_directory_keeps_its_plan() {
         &["--samples", "16", "--parts", "2"],
         &["--samples", "8", "--parts", "2", "--seed", "1"],
     ] {
-        let (_, told) = ends(at, 2, &again(other));
-        assert!(told.contains("plan.json holds the plan of another picture"), "{told}");
+        let (_, message) = ends(at, 2, &again(other));
+        assert!(message.contains("plan.json holds the plan of another picture"), "{message}");
     }
     let now = fs::read_to_string(at.join("p/plan.json")).unwrap();
     let without_command =
@@ -31,7 +31,7 @@ fn a_directory_keeps_its_plan() {
 }
 
 #[test]
-fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
+fn changed_plan_or_other_version_is_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     plan(at, "p", &["--samples", "8", "--parts", "2"]);
@@ -52,20 +52,23 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
     ] {
         assert!(good.contains(from), "{from}");
         fs::write(&manifest, good.replace(from, to)).unwrap();
-        let (_, told) = ends(at, 2, &["merge", "p", "--check"]);
-        assert!(parts.iter().all(|part| told.contains(part)), "{parts:?}: {told}");
+        let (_, message) = ends(at, 2, &["merge", "p", "--check"]);
+        assert!(parts.iter().all(|part| message.contains(part)), "{parts:?}: {message}");
     }
     fs::write(&manifest, &good).unwrap();
     fs::write(&scene, good_scene.clone() + "\n").unwrap();
-    let (_, told) = ends(at, 2, &["render-part", "p", "--part", "0"]);
-    assert!(told.contains("scene.toml was changed since") && told.contains("undo the change"), "{told}");
+    let (_, message) = ends(at, 2, &["render-part", "p", "--part", "0"]);
+    assert!(
+        message.contains("scene.toml was changed since") && message.contains("undo the change"),
+        "{message}"
+    );
     // The same plan writes the scene again.
     plan(at, "p", &["--samples", "8", "--parts", "2"]);
     assert_eq!(fs::read_to_string(&scene).unwrap(), good_scene);
 }
 
 #[test]
-fn files_of_another_origin_in_the_way_of_a_plan_are_named_and_stay() {
+fn foreign_files_in_the_way_are_named_and_kept() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::create_dir(at.join("p")).unwrap();
@@ -76,8 +79,8 @@ fn files_of_another_origin_in_the_way_of_a_plan_are_named_and_stay() {
     {
         let path = at.join("p").join(name);
         fs::write(&path, "# mine\n").unwrap();
-        let (_, told) = ends(at, 2, &with(format));
-        assert!(told.contains(&format!("p/{name} is in the way")), "{told}");
+        let (_, message) = ends(at, 2, &with(format));
+        assert!(message.contains(&format!("p/{name} is in the way")), "{message}");
         assert_eq!(fs::read_to_string(&path).unwrap(), "# mine\n");
         assert_eq!(fs::read_dir(at.join("p")).unwrap().count(), 1, "nothing else is written");
         fs::remove_file(&path).unwrap();
@@ -89,7 +92,7 @@ fn files_of_another_origin_in_the_way_of_a_plan_are_named_and_stay() {
 }
 
 #[test]
-fn what_cannot_be_planned_or_merged_is_refused() {
+fn invalid_plans_and_merges_are_refused() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::write(at.join("file"), "").unwrap();
@@ -108,10 +111,10 @@ fn what_cannot_be_planned_or_merged_is_refused() {
         (&["merge", "p", "a.exr", "--out", "x.exr"], &["merge it alone"]),
         (&["merge", "p", "--out", "x.gif"], &["x.gif", ".exr"]),
     ] {
-        let (_, told) = ends(at, 2, arguments);
-        assert!(parts.iter().all(|part| told.contains(part)), "{parts:?}: {told}");
+        let (_, message) = ends(at, 2, arguments);
+        assert!(parts.iter().all(|part| message.contains(part)), "{parts:?}: {message}");
     }
     assert!(!at.join("q").exists());
-    let (_, told) = ends(at, 1, &["merge", "p", "--out", "x.exr"]);
-    assert!(told.contains("part-0.exr is missing") && !at.join("x.exr").exists(), "{told}");
+    let (_, message) = ends(at, 1, &["merge", "p", "--out", "x.exr"]);
+    assert!(message.contains("part-0.exr is missing") && !at.join("x.exr").exists(), "{message}");
 }

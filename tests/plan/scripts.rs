@@ -7,7 +7,7 @@ use std::process::Command;
 use tempfile::TempDir;
 
 #[cfg(unix)]
-/// A program whose name a shell and make take apart if it is not quoted.
+/// A program whose name a shell and make would split if it were not quoted.
 fn awkward_program(at: &Path) -> String {
     let path = at.join("it's $HOME's weekender");
     std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_weekender"), &path).unwrap();
@@ -23,7 +23,7 @@ fn is_there(tool: &str) -> bool {
 }
 
 #[test]
-fn json_has_the_words_of_every_command() {
+fn json_has_every_command() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let json = plan(at, "p q", &["--samples", "8", "--parts", "2", "--format", "json", "--every", "2m"]);
@@ -55,11 +55,11 @@ fn make_renders_and_merges() {
     let made = make();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
-    // What is lost is rendered again, and only that.
+    // Only what was lost is rendered again.
     fs::remove_file(part_path(at, "a b", 1)).unwrap();
     let again = make();
-    let told = String::from_utf8_lossy(&again.stdout);
-    assert!(again.status.success() && told.matches("is whole: samples").count() == 2, "{told}");
+    let message = String::from_utf8_lossy(&again.stdout);
+    assert!(again.status.success() && message.matches("is whole: samples").count() == 2, "{message}");
 }
 
 #[cfg(unix)]
@@ -82,7 +82,7 @@ fn parallel_renders_and_merges() {
 /// Slurm itself is not needed: a task is its script with the variables that Slurm sets.
 #[cfg(unix)]
 #[test]
-fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
+fn slurm_task_requeues_itself_after_sigterm() {
     if !is_there("bash") {
         return;
     }
@@ -96,7 +96,7 @@ fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
         assert!(script.lines().any(|found| found == line), "{line}: {script}");
     }
     assert!(fs::read_to_string(at.join("a b/submit.sh")).unwrap().contains("afterany"));
-    // A scontrol that writes down what it is asked.
+    // A scontrol that records how it is called.
     let tools = at.join("tools");
     fs::create_dir(&tools).unwrap();
     let fake = "#!/bin/sh\necho \"$@\" >> \"$ASKED\"\necho JobState=\"$STATE\"\n";

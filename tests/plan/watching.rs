@@ -48,9 +48,9 @@ fn parts_are_merged_as_they_come_and_checkpoints_grow() {
     for part in [0, 1, 3] {
         render_part(at, "p", part);
     }
-    let (code, told) = ended(child);
-    assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("32 of 32 samples per pixel (0..32); 4 of 4 parts are whole"), "{told}");
+    let (code, message) = ended(child);
+    assert_eq!(code, Some(0), "{message}");
+    assert!(message.contains("32 of 32 samples per pixel (0..32); 4 of 4 parts are whole"), "{message}");
     assert!(film(&at.join("so-far.exr")) == whole(at, "0..32", &[]));
 }
 
@@ -66,9 +66,9 @@ fn a_signal_ends_it_with_the_picture_so_far() {
         std::fs::write(part_path(at, "p", 0), "no film").unwrap();
         let killed = Command::new("kill").args(["-s", name, &child.id().to_string()]).status().unwrap();
         assert!(killed.success());
-        let (code, told) = ended(child);
-        assert_eq!(code, Some(expected), "{told}");
-        assert!(told.contains("the same command continues") && told.contains("--part 0"), "{told}");
+        let (code, message) = ended(child);
+        assert_eq!(code, Some(expected), "{message}");
+        assert!(message.contains("the same command continues") && message.contains("--part 0"), "{message}");
         assert_eq!(film(&at.join("so-far.exr")).sample_count(), 4);
     }
 }

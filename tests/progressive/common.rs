@@ -1,4 +1,4 @@
-//! A renderer that can be told to fail.
+//! A renderer that fails on request.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,13 +24,13 @@ pub struct Fake {
     pub pause: Duration,
     pub fails_at: Option<u64>,
     pub panics_at: Option<u64>,
-    /// The time that it takes to prepare.
+    /// Time to prepare.
     pub preparation: Duration,
-    /// What it says after every pass.
+    /// Message after every pass.
     pub message: Option<&'static str>,
-    /// How long it says that a sample takes, before its first pass: after a quick trial and after a thorough one.
+    /// Claimed time per sample before its first pass, after a quick and after a thorough trial.
     pub trial: Option<[Duration; 2]>,
-    /// Whether passes after the first last until they are stopped, and are given up.
+    /// Whether later passes last until they are stopped and are then given up.
     pub waits_for_stop: bool,
 }
 
@@ -157,7 +157,7 @@ where
     Box::new(Scripted { fake: Fake::new(name), pass })
 }
 
-/// Spoils the film in its second pass; `spoilt` is called then.
+/// Spoils the film in its second pass, then calls `spoilt`.
 pub fn spoiling(name: &'static str, mut spoilt: impl FnMut() + Send + 'static) -> Box<dyn Renderer> {
     let mut passes = 0;
     scripted(name, move |fake, range, film, cancel| {
@@ -171,7 +171,7 @@ pub fn spoiling(name: &'static str, mut spoilt: impl FnMut() + Send + 'static) -
     })
 }
 
-/// Adds nothing to the film, and does not say so.
+/// Adds nothing to the film and does not report it.
 pub fn forgetful() -> Box<dyn Renderer> {
     scripted("cpu", |_, _, _, _| Ok(Stats::default()))
 }
@@ -180,9 +180,9 @@ pub fn forgetful() -> Box<dyn Renderer> {
 pub struct Holding<F> {
     fake: Fake,
     held: Vec<Range<u64>>,
-    /// Collections that go well before one that loses the samples.
+    /// Collections that succeed before one loses the samples.
     good_collections: u32,
-    /// Is told of every pass, and of how many collections will still go well.
+    /// Called on every pass with the number of collections that will still succeed.
     on_pass: F,
 }
 
@@ -308,7 +308,7 @@ pub fn wait_until(progressive: &Progressive, is_so: impl Fn(&Status) -> bool) {
     }
 }
 
-/// The status when all requests so far are obeyed.
+/// The status once all requests so far are obeyed.
 pub fn settled(progressive: &Progressive) -> Status {
     let (seen, is_seen) = channel();
     progressive.inspect(move |_| seen.send(()).unwrap());

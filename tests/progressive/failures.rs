@@ -33,7 +33,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
 }
 
 #[test]
-fn when_every_backend_fails_or_panics_the_film_of_the_last_whole_pass_is_left() {
+fn last_whole_pass_survives_when_all_backends_fail() {
     for panics in [false, true] {
         let asked = Arc::new(Mutex::new(Vec::new()));
         let seen = Arc::clone(&asked);
@@ -44,7 +44,7 @@ fn when_every_backend_fails_or_panics_the_film_of_the_last_whole_pass_is_left() 
         });
         let status = progressive.wait_until_over();
         let reason = if panics { "a slip of the tracer" } else { "pulled out" };
-        assert!(matches!(&status.phase, Phase::Failed(told) if told.contains(reason)), "{status:?}");
+        assert!(matches!(&status.phase, Phase::Failed(message) if message.contains(reason)), "{status:?}");
         assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
         assert_eq!(progressive.finish(), Some(expected(16)));
     }
@@ -62,15 +62,15 @@ fn a_panic_while_preparing_tracing_or_looking_ends_nothing() {
     progressive.inspect(|_| unreachable!("a slip of the onlooker"));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    let said = status.messages.join("; ");
+    let messages = status.messages.join("; ");
     for slip in ["no such backend", "a slip of the tracer", "a slip of the onlooker"] {
-        assert!(said.contains(slip), "{said}");
+        assert!(messages.contains(slip), "{messages}");
     }
     assert_eq!(progressive.finish(), Some(expected(2000)));
 }
 
 #[test]
-fn samples_that_were_not_added_are_missed() {
+fn missing_samples_are_noticed() {
     let progressive = started_with(CPU, Plan::samples(64), |choice| {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         if *choice == CPU { forgetful() } else { Box::new(fake) }
@@ -82,22 +82,23 @@ fn samples_that_were_not_added_are_missed() {
 }
 
 #[test]
-fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_backend() {
+fn uncollected_samples_are_rendered_by_the_next_backend() {
     let short_passes = Plan { pass_target: PAUSE, ..Plan::endless() };
     for is_switch in [false, true] {
         let (traced, is_traced) = channel();
-        // The new backend is ready once the old one holds samples that it will lose: those after the first collection.
-        let (go_on, is_let_go_on) = channel();
+        // The new backend becomes ready once the old one holds samples that it will lose: those after the first
+        // collection.
+        let (release, is_released) = channel();
         let progressive = started_with(CPU, short_passes.clone(), move |choice| {
             let fake = Fake::new(choice.name());
             if *choice == CPU {
                 let traced = traced.clone();
-                // The test may have heard enough.
+                // The test may have stopped listening.
                 let tell = move |_: &_, good_collections| _ = traced.send(good_collections);
                 return Box::new(Holding::new(fake, u32::from(is_switch), tell));
             }
             if is_switch {
-                is_let_go_on.recv_timeout(PATIENCE).unwrap();
+                is_released.recv_timeout(PATIENCE).unwrap();
             }
             Box::new(fake)
         });
@@ -105,7 +106,7 @@ fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_back
         if is_switch {
             progressive.switch_backend(other_cpu());
             while is_traced.recv_timeout(PATIENCE).unwrap() != 0 {}
-            go_on.send(()).unwrap();
+            release.send(()).unwrap();
             wait_until(&progressive, |status| !status.messages.is_empty());
         } else {
             progressive.pause();
@@ -114,13 +115,13 @@ fn samples_that_a_pause_or_a_switch_cannot_collect_are_rendered_by_the_next_back
         }
         let samples = progressive.status().samples_per_pixel;
         wait_for(&progressive, samples + 64);
-        let said = stopped(progressive).messages;
-        assert!(said.len() == 1 && said[0].starts_with("cpu failed: pulled out"), "{said:?}");
+        let messages = stopped(progressive).messages;
+        assert!(messages.len() == 1 && messages[0].starts_with("cpu failed: pulled out"), "{messages:?}");
     }
 }
 
 #[test]
-fn if_another_backend_is_not_available_the_old_one_continues() {
+fn old_backend_continues_if_another_is_unavailable() {
     let mut progressive = Progressive::with_factory(Box::new(|choice| match *choice == FAILING {
         true => Err(BackendError::Gpu(GpuError::None)),
         false => Ok(Box::new(Fake::new("cpu"))),
@@ -130,16 +131,16 @@ fn if_another_backend_is_not_available_the_old_one_continues() {
     wait_for(&progressive, 4);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| !status.messages.is_empty());
-    let told = format!("reference failed: {}; the cpu continues", GpuError::None);
+    let message = format!("reference failed: {}; the cpu continues", GpuError::None);
     assert_eq!(progressive.status().given_up, ["reference"]);
     // So it does for a new render.
     progressive.start(RenderRequest::new(job(2), FAILING, Plan::endless()));
     wait_for(&progressive, 4);
-    assert_eq!(stopped(progressive).messages, [told]);
+    assert_eq!(stopped(progressive).messages, [message]);
 }
 
 #[test]
-fn a_pending_backend_that_panics_can_be_tried_again() {
+fn panicked_pending_backend_can_be_retried() {
     let mut is_first = true;
     let progressive = started_with(CPU, Plan::endless(), move |choice| {
         assert!(*choice == CPU || !std::mem::take(&mut is_first), "no such backend");
@@ -148,15 +149,15 @@ fn a_pending_backend_that_panics_can_be_tried_again() {
     wait_for(&progressive, 2);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| !status.messages.is_empty());
-    let said = progressive.status().messages;
-    assert_eq!(said, ["reference failed: its preparation ended by a panic; the cpu continues"]);
+    let messages = progressive.status().messages;
+    assert_eq!(messages, ["reference failed: its preparation ended by a panic; the cpu continues"]);
     progressive.switch_backend(FAILING);
     wait_until(&progressive, |status| status.contributions.len() == 2);
     stopped(progressive);
 }
 
 #[test]
-fn a_film_that_was_spoilt_is_begun_again() {
+fn spoilt_film_is_restarted() {
     let progressive = started_with(CPU, Plan::samples(100), |choice| match *choice == CPU {
         true => spoiling("cpu", || ()),
         false => Box::new(Fake::new(choice.name())),
@@ -172,7 +173,7 @@ fn a_film_that_was_spoilt_is_begun_again() {
     assert_eq!(progressive.finish(), Some(job(2).new_film()));
 }
 
-/// A paused render and a listener that panics the next times that it is called.
+/// A paused render with a listener that panics the next `times` it is called.
 fn paused_with_a_listener_that_panics(times: u32) -> Progressive {
     let progressive = started(CPU, Plan::endless());
     wait_for(&progressive, 2);
@@ -195,21 +196,24 @@ fn a_listener_that_panics_does_not_end_the_render() {
     let held = progressive.status().samples_per_pixel;
     progressive.resume();
     wait_for(&progressive, held + 16);
-    let said = stopped(progressive).messages.join("; ");
-    assert!(said.contains("a slip of the listener") && said.contains("continues the same picture"), "{said}");
+    let messages = stopped(progressive).messages.join("; ");
+    assert!(
+        messages.contains("a slip of the listener") && messages.contains("continues the same picture"),
+        "{messages}"
+    );
 
     let progressive = started(CPU, Plan::samples(8));
     progressive.wait_until_over();
     listen_and_panic(&progressive, 1);
     progressive.ask_for_picture();
-    // The next command brings the news.
+    // The next command delivers the message.
     progressive.inspect(|_| ());
     wait_until(&progressive, |status| !status.messages.is_empty());
     assert_eq!(progressive.finish(), Some(expected(8)));
 }
 
 #[test]
-fn a_render_thread_that_dies_says_that_the_film_is_lost() {
+fn dead_render_thread_reports_the_lost_film() {
     // It panics again while the first panic is handled.
     let progressive = paused_with_a_listener_that_panics(2);
     progressive.resume();
@@ -221,7 +225,7 @@ fn a_render_thread_that_dies_says_that_the_film_is_lost() {
 
 /// A panic of the real tracer in the middle of a tile.
 #[test]
-fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
+fn panic_in_a_tile_leaves_the_film_unchanged() {
     let recipe = Recipe::find("three-spheres").unwrap();
     for estimate_error in [false, true] {
         let size = RenderSettings { width: 100, height: 70, estimate_error, ..recipe.settings };

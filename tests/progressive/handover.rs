@@ -16,7 +16,7 @@ use weekender::render_gpu::GpuError;
 use weekender::stages::Transfer;
 
 #[test]
-fn another_backend_goes_on_with_the_same_film() {
+fn another_backend_continues_the_same_film() {
     let progressive = started(CPU, Plan::samples(3000));
     for (backend, at) in [(other_cpu(), 4), (CPU, 100), (FAILING, 500), (other_cpu(), 600)] {
         wait_for(&progressive, at);
@@ -81,7 +81,7 @@ fn continued(film: Film, plan: Plan) -> Progressive {
 }
 
 #[test]
-fn a_film_goes_on_where_it_has_gaps() {
+fn gaps_of_a_film_are_filled() {
     let progressive = continued(film([3..5, 10..30]), Plan::samples(100));
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
@@ -162,7 +162,7 @@ fn another_backend_begins_with_short_passes() {
 }
 
 #[test]
-fn a_renderer_that_is_given_is_used_and_kept_for_the_next_render() {
+fn given_renderer_is_used_and_kept() {
     let made = Arc::new(Mutex::new(Vec::new()));
     let noted = Arc::clone(&made);
     let mut progressive = idle(move |choice| {
@@ -204,7 +204,7 @@ fn a_watch_sees_the_render_and_ends_with_it() {
 }
 
 #[test]
-fn a_film_is_shown_when_asked_for_and_again_only_in_another_view() {
+fn film_is_shown_on_request_and_again_only_in_another_view() {
     let mut progressive = started(CPU, Plan::samples(64));
     progressive.wait_until_over();
     assert_eq!(progressive.newest_picture(), None);
@@ -217,7 +217,7 @@ fn a_film_is_shown_when_asked_for_and_again_only_in_another_view() {
     let view = View::Luminance([-8.0, 4.0]);
     progressive.set_view(view.clone());
     assert_eq!(picture(&progressive, 64).rgb8, view.resolve(&expected(64), Transfer::Gamma2, None));
-    // A render that starts anew keeps the view.
+    // A restarted render keeps the view.
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
     progressive.wait_until_over();
     let picture = picture(&progressive, 4);
@@ -225,7 +225,7 @@ fn a_film_is_shown_when_asked_for_and_again_only_in_another_view() {
     assert_eq!(picture.rgb8, view.resolve(&expected(4), Transfer::Gamma2, None));
 }
 
-/// The first picture is worth the wait for what the device holds.
+/// The first picture is worth waiting for the device's samples.
 #[test]
 fn the_first_picture_is_collected() {
     let mut progressive = idle(|choice| Box::new(Holding::new(Fake::new(choice.name()), 1000, |_, _| ())));
@@ -252,13 +252,13 @@ fn a_preview_is_smooth_and_its_first_pass_is_long_enough() {
     assert_eq!(shown(Some(4), View::Picture), (film.smoothed().to_rgb8(transfer), 4));
     assert_eq!(shown(None, View::Picture), (film.to_rgb8(transfer), 2));
     assert_eq!(shown(Some(4), View::Exposed(1.0)).0, film.smoothed().exposed(transfer, 1.0));
-    // A heat map shows the noise that is there.
+    // Heat maps are not smoothed.
     let view = View::Luminance([-8.0, 4.0]);
     assert_eq!(shown(Some(4), view.clone()).0, view.resolve(&film, transfer, None));
 }
 
 #[test]
-fn the_status_describes_the_backend_at_work() {
+fn status_describes_the_current_backend() {
     const PREPARATION: Duration = Duration::from_millis(20);
     let progressive = started_with(CPU, Plan::endless(), |choice| {
         let (name, message) = (choice.name(), Some("a layer is too thin"));

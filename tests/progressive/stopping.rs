@@ -31,7 +31,7 @@ fn a_plan_of_samples_is_met_exactly() {
 }
 
 #[test]
-fn the_first_pass_is_as_long_as_the_others_where_nobody_watches() {
+fn unwatched_first_pass_has_full_length() {
     /// The samples in the film at the end of each pass that reaches another power of two.
     fn history(trial: Option<[u64; 2]>, plan: Plan) -> Vec<u64> {
         let trial = trial.map(|times| times.map(Duration::from_millis));
@@ -85,7 +85,7 @@ fn pauses_lose_nothing() {
 }
 
 #[test]
-fn the_time_limit_includes_preparation_but_at_least_one_pass_is_rendered() {
+fn time_limit_includes_preparation_but_allows_one_pass() {
     let preparation = Duration::from_millis(100);
     for (limit, preparation) in [(1e-9, Duration::ZERO), (0.1, Duration::ZERO), (0.05, preparation)] {
         let plan = Plan::until(Stop { seconds: Some(limit), ..Stop::default() });
@@ -182,7 +182,7 @@ fn a_picture_without_light_meets_no_noise_target() {
 }
 
 #[test]
-fn samples_that_come_late_count_before_a_noise_target_ends_it() {
+fn late_samples_count_before_a_noise_target() {
     let (status, _) = ended(|index| if index < 16 { 1 << 24 } else { (1 - index % 2) << 25 }, true);
     assert_eq!((status.phase, status.samples_per_pixel), (Phase::Done(EndReason::Samples), 256));
     assert!(status.error.unwrap().rmse > 0.01);
@@ -200,7 +200,7 @@ fn the_error_at_the_end_is_that_of_the_whole_film() {
 }
 
 #[test]
-fn a_stop_keeps_the_film_and_can_be_taken_back() {
+fn stop_keeps_the_film_and_can_be_undone() {
     let progressive = started(CPU, Plan::samples(2000));
     wait_for(&progressive, 8);
     progressive.stop();
@@ -214,12 +214,12 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
 }
 
 #[test]
-fn a_stop_during_a_pass_leaves_what_was_there_before_it() {
+fn stop_during_a_pass_keeps_the_earlier_film() {
     let progressive = started_with(CPU, Plan::endless(), |choice| {
         Box::new(Fake { waits_for_stop: true, ..Fake::new(choice.name()) })
     });
     wait_for(&progressive, 2);
-    // A render that goes on can be stopped again.
+    // A resumed render can be stopped again.
     for _ in 0..2 {
         progressive.stop();
         let status = progressive.wait_until_over();
@@ -241,7 +241,7 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     assert_eq!(progressive.finish(), Some(expected(4)));
 }
 
-/// Says that it begins, waits until it is cancelled, and says whether it was.
+/// Reports that it begins, waits until it is cancelled, and reports whether it was.
 fn until_cancelled(begun: &Sender<()>, ended: &Sender<bool>, cancel: &AtomicBool) -> RenderError {
     let _ = begun.send(());
     let begin = Instant::now();
@@ -272,7 +272,7 @@ fn abandoning_and_dropping_cancel_the_pass() {
     }
 }
 
-/// Prepares until it is cancelled, as often as this, and then works.
+/// Prepares until cancelled this many times, and then works.
 struct SlowToPrepare {
     fake: Fake,
     times: u32,
@@ -329,7 +329,7 @@ fn a_stop_does_not_wait_for_preparation() {
 }
 
 #[test]
-fn nobody_waits_for_a_preparation_whose_render_is_abandoned() {
+fn abandoned_preparation_is_not_awaited() {
     for (is_pending, is_followed) in [(false, false), (false, true), (true, false), (true, true)] {
         let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
         let mut progressive = idle(move |choice| {
@@ -364,7 +364,7 @@ const PAUSE: Ask = Progressive::pause;
 const RESUME: Ask = Progressive::resume;
 const STOP: Ask = Progressive::stop;
 
-/// Sends these requests; the phase and the samples must stay as they are.
+/// Sends these requests; phase and samples must not change.
 fn changes_nothing(progressive: &Progressive, requests: &[Ask]) {
     let before = settled(progressive);
     for (number, ask) in requests.iter().enumerate() {
@@ -386,7 +386,7 @@ fn paused() -> (Progressive, u64) {
 }
 
 #[test]
-fn a_paused_render_can_be_stopped_taken_abandoned_or_get_another_plan() {
+fn paused_render_obeys_other_commands() {
     let (progressive, held) = paused();
     changes_nothing(&progressive, &[PAUSE]);
     progressive.stop();
@@ -420,7 +420,7 @@ fn a_paused_render_can_be_stopped_taken_abandoned_or_get_another_plan() {
 }
 
 #[test]
-fn requests_out_of_season_change_nothing() {
+fn untimely_requests_change_nothing() {
     let mut progressive = idle(usual);
     changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
     assert_eq!(progressive.status(), Status::default());

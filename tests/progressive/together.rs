@@ -1,4 +1,4 @@
-//! Several renderers at work on one film, of which some fail.
+//! Several renderers working on one film, of which some fail.
 
 use super::common::{Fake, PATIENCE, expected, forgetful, job, scripted, spoiling};
 use std::sync::atomic::AtomicBool;
@@ -65,7 +65,7 @@ fn a_member_that_fails_leaves_its_samples_to_the_others() {
 }
 
 #[test]
-fn a_member_that_spoils_its_film_leaves_all_its_samples_to_the_others() {
+fn spoiling_member_leaves_its_samples_to_the_others() {
     let (spoilt, is_spoilt) = channel();
     // The other member takes the rest only once the film is spoilt.
     let mut signal = Some(is_spoilt);
@@ -82,7 +82,7 @@ fn a_member_that_spoils_its_film_leaves_all_its_samples_to_the_others() {
 }
 
 #[test]
-fn when_every_member_has_failed_the_film_is_unchanged() {
+fn film_is_unchanged_when_every_member_fails() {
     for members in [vec![fake("cpu", Some(0)), fake("gpu", Some(0))], vec![forgetful()]] {
         let mut together = Together::new(members);
         let mut film = job(2).new_film();

@@ -1,4 +1,4 @@
-//! Scene files: what is written is read back to the bit, and errors name the line.
+//! Scene files: they round-trip to the bit, and errors name the line.
 
 mod common;
 mod random;

@@ -45,7 +45,7 @@ fn materials_are_named_or_inline() {
 }
 
 #[test]
-fn an_inline_material_takes_no_name_that_is_in_use() {
+fn inline_material_names_are_unique() {
     let inline =
         ONE_SPHERE.replace("material = \"ball\"", "material = { kind = \"metal\", albedo = [1, 0.5, 0] }");
     let named = "[materials]\n\"sphere-0\" = { kind = \"dielectric\", refraction_index = 1.5 }\n\"sphere-0*\" = { kind = \"dielectric\", refraction_index = 2 }\n[materials.ball]";

@@ -1,4 +1,4 @@
-//! What is written is read back to the bit.
+//! Scene files round-trip to the bit.
 
 use super::common::{CAMERA, assert_round_trip};
 use std::path::Path;
@@ -35,7 +35,7 @@ fn the_example_scenes_are_valid() {
     assert!(count >= 10);
 }
 
-/// Each setting is read from the key and in the form in which it is written.
+/// Each setting is read from the key and in the form that is written.
 #[test]
 fn every_setting_is_read_back() {
     let settings_of = |text: &str| parse(text, "x").unwrap_or_else(|error| panic!("{error}")).settings;

@@ -1,4 +1,4 @@
-//! What recorded paths do, in words and numbers, and how packets of lanes trace them over time.
+//! Explains recorded paths in text and numbers, and how packets of lanes trace them over time.
 
 mod step;
 mod timeline;

@@ -37,17 +37,17 @@ pub struct Hit {
 pub enum Event {
     /// The ray leaves the scene, and the path collects light of the sky.
     Sky,
-    /// The surface is shown by a colour, and the path ends: stages before light is transported.
+    /// Stages before light transport: the surface is shown by a colour, and the path ends.
     Shown,
-    /// The path has as many rays as it may have, and ends without light.
+    /// The path has reached its ray limit and ends without light.
     Limit,
     /// The fuzzy reflection points into the metal, which absorbs it.
     Absorbed(Lobe),
-    /// The path goes on in a direction drawn from the lobe.
+    /// The path continues in a direction drawn from the lobe.
     Scattered(Lobe),
 }
 
-/// The directions that the next ray was chosen from.
+/// The lobe that the next ray is drawn from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
     /// A uniform direction on the side of the normal.
@@ -65,7 +65,7 @@ pub enum Lobe {
         mirrored: DVec3,
         /// The refracted unit direction; `None` where Snell's law has no solution.
         refracted: Option<DVec3>,
-        /// The probability of reflection: 1 where Snell's law has no solution, as far as the rules know it.
+        /// The probability of reflection: 1 where Snell's law has no solution and the rules handle that.
         reflectance: f64,
         /// The random number in `[0, 1)`; the ray is reflected if it is less than `reflectance`.
         coin: f64,
@@ -223,7 +223,7 @@ mod tests {
         Rules { dielectric, ..Rules::FINISHED }
     }
 
-    /// What glass may do with a ray that comes down at 45 degrees: the refracted direction and the reflectance.
+    /// Glass hit from above at 45 degrees: the refracted direction and the reflectance.
     fn glass(dielectric: DielectricLaws, is_outside: bool) -> (Option<DVec3>, f64) {
         let down = DVec3::new(FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0);
         match lobe_of(&GLASS, &laws(dielectric), &top(is_outside), down, None, 0.5) {
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn glass_bends_and_reflects_as_the_laws_say() {
+    fn glass_follows_the_laws() {
         use DielectricLaws::{RefractOnly, Schlick, TotalReflection};
         // The sine is divided by 1.5: its square is 2/9.
         let bent = DVec3::new((2.0_f64 / 9.0).sqrt(), -(7.0_f64 / 9.0).sqrt(), 0.0);
@@ -256,23 +256,23 @@ mod tests {
         }
     }
 
-    fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
+    fn explained(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
         let job = Stage::find(stage).unwrap().recipe().job().unwrap();
         let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);
         Step { origin, direction, throughput, hit: Some(top(is_outside)), event }.sentence(&job)
     }
 
     #[test]
-    fn a_sentence_names_angles_and_chance() {
+    fn sentences_name_angles_and_chance() {
         let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
         let at_30 = Some(DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0));
         let mirror = Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 };
         assert!(
-            said("metal", at_60, true, Event::Scattered(mirror))
+            explained("metal", at_60, true, Event::Scattered(mirror))
                 .starts_with("Mirror: the ray arrives at 60° ")
         );
-        // Rounding may make a unit vector a little longer.
-        let along = said("metal", 1.000_001 * DVec3::NEG_Y, true, Event::Scattered(mirror));
+        // Rounding may make a unit vector slightly longer.
+        let along = explained("metal", 1.000_001 * DVec3::NEG_Y, true, Event::Scattered(mirror));
         assert!(along.contains(" at 0° "), "{along}");
         for (stage, is_outside, refracted, refracts, parts) in [
             (
@@ -289,7 +289,7 @@ mod tests {
         ] {
             let (mirrored, reflectance, coin) = (DVec3::Y, 0.125, 0.75);
             let lobe = Lobe::Glass { mirrored, refracted, reflectance, coin, refracts };
-            let sentence = said(stage, at_60, is_outside, Event::Scattered(lobe));
+            let sentence = explained(stage, at_60, is_outside, Event::Scattered(lobe));
             assert!(parts.iter().all(|part| sentence.contains(part)), "{sentence}");
         }
     }

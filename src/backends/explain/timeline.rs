@@ -33,7 +33,7 @@ impl Timeline {
         self.len() == 0
     }
 
-    /// The share of lanes at work, `0..=1`, over all steps.
+    /// Share of lanes that trace, `0..=1`, over all steps.
     pub fn share_at_work(&self) -> f64 {
         let all = (self.len() * self.lanes.len()).max(1);
         let waiting = self.lanes.iter().flatten().filter(|activity| **activity == Activity::Waits).count();
@@ -41,9 +41,9 @@ impl Timeline {
     }
 }
 
-/// Lays out the paths of each lane over time, as a packet traces them. With `refill`, a lane starts its next path at
-/// once; without it, the lanes start their next paths together when the longest one has ended. `paths` holds each
-/// lane's paths in order, recorded from a job with this `scene`.
+/// Lays out the paths of each lane over time as a packet traces them. With `refill`, a lane starts its next path at
+/// once; otherwise all lanes start their next paths when the longest has ended. `paths` holds each lane's paths in
+/// order, recorded from a job with this `scene`.
 pub fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timeline {
     let rays = |path: &PathRecord| -> Vec<Activity> {
         let after = |ray: usize| match path.rays[ray].hit {
@@ -70,7 +70,7 @@ pub fn timeline(scene: &Scene, paths: &[Vec<PathRecord>], refill: bool) -> Timel
     Timeline { lanes }
 }
 
-/// Lets all lanes wait for the longest.
+/// Makes all lanes wait for the longest.
 fn even_out(lanes: &mut [Vec<Activity>]) {
     let longest = lanes.iter().map(Vec::len).max().unwrap_or_default();
     lanes.iter_mut().for_each(|lane| lane.resize(longest, Activity::Waits));
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn lanes_wait_for_each_other_after_every_path_or_only_at_the_end() {
+    fn lanes_wait_after_each_path_or_only_at_the_end() {
         let mut scene = Scene::default();
         let albedo = DVec3::ONE;
         for material in [

@@ -1,4 +1,4 @@
-//! Films that are merged without a plan.
+//! Merges films without a plan.
 
 use super::{print_findings, warn_of_loss, write, wrote};
 use crate::cli::terminal::print;
@@ -39,7 +39,7 @@ fn merge(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Reads all films, and prints what is damaged, foreign, there twice or missing between them.
+/// Reads all films, and prints what is damaged, foreign, duplicated or missing between them.
 fn check(films: &[PathBuf], program: &str) -> Result<ExitCode, Failure> {
     let (mut sum, mut lines): (Option<FilmSum>, Vec<String>) = (None, Vec::new());
     for path in films {
@@ -70,7 +70,7 @@ fn check(films: &[PathBuf], program: &str) -> Result<ExitCode, Failure> {
     print_findings(&lines, is_good)
 }
 
-/// A sum that begins with this film.
+/// Begins a sum with this film.
 fn begin(path: &Path) -> Result<FilmSum, MergeError> {
     let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(path)?;
     let mut sum = FilmSum::new(width, height, halves, description, path)?;

@@ -30,7 +30,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     let is_film = |out: &&PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Exr));
     let locks = options.out.iter().filter(is_film).map(|out| FileLock::take(out));
     let _locks = locks.collect::<Result<Vec<_>, _>>().map_err(Failure::input)?;
-    let refuse = |words: &str| Err(Failure::Input(anyhow!("{words}")));
+    let refuse = |message: &str| Err(Failure::Input(anyhow!("{message}")));
     match options.films.as_slice() {
         [plan] if Plan::is_at(plan) => plan::run(&Plan::load(plan).map_err(Failure::Input)?, options),
         films if films.iter().any(|film| Plan::is_at(film)) => refuse(
@@ -46,12 +46,12 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
 /// Warns of samples that are lost because `film` replaces a film that has others.
 fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
     let is_kept = |samples: &SampleRanges| film.samples().contains(samples);
-    for words in out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept)) {
-        console::note(&format!("warning: {words}"));
+    for warning in out.iter().filter_map(|out| Replaced::at(out, description.recipe()).warning(out, is_kept))
+    {
+        console::note(&format!("warning: {warning}"));
     }
 }
 
-/// Writes the film to each file.
 fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Description) -> Result<(), Failure> {
     out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)
 }

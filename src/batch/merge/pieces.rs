@@ -1,4 +1,4 @@
-//! The films or frames of a plan: what is there of each, and the commands for what is missing.
+//! The films or frames of a plan: what exists of each, and the commands for what is missing.
 
 use crate::film::{SampleRanges, checkpoint};
 use crate::job::plan::{Commands, Part, Plan, Work};
@@ -7,17 +7,17 @@ use crate::progressive::describe::SOFTWARE;
 use crate::system::files::{ShownPath, Stamp};
 use std::path::PathBuf;
 
-/// What is there of a film or frame.
+/// What exists of a film or frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum State {
     Whole,
-    /// A checkpoint with so many of the part's samples per pixel.
+    /// A checkpoint with this many of the part's samples per pixel.
     Unfinished {
         held: u64,
         of: u64,
     },
     Missing,
-    /// A file that is damaged, of another picture or of other samples: why, and what to do.
+    /// A file that is damaged, of another picture or of other samples, with reason and remedy.
     Wrong(String),
 }
 
@@ -28,9 +28,9 @@ pub(super) struct Piece {
     kind: Kind,
     pub path: PathBuf,
     pub state: State,
-    /// The file that was seen last.
+    /// The file as last seen.
     seen: Option<Stamp>,
-    /// Whether it is in the sum for good.
+    /// Whether its final version is in the sum.
     pub is_merged: bool,
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    /// The films or frames, not looked at yet.
+    /// The films or frames, not checked yet.
     pub fn of(plan: &'a Plan) -> Self {
         let piece = |part, kind, path| Piece {
             part,
@@ -73,7 +73,7 @@ impl<'a> Pieces<'a> {
         Pieces { plan, all }
     }
 
-    /// Looks at the files that have changed since the last look, and returns these. Of a film, only the head is read.
+    /// Checks the files that changed since the last call, and returns them. Only the head of a film is read.
     pub fn look(&mut self) -> Vec<&Piece> {
         let mut changed = Vec::new();
         for piece in self.all.iter_mut().filter(|piece| piece.state != State::Whole) {
@@ -95,19 +95,19 @@ impl<'a> Pieces<'a> {
         self.lacking().next().is_none()
     }
 
-    /// How many are whole, in words.
+    /// How many are complete.
     pub fn words(&self) -> String {
         let count = self.all.len();
         let noun = if matches!(self.plan.manifest.work, Work::Samples(_)) { "parts" } else { "frames" };
         format!("{} of {count} {noun} are whole", count - self.lacking().count())
     }
 
-    /// A line on each that is not whole.
+    /// A line for each that is incomplete.
     pub fn lines(&self) -> impl Iterator<Item = String> {
         self.lacking().map(Piece::line)
     }
 
-    /// How to render what is missing: a heading, and the commands, one a line.
+    /// How to render what is missing: a heading, then one command per line.
     pub fn remedy(&self, program: &str) -> String {
         let mut parts: Vec<usize> = self.lacking().map(|piece| piece.part).collect();
         parts.dedup();
@@ -126,7 +126,7 @@ impl Piece {
                 match FrameState::of(&self.path, &recipe, SOFTWARE) {
                     FrameState::Whole => State::Whole,
                     FrameState::Missing => State::Missing,
-                    FrameState::Wrong(words) => State::Wrong(words),
+                    FrameState::Wrong(reason) => State::Wrong(reason),
                 }
             }
             (Kind::Film(part), _) => match checkpoint::read_head(&self.path) {
@@ -154,7 +154,7 @@ impl Piece {
         }
     }
 
-    /// What is there of it, in words.
+    /// Its state in one line.
     pub fn line(&self) -> String {
         let Piece { part, path, state, .. } = self;
         let name = path.file_name().unwrap_or_default().shown();
@@ -164,19 +164,19 @@ impl Piece {
                 format!("part {part}: {name} has {held} of {of} samples per pixel")
             }
             State::Missing => format!("part {part}: {name} is missing"),
-            State::Wrong(words) => format!("part {part}: {words}"),
+            State::Wrong(reason) => format!("part {part}: {reason}"),
         }
     }
 }
 
-/// Ascending numbers as Slurm takes them: `0,3-7,9`.
+/// Ascending numbers as Slurm writes them: `0,3-7,9`.
 fn ranges(numbers: &[usize]) -> String {
     let runs = numbers.chunk_by(|number, next| number + 1 == *next);
-    let words = |run: &[usize]| match run {
+    let text = |run: &[usize]| match run {
         [first, _, .., last] => format!("{first}-{last}"),
         few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(","),
     };
-    runs.map(words).collect::<Vec<_>>().join(",")
+    runs.map(text).collect::<Vec<_>>().join(",")
 }
 
 #[cfg(test)]
@@ -185,14 +185,14 @@ mod tests {
 
     #[test]
     fn three_numbers_in_a_row_are_a_range() {
-        for (numbers, words) in [
+        for (numbers, expected) in [
             (&[][..], ""),
             (&[4], "4"),
             (&[1, 2], "1,2"),
             (&[0, 1, 2, 4, 6, 8, 9, 10], "0-2,4,6,8-10"),
             (&[3, 4, 6, 7, 8], "3,4,6-8"),
         ] {
-            assert_eq!(ranges(numbers), words);
+            assert_eq!(ranges(numbers), expected);
         }
     }
 }

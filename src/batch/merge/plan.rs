@@ -1,4 +1,4 @@
-//! The parts of a plan: merged as far as they are there, or as they come.
+//! Merges the existing parts of a plan, or parts as they come.
 
 use super::pieces::{Piece, Pieces, State};
 use super::{print_findings, warn_of_loss, write, wrote};
@@ -19,7 +19,7 @@ use std::process::ExitCode;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Pause between two looks at the directory, and at the signals.
+/// Pause between checks of the directory and of signals.
 const LOOK: Duration = Duration::from_secs(1);
 const SIGNAL: Duration = Duration::from_millis(100);
 
@@ -64,7 +64,7 @@ fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
     FilmSum::new(settings.width, settings.height, settings.half_count(), description, &plan.path)
 }
 
-/// Refuses a result that is no animated PNG.
+/// Refuses a result that is not an animated PNG.
 fn check_names(options: &MergeOptions) -> Result<(), Failure> {
     let is_png = |out: &&std::path::PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Png));
     match options.out.iter().find(|out| !is_png(out)) {
@@ -80,11 +80,11 @@ fn check_names(options: &MergeOptions) -> Result<(), Failure> {
 struct Merging<'a> {
     options: &'a MergeOptions,
     pieces: Pieces<'a>,
-    /// The sum of films; frames have none.
+    /// The sum of films; `None` for frames.
     sum: Option<FilmSum>,
-    /// While parts are awaited.
+    /// Set while waiting for parts.
     interrupt: Option<Interrupt>,
-    /// How much is there.
+    /// How much exists.
     words: String,
     is_written: bool,
 }
@@ -104,7 +104,7 @@ impl Merging<'_> {
         print_findings(&lines, is_complete)
     }
 
-    /// Merges parts as they come, until all are whole or a signal has come.
+    /// Merges parts as they come, until all are complete or a signal arrives.
     fn watch(&mut self, every: Duration) -> Result<(), Failure> {
         let (mut is_news, mut last) = (true, None::<Instant>);
         loop {
@@ -122,7 +122,7 @@ impl Merging<'_> {
                 }
                 is_news = false;
             }
-            // What seemed whole may have turned out to be damaged.
+            // What seemed complete may have turned out to be damaged.
             if self.is_interrupted() || self.pieces.is_complete() {
                 return Ok(());
             }
@@ -151,7 +151,7 @@ impl Merging<'_> {
             return Ok(true);
         };
         let mut wrong = add(sum, &mut self.pieces.all, |state| *state == State::Whole);
-        // Checkpoints of unfinished parts will grow, so they are added to a copy unless this is the end.
+        // Unfinished checkpoints will grow, so they are added to a copy unless this is the end.
         let mut copy = if is_end { None } else { sum.try_copy().ok() };
         if is_end || copy.is_some() {
             let sum = copy.as_mut().unwrap_or(&mut *sum);
@@ -160,7 +160,7 @@ impl Merging<'_> {
         } else {
             console::note("warning: there is no memory for the checkpoints of unfinished parts");
         }
-        // At the end, they are named among what is missing.
+        // The end lists them among what is missing.
         if !is_end {
             wrong.iter().for_each(|line| console::note(&format!("warning: {line}")));
         }
@@ -180,7 +180,7 @@ impl Merging<'_> {
         Ok(true)
     }
 
-    /// Says what came of it.
+    /// Reports the outcome.
     fn finish(self) -> Result<ExitCode, Failure> {
         let Merging { options, pieces, interrupt, words, is_written, .. } = self;
         if is_written {
@@ -201,11 +201,12 @@ impl Merging<'_> {
     }
 }
 
-/// Adds the films whose state `fits` to the sum. One that cannot be added is [`State::Wrong`]; returns lines on these.
+/// Adds the films whose state `fits` to the sum. One that cannot be added becomes [`State::Wrong`]; returns lines about
+/// these.
 fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) -> Vec<String> {
     let mut wrong = Vec::new();
     for piece in pieces.iter_mut().filter(|piece| fits(&piece.state) && !piece.is_merged) {
-        let words = match sum.add(&piece.path, same_job) {
+        let reason = match sum.add(&piece.path, same_job) {
             Ok(_) => {
                 piece.is_merged = piece.state == State::Whole;
                 continue;
@@ -215,7 +216,7 @@ fn add(sum: &mut FilmSum, pieces: &mut [Piece], fits: impl Fn(&State) -> bool) -
             }
             Err(error) => error.to_string(),
         };
-        piece.state = State::Wrong(words);
+        piece.state = State::Wrong(reason);
         wrong.push(piece.line());
     }
     wrong

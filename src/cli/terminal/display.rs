@@ -37,24 +37,24 @@ impl Display {
         matches!(self, Display::Bar(_))
     }
 
-    /// Shows `words` at step `position`. A line is printed only if one is due.
-    pub fn update(&mut self, position: u64, words: impl FnOnce() -> String) {
+    /// Shows `text` at step `position`. A line is printed only if one is due.
+    pub fn update(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
             Display::Lines { next, .. } if Instant::now() < *next => {}
-            _ => self.announce(position, words),
+            _ => self.announce(position, text),
         }
     }
 
-    /// Shows `words` at step `position` even if no line is due.
-    pub fn announce(&mut self, position: u64, words: impl FnOnce() -> String) {
+    /// Shows `text` at step `position` even if no line is due.
+    pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
             Display::Bar(bar) => {
                 bar.set_position(position);
-                bar.set_message(console::printable(&words()).into_owned());
+                bar.set_message(console::printable(&text()).into_owned());
             }
             Display::Lines { next, interval } => {
                 *next = Instant::now() + *interval;
-                console::note(&words());
+                console::note(&text());
             }
             Display::Off => {}
         }
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_printed_only_if_one_is_due_unless_it_is_announced() {
+    fn lines_are_rate_limited_unless_announced() {
         let interval = Duration::from_secs(3600);
         let mut display = Display::Lines { next: Instant::now(), interval };
         let mut printed = Vec::new();
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_shows_its_position_and_names_without_control_characters() {
+    fn bar_escapes_control_characters() {
         let bar = bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:8}] {wide_msg}", "a\u{1b}b");
         let mut display = Display::Bar(bar.clone());
         display.update(2, || "half\u{1b} done".to_owned());

@@ -36,12 +36,10 @@ pub(super) struct Versions {
 /// The texts that a file holds beside its head and pixels: the recipe, and the comments.
 pub(super) type Texts<'a> = [&'a [u8]; 2];
 
-/// The number of bands of a picture of this height.
 pub(super) fn band_count(height: u32) -> u32 {
     height.div_ceil(BAND_ROWS)
 }
 
-/// The rows of a band.
 pub(super) fn band_rows(band: u32, height: u32) -> Range<u32> {
     band * BAND_ROWS..((band + 1) * BAND_ROWS).min(height)
 }
@@ -55,7 +53,6 @@ pub(super) fn band_checksum<'a>(band: u32, halves: impl Iterator<Item = &'a [Pix
 }
 
 impl Head {
-    /// Makes the head of a film with these texts.
     pub fn of(film: &Film, texts: Texts) -> Self {
         let band = |band: u32| {
             let rows = band_rows(band, film.height());
@@ -77,7 +74,6 @@ impl Head {
         head
     }
 
-    /// The sample ranges that the film holds.
     pub fn ranges(&self) -> Result<SampleRanges, FilmError> {
         SampleRanges::from_ranges(self.samples.iter().map(|[start, end]| *start..*end))
     }

@@ -4,13 +4,13 @@ use exr::meta::BlockDescription;
 use exr::meta::header::Header;
 use exr::prelude::Compression;
 
-/// Fewest bytes of a chunk: its entry in the offset table, its row number and its length.
+/// Fewest bytes of a chunk: its offset table entry, row number and length.
 const CHUNK_BYTES: u64 = 16;
 
 /// A chunk may always have this many bytes, whatever the file's length, because tiles may be larger than the picture.
 const SMALL_CHUNK_BYTES: u64 = 16 << 20;
 
-/// Refuses a file that is too short for what it claims to hold, and files that no reader can handle.
+/// Refuses files that are too short for what they claim to hold, and files that no reader can handle.
 pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.deep {
         return Err("it holds deep data".to_owned());
@@ -18,7 +18,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.channels.list.iter().any(|channel| channel.sampling.area() != 1) {
         return Err("some of its channels have fewer samples than pixels".to_owned());
     }
-    // The largest number of bytes that one stored byte can decompress to.
+    // Most bytes that one stored byte can decompress to.
     let ratio = match header.compression {
         Compression::Uncompressed => 1,
         Compression::RLE => 64,
@@ -63,7 +63,7 @@ mod tests {
 
     /// 400,000 bytes of pixels and 16 bytes for each chunk, of 1, 16 or 32 rows.
     #[test]
-    fn a_file_needs_as_many_bytes_as_can_become_its_pixels() {
+    fn file_must_be_long_enough_for_its_pixels() {
         for (compression, least) in [
             (Compression::Uncompressed, 100 * 16 + 400_000),
             (Compression::RLE, 100 * 16 + 6250),
@@ -73,21 +73,21 @@ mod tests {
         ] {
             let header = header((1000, 100), compression, BlockDescription::ScanLines);
             assert_eq!(check_length(&header, least), Ok(()), "{compression:?}");
-            let told =
+            let message =
                 format!("it has {} bytes, but 1000x100 pixels of 4 bytes need at least {least}", least - 1);
-            assert_eq!(check_length(&header, least - 1), Err(told));
+            assert_eq!(check_length(&header, least - 1), Err(message));
         }
     }
 
     #[test]
-    fn a_tile_may_be_larger_than_its_picture_but_not_by_any_amount() {
+    fn tile_size_beyond_the_picture_is_limited() {
         let tile_size = Vec2(8192, 8192);
         let (level_mode, rounding_mode) = (LevelMode::Singular, RoundingMode::Down);
         let tiles = BlockDescription::Tiles(TileDescription { tile_size, level_mode, rounding_mode });
         let header = header((10, 10), Compression::Uncompressed, tiles);
         let least = (8192 * 8192 * 4) - (16 << 20);
         assert_eq!(check_length(&header, least), Ok(()));
-        let told = check_length(&header, least - 1).unwrap_err();
-        assert!(told.ends_with("too few for chunks of 8192x8192 pixels"), "{told}");
+        let message = check_length(&header, least - 1).unwrap_err();
+        assert!(message.ends_with("too few for chunks of 8192x8192 pixels"), "{message}");
     }
 }

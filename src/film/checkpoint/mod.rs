@@ -32,11 +32,11 @@ use crate::system::files::{InputError, ShownPath};
 use crate::system::memory::MemoryError;
 use std::path::PathBuf;
 
-/// The version of the layout of film files.
+/// Layout version of film files.
 pub const VERSION: u32 = 4;
 
-/// The version of the samples: of the random numbers and of what is made of them. Samples of different versions do not
-/// belong to one film, so films of other versions are neither resumed nor merged.
+/// Version of the samples: of the random numbers and how they are used. Samples of different versions must not be
+/// mixed, so films of other versions are neither resumed nor merged.
 pub const SAMPLE_VERSION: u32 = 3;
 
 /// The first bytes of an OpenEXR file.
@@ -45,12 +45,10 @@ pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 const FILM_ATTRIBUTE: &str = "weekenderFilm";
 const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
 
-/// The content of a film file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmFile {
-    /// The exact sums.
     pub film: Film,
-    /// The recipe of the film's job, and the other entries of its description.
+    /// The recipe of the film's job, and other entries.
     pub description: Description,
 }
 
@@ -66,7 +64,6 @@ pub enum CheckpointError {
         path.shown()
     )]
     NotFilm { path: PathBuf },
-    /// The layout of the file or the samples of its film are of another version.
     #[error(
         "{} is a film of layout {layout} with samples of version {samples}, written by {writer}, but this program \
          ({SOFTWARE}) has layout {VERSION} and samples of version {SAMPLE_VERSION}; continue with {writer}, or render it again",
@@ -76,7 +73,7 @@ pub enum CheckpointError {
     /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.shown())]
     Damaged { path: PathBuf, what: String },
-    /// Another program wrote to the file meanwhile, as a copy in its place does.
+    /// Another program wrote to the file meanwhile, for example by copying over it.
     #[error("{} has changed while it was read; read it again when it is complete", path.shown())]
     Changed { path: PathBuf },
     #[error("cannot read {}: {reason}", path.shown())]
@@ -108,7 +105,7 @@ mod tests {
         film
     }
 
-    /// A film file that is valid except for what `change` does to its head.
+    /// A film file that is valid but for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
         let mut head = Head::of(&film, TEXTS);
@@ -127,8 +124,8 @@ mod tests {
     fn an_invalid_head_is_refused_even_with_a_correct_checksum() {
         assert_eq!(opened(&file(|_| {})).unwrap().film, film());
         let refused = |change: fn(&mut Head), part: &str| {
-            let told = opened(&file(change)).unwrap_err().to_string();
-            assert!(told.contains("x.exr is damaged") && told.contains(part), "{part}: {told}");
+            let message = opened(&file(change)).unwrap_err().to_string();
+            assert!(message.contains("x.exr is damaged") && message.contains(part), "{part}: {message}");
         };
         refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
         refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");
@@ -150,7 +147,7 @@ mod tests {
         assert_eq!(opened(&bytes).unwrap().film, film());
     }
 
-    /// The file with other bytes at `offset` after an attribute's name, type and length.
+    /// Overwrites bytes at `offset` after an attribute's name, type and length.
     fn with_attribute(mut bytes: Vec<u8>, name: &[u8], offset: usize, value: i32) -> Vec<u8> {
         let place = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
         bytes[place + offset..place + offset + 4].copy_from_slice(&value.to_le_bytes());
@@ -158,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+    fn short_file_is_refused_before_allocation() {
         let claim = |side: u32| {
             let bytes = file(|head| {
                 (head.width, head.height) = (side, side);
@@ -169,9 +166,9 @@ mod tests {
             let bytes = with_attribute(bytes, b"dataWindow\0box2i\0", 8, last);
             opened(&with_attribute(bytes, b"dataWindow\0box2i\0", 12, last)).unwrap_err().to_string()
         };
-        let told = claim(SIZE_LIMIT);
-        assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{told}");
-        let told = claim(20_000);
-        assert!(told.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{told}");
+        let message = claim(SIZE_LIMIT);
+        assert!(message.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{message}");
+        let message = claim(20_000);
+        assert!(message.contains("20000x20000 pixels, but each side of a film has 1 to 16384"), "{message}");
     }
 }

@@ -15,7 +15,7 @@ use std::fmt::Display;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 
-/// What a film file says about its film, without the sums.
+/// A film file's description of its film, without the sums.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmHead {
     pub width: u32,
@@ -24,14 +24,14 @@ pub struct FilmHead {
     pub halves: usize,
     /// The samples that every pixel holds.
     pub samples: SampleRanges,
-    /// Samples that were left out, over all pixels.
+    /// Rejected samples, over all pixels.
     pub rejected: u64,
     pub description: Description,
     /// Length of the file in bytes.
     pub bytes: u64,
 }
 
-/// Reads what a film file says about its film.
+/// Reads a film file's description of its film.
 ///
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
@@ -45,9 +45,7 @@ pub(super) struct Opened<'a> {
     pub path: &'a Path,
     pub header: Header,
     pub about: FilmHead,
-    /// The checksum of each band.
     pub bands: Vec<String>,
-    /// What each channel holds.
     pub planes: Vec<Plane>,
 }
 
@@ -130,7 +128,7 @@ fn read_head_text(bytes: &[u8], header: &Header, path: &Path) -> Result<Head, Ch
         let writer = header.own_attributes.software_name.as_ref();
         return Err(CheckpointError::Version {
             path: path.to_owned(),
-            // Before layout 4, both had one number.
+            // Layouts before 4 stored one number for both versions.
             layout: version,
             samples: sample_version.unwrap_or(version),
             writer: writer.map_or_else(|| "another program".to_owned(), ToString::to_string),

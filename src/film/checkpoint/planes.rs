@@ -1,4 +1,4 @@
-//! What the channels of a film file hold, and how sums become words and come back.
+//! What the channels of a film file hold, and how sums become words and back.
 
 use super::head::Head;
 use super::{Film, PixelSum};
@@ -70,21 +70,21 @@ fn mean(sum: u64, unit: f64) -> f32 {
     (sum as f64 / unit) as f32
 }
 
-/// The mean of a sum, and what the mean has lost of it by its rounding: the rest, which is small, so that most of its
-/// bytes are zero and cost nothing in the file. The lowest bit of the rest is its sign.
+/// The mean of a sum and its rest: what rounding the mean loses. The rest is small, so most of its bytes are zero and
+/// compress to nothing. Its lowest bit is its sign.
 fn mean_and_rest(sum: u64, unit: f64) -> (f32, u64) {
     let mean = mean(sum, unit);
     let lost = (sum as i64).wrapping_sub(from_mean(mean, unit));
     (mean, ((lost << 1) ^ (lost >> 63)) as u64)
 }
 
-/// The sum of a mean and its rest: see [`mean_and_rest`].
+/// Inverse of [`mean_and_rest`].
 fn sum_of(mean: f32, rest: u64, unit: f64) -> u64 {
     let lost = (rest >> 1) as i64 ^ -((rest & 1) as i64);
     from_mean(mean, unit).wrapping_add(lost) as u64
 }
 
-/// One product and one rounding in `f64`, which are the same on every processor.
+/// One product and one rounding in `f64`, which give the same result on every processor.
 fn from_mean(mean: f32, unit: f64) -> i64 {
     (f64::from(mean) * unit).round_ties_even() as i64
 }
@@ -136,7 +136,7 @@ impl Row {
         for Stored { means, rests, first } in &self.pixels {
             let totals = [0, 1, 2].map(|colour| sum_of(f32::from_bits(means[colour]), rests[colour], unit));
             let last = [0, 1, 2].map(|colour| totals[colour].wrapping_sub(first[colour]));
-            // A half that is larger than both together was made by wrapping.
+            // A half larger than both together comes from wrapping.
             matches &= (0..3).all(|colour| {
                 last[colour] <= totals[colour] && mean(totals[colour], unit).to_bits() == means[colour]
             });

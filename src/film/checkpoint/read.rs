@@ -15,7 +15,7 @@ use std::path::Path;
 /// Bytes that a thread reads at once.
 const BUFFER: usize = 1 << 18;
 
-/// Reads a film file. The film is identical to the bit to the one that was written.
+/// Reads a film file. The film equals the one that was written to the bit.
 ///
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
@@ -27,7 +27,7 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     opened.film(halves)
 }
 
-/// The same from a reader of `length` bytes, without threads. Messages name `path`.
+/// Reads from a reader of `length` bytes, without threads. Messages name `path`.
 ///
 /// # Errors
 /// As [`load`].
@@ -95,7 +95,7 @@ impl Opened<'_> {
         outcomes.into_iter().try_for_each(|outcome| outcome.unwrap_or_else(panicked))
     }
 
-    /// Reads some bands in order and checks each. `sums` are their places in each half, if they are to be kept.
+    /// Reads some bands in order and checks each. `sums` are their places in each half, if they are kept.
     fn read_bands<R: Read + Seek>(
         &self,
         reader: Reader<R>,
@@ -140,7 +140,7 @@ impl Opened<'_> {
     }
 }
 
-/// A reader with a place of its own in a file that others read too.
+/// A reader with its own position in a shared file.
 struct At<'a> {
     file: &'a File,
     place: u64,
@@ -181,7 +181,7 @@ mod tests {
     use crate::film::{Description, checkpoint::save};
 
     #[test]
-    fn another_film_that_is_copied_into_the_file_is_noticed() {
+    fn film_replaced_while_read_is_noticed() {
         let directory = tempfile::tempdir().unwrap();
         let [path, other] = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
         for (path, samples) in [(&path, 0..4), (&other, 4..6)] {

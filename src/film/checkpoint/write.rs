@@ -17,7 +17,7 @@ use std::path::Path;
 /// Rows that a thread compresses before they are written.
 const ROWS_AT_ONCE: usize = 32;
 
-/// Writes a film file in place of `path`. Besides the film, this needs memory for some rows.
+/// Writes a film file in place of `path`. Besides the film, this needs memory for a few rows.
 ///
 /// # Errors
 /// [`WriteError`]; the previous file is then unchanged.

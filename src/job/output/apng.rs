@@ -19,7 +19,6 @@ pub struct FrameRate {
 }
 
 impl FrameRate {
-    /// Frames per second.
     pub fn per_second(self) -> f64 {
         f64::from(self.frames) / f64::from(self.seconds)
     }
@@ -67,8 +66,8 @@ fn encode(
     Ok(())
 }
 
-/// The number of frames of an animated PNG, and its rate if the first frame tells one. `None` for other files, also those
-/// that cannot be read.
+/// The frame count of an animated PNG, and its rate if the first frame tells one. `None` for other and for unreadable
+/// files.
 pub fn animation_in(path: &Path) -> Option<(u32, Option<FrameRate>)> {
     let (file, _) = files::open(path).ok()?;
     let mut decoder = ::png::Decoder::new(BufReader::new(file));
@@ -83,7 +82,7 @@ pub fn animation_in(path: &Path) -> Option<(u32, Option<FrameRate>)> {
     Some((count, rate.filter(|rate| rate.seconds > 0)))
 }
 
-/// Checks that a file is an 8-bit RGB PNG of `size`, and whole.
+/// Checks that a file is a complete 8-bit RGB PNG of `size`.
 ///
 /// # Errors
 /// [`OutputError::Input`] or [`OutputError::Read`].

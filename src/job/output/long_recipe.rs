@@ -1,16 +1,16 @@
-//! Recipes that are too long for a picture with 8 bits: a comment with their length and checksum takes their place.
+//! Recipes too long for an 8-bit picture: a comment with their length and checksum replaces them.
 
 use crate::film::Checksum;
 use std::borrow::Cow;
 
-/// Longest recipe in a PNG or PPM file, bytes. Some 600,000 listed spheres have as many.
+/// Longest recipe in a PNG or PPM file, bytes: about 600,000 listed spheres.
 pub const RECIPE_LIMIT: usize = 64 << 20;
 
-/// What the comment begins with; the length follows.
+/// Start of the comment; the length follows.
 const BEGIN: &str = "# This picture does not hold its recipe, because that is too long. It has ";
 
-/// The recipe as PNG and PPM files hold it: the text itself, or the comment that takes the place of a text longer than
-/// [`RECIPE_LIMIT`]. Different recipes have different comments.
+/// The recipe as PNG and PPM files hold it: the text itself or, beyond [`RECIPE_LIMIT`], the comment that replaces it.
+/// Different recipes have different comments.
 pub fn recipe_in_picture(recipe: &str) -> Cow<'_, str> {
     if recipe.len() <= RECIPE_LIMIT {
         return Cow::Borrowed(recipe);
@@ -20,7 +20,7 @@ pub fn recipe_in_picture(recipe: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{BEGIN}{} bytes, and its checksum is {}.\n", recipe.len(), sum.finish()))
 }
 
-/// The length in bytes of the recipe that this comment takes the place of; `None` for a recipe.
+/// Length in bytes of the recipe that this comment replaces; `None` for a recipe.
 pub fn length_of_missing(recipe: &str) -> Option<u64> {
     let (length, _) = recipe.strip_prefix(BEGIN)?.split_once(' ')?;
     length.parse().ok()
@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_recipe_beyond_the_limit_becomes_a_comment_with_its_checksum() {
+    fn long_recipe_becomes_a_comment_with_its_checksum() {
         let longest = "x".repeat(RECIPE_LIMIT);
         assert!(matches!(recipe_in_picture(&longest), Cow::Borrowed(text) if text == longest));
         assert_eq!(length_of_missing(&longest), None);

@@ -34,7 +34,6 @@ pub enum OutputFormat {
 }
 
 impl OutputFormat {
-    /// All formats.
     pub const ALL: [OutputFormat; 3] = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr];
 
     /// File extension, with the dot.
@@ -62,16 +61,11 @@ impl OutputFormat {
 /// Why a picture cannot be written, or its description cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The file name has no known extension.
     #[error(
         "cannot tell the picture format of {}; let the name end in one of {}",
         path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
     )]
-    UnknownEnding {
-        /// The file.
-        path: PathBuf,
-    },
-    /// The file cannot be written.
+    UnknownEnding { path: PathBuf },
     #[error(transparent)]
     Write(#[from] WriteError),
     /// The file cannot be opened, or is not a regular file.
@@ -80,26 +74,16 @@ pub enum OutputError {
     /// The film is damaged or of another version.
     #[error(transparent)]
     Film(#[from] CheckpointError),
-    /// The content of the file cannot be read.
     #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.shown())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: io::Error,
-    },
-    /// The picture does not contain a description.
+    Read { path: PathBuf, reason: io::Error },
     #[error(
         "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
         path.shown()
     )]
-    NoDescription {
-        /// The file.
-        path: PathBuf,
-    },
+    NoDescription { path: PathBuf },
 }
 
-/// How a PPM holds its numbers.
+/// How a PPM stores its numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PpmForm {
     /// As bytes (P6).
@@ -109,22 +93,20 @@ pub enum PpmForm {
     Ascii,
 }
 
-/// How hard a PNG is compressed.
+/// How hard to compress a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PngForm {
-    /// In little time.
+    /// Fast.
     #[default]
     Fast,
-    /// For pages that are to load quickly: a seventh smaller, in five times the time.
+    /// For pages that should load quickly: a seventh smaller, five times as slow.
     Small,
 }
 
-/// The forms of the formats that have several.
+/// Variants of the formats that have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Forms {
-    /// The form of a PPM.
     pub ppm: PpmForm,
-    /// The form of a PNG.
     pub png: PngForm,
 }
 
@@ -142,7 +124,7 @@ pub fn write_image(
     write_image_as(path, film, transfer, description, Forms::default())
 }
 
-/// As [`write_image`], in one of several `forms`.
+/// As [`write_image`], in the given `forms`.
 ///
 /// # Errors
 /// As for [`write_image`].
@@ -187,7 +169,7 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
     decode_description(BufReader::new(file), path)
 }
 
-/// The same from a reader; `path` is only used in messages.
+/// As [`read_description`], from a reader; `path` is only used in messages.
 ///
 /// # Errors
 /// As for [`read_description`].

@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_turned_over_and_both_orders_of_bytes_are_read() {
+    fn rows_are_flipped_and_both_byte_orders_read() {
         let values: Vec<f32> = (0..12).map(|i| i as f32).collect();
         let expected = vec![[6.0, 7.0, 8.0], [9.0, 10.0, 11.0], [0.0, 1.0, 2.0], [3.0, 4.0, 5.0]];
         for (header, little) in [("PF\n2 2\n-1.0\n", true), ("PF 2 2 1\n", false)] {
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_pfm_is_refused_in_words() {
+    fn invalid_pfm_is_refused_with_a_reason() {
         let cases: [(&[u8], &str); 6] = [
             (b"P6\n1 1\n255\n", "\"P6\""),
             (b"PF\nx 1\n-1\n", "width"),

@@ -28,7 +28,7 @@ pub(super) fn write_bytes(
     writer.write_all(&encoded(size, description, PngForm::Fast, |rows| rows.write_all(rgb8))?)
 }
 
-/// The whole file: the encoder's stream would reduce an error of the file system to its text.
+/// Encodes the whole file in memory, because the encoder's stream would reduce a file system error to its text.
 fn encoded(
     [width, height]: [u32; 2],
     description: &Description,
@@ -97,7 +97,7 @@ pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option
         return Ok(None);
     };
     let mut recipe = recipe.clone();
-    // The decompressor wants room for one byte more to find the end.
+    // The decompressor needs room for one more byte to find the end.
     recipe.decompress_text_with_limit(RECIPE_LIMIT + 1).map_err(|error| {
         invalid(format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})"))
     })?;

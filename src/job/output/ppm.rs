@@ -28,7 +28,7 @@ pub(super) fn write(
     }
 }
 
-/// Writes bytes as numbers, one pixel on a line. It is given whole pixels.
+/// Writes bytes as decimal numbers, one pixel per line. Each call must pass whole pixels.
 struct Numbers<W>(W);
 
 impl<W: Write> Write for Numbers<W> {

@@ -24,16 +24,14 @@ pub enum Encoding {
 /// A picture that was read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadPicture {
-    /// Width in pixels.
     pub width: u32,
-    /// Height in pixels.
     pub height: u32,
-    /// Linear RGB, row by row from the top. A channel at the top of its integer range is NaN, since it only tells a
-    /// limit.
+    /// Linear RGB, row by row from the top. A channel at the top of its integer range is NaN, since it only gives a
+    /// lower bound.
     pub pixels: Vec<[f64; 3]>,
     /// Largest quantisation error of each channel in either direction, linear; `None` for float files.
     pub steps: Option<Vec<[f64; 3]>>,
-    /// Linear value from which on a channel is NaN; infinite for float files.
+    /// Linear value from which channels are NaN; infinite for float files.
     pub limit: f64,
 }
 
@@ -48,10 +46,10 @@ pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, Outp
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
 }
 
-/// The same from a reader of `length` bytes.
+/// As [`read_picture`], from a reader of `length` bytes.
 ///
 /// # Errors
-/// What is wrong with the file, or the reader's error.
+/// A description of what is wrong with the file, or the reader's error.
 pub fn decode_picture(
     mut reader: impl BufRead + Seek,
     length: u64,
@@ -99,7 +97,7 @@ fn read_exr(mut reader: impl BufRead + Seek, length: u64) -> io::Result<(u32, u3
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
-            // Nothing is allocated for a size beyond the limit; such a size is refused below.
+            // Allocate nothing for a size beyond the limit; it is refused below.
             |size: Vec2<usize>, _: &RgbChannels| {
                 let fits = size.x().checked_mul(size.y()).filter(|count| *count as u64 <= PIXEL_LIMIT);
                 (size.x(), vec![[0.0_f32; 3]; fits.unwrap_or(0)])
@@ -186,7 +184,8 @@ fn decode(
     Ok((image_of(decoder, length, LARGEST_RATIO)?, levels))
 }
 
-/// Decodes a picture if its size is within the limits and its file is long enough: a byte becomes at most `ratio`.
+/// Decodes a picture if its size is within the limits and its file is long enough: a byte expands to at most `ratio`
+/// bytes.
 fn image_of(decoder: impl ImageDecoder, length: u64, ratio: u64) -> io::Result<DynamicImage> {
     let (width, height) = decoder.dimensions();
     pixel_count(width, height)?;
@@ -250,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_numbers_end_where_the_last_of_them_begins() {
+    fn limit_is_the_start_of_the_last_level() {
         let srgb = ((254.5 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
         for (encoding, limit) in [
             (Encoding::Book(Transfer::Linear), 255.0 / 256.0),
@@ -350,9 +349,9 @@ mod tests {
         assert_intervals(b"P4 2 1 \x80", &[[0.0, 0.5], unknown], 0.5);
     }
 
-    /// A byte of a bitmap has eight pixels, so no PNM is shorter than an eighth of what becomes of it.
+    /// A byte of a bitmap holds eight pixels, so no PNM is shorter than an eighth of its pixel count.
     #[test]
-    fn a_pnm_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
+    fn short_pnm_is_refused_before_allocation() {
         let message = |length: u64| {
             let header = io::Cursor::new(b"P6 160 100 255 ");
             decode_picture(header, length, Encoding::Srgb).unwrap_err().to_string()
@@ -362,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn a_png_has_as_many_levels_as_its_bits_and_its_palette_has_256() {
+    fn png_levels_follow_bit_depth_and_palette() {
         use ::png::{
             BitDepth,
             ColorType::{self, Grayscale, Indexed},

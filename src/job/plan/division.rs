@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// The longest part may have this much more than its share.
+/// How much longer than its share the longest part may be.
 const TOLERANCE: f64 = 0.05;
 
 /// Samples divided into parts.
@@ -16,7 +16,7 @@ pub struct Division {
     pub parts: Vec<Range<u64>>,
 }
 
-/// Divides `samples` into `parts` parts of about the same length: the largest blocks for which no part is more than a
+/// Divides `samples` into `parts` parts of about equal length, with the largest blocks for which no part is more than a
 /// twentieth longer than its share. `None` if there are fewer samples than parts, or no parts.
 pub fn divide(samples: Range<u64>, parts: u64) -> Option<Division> {
     let count = samples.end.checked_sub(samples.start)?;
@@ -54,12 +54,12 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_divide_becomes_blocks_of_a_smaller_power() {
+    fn uneven_division_uses_smaller_blocks() {
         let Division { block, parts } = divide(0..1000, 3).unwrap();
         assert_eq!((block, parts), (16, vec![0..336, 336..672, 672..1000]));
         let Division { block, parts } = divide(0..5, 4).unwrap();
         assert_eq!((block, parts), (1, vec![0..1, 1..2, 2..3, 3..5]));
-        // More samples of a picture that has some.
+        // Samples that continue an existing picture.
         let Division { block, parts } = divide(96..4192, 4).unwrap();
         assert_eq!((block, parts[1].clone()), (64, 1088..2112));
         assert_eq!((divide(0..3, 4), divide(0..3, 0)), (None, None));

@@ -1,5 +1,5 @@
 //! The manifest of a plan: a JSON file that names the scene, the parts and their files. With the scene file and the
-//! parts' own files it is all the state that a plan has.
+//! parts' own files it is the whole state of a plan.
 
 use super::Division;
 use crate::film::checkpoint::SAMPLE_VERSION;
@@ -16,10 +16,9 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Name of the manifest in the directory of a plan.
+/// File name of the manifest in a plan's directory.
 pub const MANIFEST: &str = "plan.json";
 
-/// Name of the scene file.
 const SCENE: &str = "scene.toml";
 
 /// Longest manifest and longest scene file that are read, bytes.
@@ -33,24 +32,22 @@ pub struct Manifest {
     pub sample_version: u32,
     /// The program that made the plan, and its version.
     pub program: String,
-    /// The command that made it.
     pub command: String,
-    /// Name of the scene.
     pub scene: String,
-    /// Id of the stage that the scene comes from.
+    /// Id of the scene's stage.
     pub stage: Option<String>,
     /// The scene file, beside the manifest.
     pub scene_file: String,
     pub scene_checksum: String,
     #[serde(flatten)]
     pub work: Work,
-    /// Flags of every part's command.
+    /// Flags for every part's command.
     pub flags: Vec<String>,
     /// What the parts are merged into, beside the manifest.
     pub result: String,
 }
 
-/// What is divided, and its parts.
+/// The work and its parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Work {
@@ -99,7 +96,7 @@ pub struct FramePart {
 }
 
 impl Part {
-    /// The samples per pixel that `found` lacks of the part.
+    /// Samples per pixel of the part that `found` lacks.
     pub fn missing(&self, found: &SampleRanges) -> u64 {
         let (mut missing, mut from) = (0, self.samples[0]);
         while let Some(gap) = found.first_gap(from..self.samples[1], u64::MAX) {
@@ -109,7 +106,7 @@ impl Part {
         missing
     }
 
-    /// Whether `found` has samples that do not belong to the part.
+    /// Whether `found` has samples outside the part.
     pub fn is_exceeded_by(&self, found: &SampleRanges) -> bool {
         found.iter().any(|range| range.start < self.samples[0] || range.end > self.samples[1])
     }
@@ -146,7 +143,6 @@ impl Frames {
         Some(Frames { frames: [frames.start, frames.end], turntable, rate, parts })
     }
 
-    /// All frames.
     pub fn range(&self) -> Range<u32> {
         self.frames[0]..self.frames[1]
     }
@@ -161,7 +157,6 @@ impl Frames {
 }
 
 impl Work {
-    /// The number of parts.
     pub fn count(&self) -> usize {
         match self {
             Work::Samples(work) => work.parts.len(),
@@ -202,7 +197,7 @@ impl Work {
     }
 }
 
-/// What the versions of a manifest decide; other versions may have other keys.
+/// Read first: other versions of a manifest may have other keys.
 #[derive(Deserialize)]
 struct Versions {
     plan_version: u32,
@@ -257,7 +252,7 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// Checks that the parts are the whole, and that each file has a name of its own in the plan's directory.
+    /// Checks that the parts cover the whole, and that each file has its own name in the plan's directory.
     fn check(&self) -> Result<(), String> {
         let (whole, parts, limit) = self.work.ranges();
         let mut next = whole[0];
@@ -289,10 +284,8 @@ impl Manifest {
 /// A plan that was read and checked.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The manifest's path.
     pub path: PathBuf,
     pub manifest: Manifest,
-    /// The recipe in the scene file.
     pub recipe: Recipe,
     pub job: RenderJob,
 }
@@ -306,7 +299,7 @@ impl Plan {
     /// Reads a plan and its scene. `path` is the manifest, or the directory that it is in.
     ///
     /// # Errors
-    /// If there is none, if it was changed, or if it is of another version; in words that say what to do.
+    /// If there is none, it was changed, or it has another version; the message says what to do.
     pub fn load(path: &Path) -> Result<Plan> {
         let in_directory = path.join(MANIFEST);
         ensure!(
@@ -329,11 +322,11 @@ impl Plan {
         Ok(Plan { path, manifest, recipe, job })
     }
 
-    /// Writes a plan of `recipe`, and the `scripts` that start it, into `directory`, which must exist. An equal plan that
-    /// is there may have other flags.
+    /// Writes a plan of `recipe`, and the `scripts` that start it, into `directory`, which must exist. An equal plan
+    /// may already be there, even with other flags.
     ///
     /// # Errors
-    /// If the directory holds another plan, or a file of another origin would be replaced; if a file cannot be written.
+    /// If the directory holds another plan, a foreign file would be replaced, or a file cannot be written.
     pub fn write(
         directory: &Path,
         recipe: &Recipe,
@@ -358,7 +351,7 @@ impl Plan {
         let scripts = scripts.iter().map(|(name, text)| (path.with_file_name(name), text));
         scripts.clone().try_for_each(|(path, text)| check_free(&path, text))?;
         write_text(&scene, &text)?;
-        // The manifest comes after its scene: whoever finds it finds both.
+        // The manifest comes after its scene, so whoever finds it finds both.
         write_text(&path, &(serde_json::to_string_pretty(&manifest)? + "\n"))?;
         for (path, text) in scripts {
             write_text(&path, text)?;
@@ -366,13 +359,11 @@ impl Plan {
         Ok(Plan { path, manifest, recipe: recipe.clone(), job: job.clone() })
     }
 
-    /// The directory of the plan.
     pub fn directory(&self) -> &Path {
         let parent = self.path.parent().unwrap_or(Path::new("."));
         if parent.as_os_str().is_empty() { Path::new(".") } else { parent }
     }
 
-    /// The file of this name in the directory of the plan.
     pub fn beside(&self, name: &str) -> PathBuf {
         self.path.with_file_name(name)
     }
@@ -382,7 +373,7 @@ impl Plan {
         FrameNames::in_directory(self.directory())
     }
 
-    /// All files of the plan but its result: manifest, scene, and parts or frames.
+    /// All files of the plan except its result: manifest, scene, and parts or frames.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files = vec![self.path.clone(), self.beside(&self.manifest.scene_file)];
         files.extend(self.manifest.work.files().map(|name| self.beside(name)));
@@ -393,12 +384,11 @@ impl Plan {
         files
     }
 
-    /// The stage that the picture comes from.
     pub fn stage(&self) -> Option<&'static Stage> {
         self.manifest.stage.as_deref().and_then(|id| Stage::find(id).ok())
     }
 
-    /// The index of a part from its number, which counts from 0.
+    /// Converts a part's number, which counts from 0, to its index.
     ///
     /// # Errors
     /// If there is no such part.
@@ -410,7 +400,7 @@ impl Plan {
     }
 }
 
-/// Refuses to replace a file of another origin, or one that was changed.
+/// Refuses to replace a foreign or changed file.
 fn check_free(path: &Path, text: &str) -> Result<()> {
     let is_same = || {
         files::read(path, "a file of the plan", LENGTH_LIMITS[1]).is_ok_and(|there| there == text.as_bytes())
@@ -464,7 +454,7 @@ mod tests {
     }
 
     #[test]
-    fn a_manifest_is_read_as_it_was_written() {
+    fn manifests_round_trip() {
         let division = divide(7..50, 3).unwrap();
         let turn = Some(Turn::DegreesPerFrame(-1.1));
         let rate = FrameRate { frames: 30_000, seconds: 1001 };
@@ -479,7 +469,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_lacks_the_samples_of_its_range_that_a_film_does_not_hold() {
+    fn missing_samples_of_a_part() {
         let part = Part { file: String::new(), samples: [8, 16] };
         let of = |ranges: &[[u64; 2]]| {
             let found = SampleRanges::from_ranges(ranges.iter().map(|[start, end]| *start..*end)).unwrap();

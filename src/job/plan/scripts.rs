@@ -20,7 +20,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The scripts, each with its text, in which `@KEYS@` are filled in. The one to start comes first.
+    /// The scripts with their texts, which contain `@KEYS@` to fill in. The one to start comes first.
     fn templates(self) -> &'static [(&'static str, &'static str)] {
         match self {
             Format::Text | Format::Json => &[],
@@ -35,7 +35,7 @@ impl Format {
     }
 }
 
-/// The commands of a plan.
+/// Builds the commands of a plan.
 #[derive(Clone, Debug)]
 pub struct Commands<'a> {
     /// How they call this program.
@@ -79,7 +79,7 @@ pub fn scripts(format: Format, manifest: &Manifest, program: &str) -> Vec<(&'sta
     let [part, merge] = match format {
         Format::Parallel => [quoted(&commands.part_line("{}")).into_owned(), merge],
         Format::Make => {
-            // make takes a doubled dollar sign for one.
+            // make reads a doubled dollar sign as one.
             let part = commands.part_line("\u{1}").replace('$', "$$").replace('\u{1}', "$@");
             [part, merge.replace('$', "$$")]
         }
@@ -101,7 +101,7 @@ mod tests {
     use crate::job::plan::{Samples, Work, divide};
 
     #[test]
-    fn scripts_have_the_numbers_and_the_quoted_commands_of_the_plan() {
+    fn scripts_have_part_numbers_and_quoted_commands() {
         let work = Samples::new(&(0..6), &divide(0..6, 3).unwrap());
         let flags = vec!["--adapter=it's $1".to_owned()];
         let manifest = Manifest { flags, ..Manifest::new(Work::Samples(work)) };

@@ -16,20 +16,18 @@ use thiserror::Error;
 /// Samples per pixel of a scene file that does not set them.
 pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
 
-/// Scene, camera, settings, rules and the wanted number of samples, not checked yet.
+/// Scene, camera, settings, rules and the wanted number of samples, not validated yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recipe {
     /// The name of a built-in scene, the id of a stage, or the stem of a file name.
     pub name: String,
     /// Spheres, materials and sky. All jobs of the recipe share it.
     pub scene: Arc<Scene>,
-    /// The camera.
     pub camera: Camera,
-    /// The keyframes of an animation by rising frame number, if there are any. Not part of the job, which is one picture.
+    /// The keyframes of an animation by rising frame number. Not part of the job, which is one picture.
     pub keyframes: Vec<Keyframe>,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
-    /// The rules in force.
     pub rules: Rules,
     /// Samples per pixel that the picture should have, `1..=2^32`. Not part of the job: a film can have any number.
     pub samples_per_pixel: u64,
@@ -92,7 +90,7 @@ impl Recipe {
     }
 }
 
-/// A name that every file system accepts: other characters become dashes.
+/// A name that every file system accepts, with other characters replaced by dashes.
 pub fn plain_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '-' }).collect()
 }
@@ -116,12 +114,10 @@ impl Stage {
 /// No built-in scene has this name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SceneNameError {
-    /// There is no such scene.
     #[error("there is no scene {name:?}; {}", or_nearest(near))]
     Unknown {
-        /// The name that was given.
         name: String,
-        /// Similar names, best match first.
+        /// Best match first.
         near: Vec<&'static str>,
     },
     /// `field:N` with an `N` out of range.
@@ -171,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn plain_names_have_no_sign_that_a_file_system_minds() {
+    fn plain_names_suit_every_file_system() {
         assert_eq!(plain_name("field:100"), "field-100");
         assert_eq!(plain_name("a/b\\c\"d*e?f<g>h|i\0j"), "a-b-c-d-e-f-g-h-i-j");
         assert_eq!(plain_name("Köln 1_2.3-4"), "Köln 1_2.3-4");

@@ -85,33 +85,28 @@ impl RenderJob {
         Arc::ptr_eq(&self.scene, &other.scene) && self.rules == other.rules
     }
 
-    /// The scene: spheres, materials and sky.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The camera of the job.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Size, depth, sampler, seed and halves.
     pub fn settings(&self) -> &RenderSettings {
         &self.settings
     }
 
-    /// The rules in effect.
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
 
-    /// Creates an empty film for this job.
     pub fn new_film(&self) -> Film {
         Film::new(self.settings.width, self.settings.height, self.settings.half_count())
     }
 
-    /// Returns an error if the job and `films` films of its size do not fit into memory while it is prepared, traced
-    /// and written.
+    /// Returns an error if preparing, tracing and writing the job with `films` films of its size needs more memory than
+    /// there is.
     ///
     /// # Errors
     /// [`MemoryError`], with a remedy.
@@ -153,15 +148,11 @@ pub enum JobError {
     Size {
         /// The dimension: "width" or "height".
         what: &'static str,
-        /// The requested number of pixels.
         pixels: u32,
     },
     /// The depth is out of range.
     #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
-    Depth {
-        /// The requested number of rays per path.
-        depth: u32,
-    },
+    Depth { depth: u32 },
 }
 
 /// Statistics of a call to [`Renderer::accumulate`].
@@ -193,12 +184,10 @@ impl Stats {
     }
 }
 
-/// What a kernel has code for, in words.
+/// The features that a kernel has code for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct KernelContents {
-    /// What it has.
     pub present: String,
-    /// What it leaves out.
     pub left_out: Vec<&'static str>,
 }
 
@@ -230,20 +219,10 @@ pub enum RenderError {
     Cancelled,
     /// The backend failed; another can continue from the last good film.
     #[error("{backend} failed: {reason}")]
-    Backend {
-        /// Name of the backend.
-        backend: &'static str,
-        /// The backend's error message.
-        reason: String,
-    },
+    Backend { backend: &'static str, reason: String },
     /// The backend failed while adding samples, and its partial additions could not be removed: the film is unusable.
     #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
-    FilmLost {
-        /// Name of the backend.
-        backend: &'static str,
-        /// The backend's error message.
-        reason: String,
-    },
+    FilmLost { backend: &'static str, reason: String },
     /// The same samples were requested twice.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),
@@ -256,7 +235,6 @@ impl RenderError {
     }
 }
 
-/// The message of a panic.
 pub fn panic_text(payload: &(dyn Any + Send)) -> &str {
     let text = payload.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("for no stated reason")
@@ -271,7 +249,6 @@ pub struct BackendInfo {
     pub device: String,
     /// Number of paths that advance in step.
     pub lanes: usize,
-    /// Number of threads.
     pub threads: usize,
 }
 
@@ -280,8 +257,8 @@ pub trait Renderer: Send {
     /// Describes this backend.
     fn info(&self) -> BackendInfo;
 
-    /// The backends that added the samples of the last [`Renderer::accumulate`], which added `added` samples per pixel.
-    /// By default, this renderer added all of them.
+    /// Which backends added how many of the `added` samples per pixel of the last [`Renderer::accumulate`]. By default,
+    /// this renderer added all of them.
     fn credits(&self, added: u64) -> Vec<(BackendInfo, u64)> {
         vec![(self.info(), added)]
     }
@@ -326,8 +303,8 @@ pub trait Renderer: Send {
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
     /// Estimates how long a sample of every pixel of the prepared job takes, by tracing about one pixel in `one_in` and
-    /// dropping what it finds: `film` has the job's size and stays as it is. In long passes a sample takes less. `None` from
-    /// a renderer that cannot tell.
+    /// discarding the result: `film` has the job's size and stays unchanged. In long passes a sample takes less time.
+    /// `None` if the renderer cannot tell.
     fn try_out(&mut self, _film: &mut Film, _one_in: usize, _cancel: &AtomicBool) -> Option<Duration> {
         None
     }
@@ -364,8 +341,8 @@ pub trait Renderer: Send {
         self.accumulate(job, range, film, cancel)
     }
 
-    /// Like [`Renderer::advance`], but if `stop` is set meanwhile, does what is quicker: finishes, or removes what it has
-    /// added. `None` if it has removed it: the film is then as it was. By default, it finishes.
+    /// Like [`Renderer::advance`], but once `stop` is set, either finishes or removes what it has added, whichever is
+    /// quicker. `None` if it removed it: the film is then unchanged. By default, it finishes.
     ///
     /// # Errors
     /// As for [`Renderer::advance`].
@@ -380,7 +357,7 @@ pub trait Renderer: Send {
         self.advance(job, range, film, cancel).map(Some)
     }
 
-    /// Whether [`Renderer::advance_unless`] heeds a stop, so that one takes at most half the time of a pass.
+    /// Whether [`Renderer::advance_unless`] heeds `stop`, so that stopping takes at most half the time of a pass.
     fn heeds_stop(&self) -> bool {
         false
     }
@@ -393,7 +370,7 @@ pub trait Renderer: Send {
         Ok(())
     }
 
-    /// Waits for everything traced so far and adds to the film what it does not contain.
+    /// Waits for everything traced so far and adds what the film lacks.
     ///
     /// # Errors
     /// [`RenderError::Backend`]; samples that are not in the film are then lost.

@@ -27,7 +27,7 @@ impl SamplerKind {
     }
 }
 
-/// The numbers of a job other than those of scene and camera.
+/// The numbers of a job besides those of scene and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderSettings {
     /// Picture width in pixels, `1..=16384`.
@@ -36,7 +36,6 @@ pub struct RenderSettings {
     pub height: u32,
     /// Most rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes nothing.
     pub max_depth: u32,
-    /// The sampler.
     pub sampler: SamplerKind,
     /// Seed of the sampler: it changes only the noise.
     pub seed: u32,
@@ -151,7 +150,7 @@ mod tests {
         }
         assert_eq!(RenderSettings::NAMED.len(), others.len());
         assert_eq!((width, height), (800, 450));
-        let words = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings).to_string());
-        assert_eq!(words.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
+        let values = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings).to_string());
+        assert_eq!(values.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
     }
 }

@@ -56,7 +56,7 @@ fn a_film_of_the_same_size_and_halves_fits() {
 }
 
 #[test]
-fn films_the_file_and_the_spheres_need_memory() {
+fn memory_check_counts_films_file_and_spheres() {
     if memory::free_bytes().is_none() {
         return;
     }
@@ -97,7 +97,7 @@ fn statistics_add_up() {
 }
 
 #[test]
-fn the_share_of_lanes_is_that_of_the_tile_at_the_pixel() {
+fn lane_share_is_that_of_the_pixels_tile() {
     // Two columns and two rows of tiles of 8 by 8 pixels; nothing has been traced in the last.
     let tiles = vec![[1, 4], [2, 4], [3, 4], [0, 0]];
     let occupancy = TileOccupancy { side: 8, columns: 2, tiles };

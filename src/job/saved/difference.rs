@@ -1,4 +1,4 @@
-//! Describes in words how two jobs differ.
+//! Describes how two jobs differ.
 
 use crate::job::recipe::file;
 use crate::job::render::{RenderJob, RenderSettings};
@@ -6,7 +6,7 @@ use crate::job::render::{RenderJob, RenderSettings};
 /// Checks whether two recipes, given as text, describe the same samples.
 ///
 /// # Errors
-/// What differs, or what is wrong with one of the recipes, in words.
+/// What differs, or what is wrong with one of the recipes.
 pub fn same_job(first: &str, other: &str) -> Result<(), String> {
     let (first, other) = (job(first)?, job(other)?);
     difference(&first, &other).map_or(Ok(()), Err)
@@ -18,7 +18,7 @@ fn job(text: &str) -> Result<RenderJob, String> {
     recipe.job().map_err(|error| error.to_string())
 }
 
-/// The first difference between two jobs, in words that a user can act on; `None` if their samples are the same.
+/// The first difference between two jobs, worded so that a user can act on it; `None` if their samples are the same.
 pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     if first == other {
         return None;
@@ -31,7 +31,7 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     ))
 }
 
-/// What a user chooses of a job, with the names of the flags; then the rules of the stage.
+/// What a user chooses of a job, by flag name; then the stage's rules.
 fn named_values(job: &RenderJob) -> Vec<(String, String)> {
     let (settings, camera) = (job.settings(), job.camera());
     let mut values = vec![("size", format!("{}x{}", settings.width, settings.height))];
@@ -48,10 +48,10 @@ fn named_values(job: &RenderJob) -> Vec<(String, String)> {
         ("number of spheres", job.scene().spheres.len().to_string()),
     ]);
     let mut values: Vec<_> = values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-    // Their names in scene files.
+    // By their names in scene files.
     if let Ok(serde_json::Value::Object(rules)) = serde_json::to_value(job.rules()) {
-        let words = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
-        values.extend(rules.into_iter().map(words));
+        let text = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
+        values.extend(rules.into_iter().map(text));
     }
     values
 }
@@ -63,16 +63,16 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn what_differs_first_is_named_with_both_values() {
+    fn first_difference_is_named_with_both_values() {
         let recipe = Recipe::builtin("three-spheres").unwrap();
-        let told = |change: fn(&mut Recipe)| {
+        let difference_with = |change: fn(&mut Recipe)| {
             let mut other = recipe.clone();
             change(&mut other);
             difference(&recipe.job().unwrap(), &other.job().unwrap())
         };
-        assert_eq!(told(|_| {}), None);
-        // Equal numbers are no difference, whatever their signs.
-        assert_eq!(told(|recipe| recipe.camera.look_from.x = -0.0), None);
+        assert_eq!(difference_with(|_| {}), None);
+        // Zeros are equal whatever their signs.
+        assert_eq!(difference_with(|recipe| recipe.camera.look_from.x = -0.0), None);
         type Change = fn(&mut Recipe);
         let cases: [(Change, &str); 8] = [
             (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
@@ -97,7 +97,7 @@ mod tests {
             ),
         ];
         for (change, expected) in cases {
-            assert_eq!(told(change).as_deref(), Some(expected));
+            assert_eq!(difference_with(change).as_deref(), Some(expected));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Tells whether the file of a frame is there and right.
+//! Checks whether the file of a frame exists and is right.
 
 use super::difference::same_job;
 use crate::film::{Description, key};
@@ -7,19 +7,19 @@ use crate::job::recipe::{Recipe, file};
 use crate::system::files::ShownPath;
 use std::path::Path;
 
-/// What is there of a frame.
+/// State of a frame's file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameState {
     /// The whole picture.
     Whole,
     /// No file.
     Missing,
-    /// A file that is damaged, of another picture, or from another version of the program: why, in words.
+    /// A file that is damaged, of another picture, or from another version of the program, with the reason.
     Wrong(String),
 }
 
 impl FrameState {
-    /// What is there of the frame that `recipe` describes. `software` is the program and its version.
+    /// Checks the file against the frame that `recipe` describes. `software` is the program and its version.
     pub fn of(path: &Path, recipe: &Recipe, software: &str) -> FrameState {
         if path.symlink_metadata().is_err() {
             return FrameState::Missing;
@@ -31,7 +31,7 @@ impl FrameState {
         let wrong = |what: String| FrameState::Wrong(format!("{} is {what}", path.shown()));
         let wanted = Description::new(&file::to_picture_toml(recipe));
         if found.recipe() != recipe_in_picture(wanted.recipe()) {
-            // A recipe that is too long for a picture is not in it.
+            // A recipe that is too long is not in the picture.
             return match same_job(wanted.recipe(), found.recipe()) {
                 Err(difference) if length_of_missing(found.recipe()).is_none() => {
                     wrong(format!("of another picture: {difference}"))
@@ -39,13 +39,13 @@ impl FrameState {
                 _ => wrong("of another picture".to_owned()),
             };
         }
-        let said = |key| found.get(key).unwrap_or("unknown");
+        let entry = |key| found.get(key).unwrap_or("unknown");
         let samples = recipe.samples_per_pixel.to_string();
-        if said(key::SAMPLES) != samples {
-            return wrong(format!("of {} samples per pixel, not {samples}", said(key::SAMPLES)));
+        if entry(key::SAMPLES) != samples {
+            return wrong(format!("of {} samples per pixel, not {samples}", entry(key::SAMPLES)));
         }
-        if said(key::SOFTWARE) != software {
-            return wrong(format!("from {}, not {software}", said(key::SOFTWARE)));
+        if entry(key::SOFTWARE) != software {
+            return wrong(format!("from {}, not {software}", entry(key::SOFTWARE)));
         }
         match check_frame(path, [recipe.settings.width, recipe.settings.height]) {
             Ok(()) => FrameState::Whole,
@@ -62,7 +62,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_frame_is_whole_if_all_that_made_it_is_the_same() {
+    fn frame_is_whole_only_if_all_inputs_match() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("frame.png");
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
@@ -81,23 +81,23 @@ mod tests {
         write(&description);
         assert_eq!(of(&recipe, "Weekender 1"), FrameState::Whole);
 
-        let told = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
-            FrameState::Wrong(words) => assert!(words.contains(part), "{words} should say {part}"),
+        let refused = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
+            FrameState::Wrong(reason) => assert!(reason.contains(part), "{reason} should say {part}"),
             other => panic!("{other:?}, but should say {part}"),
         };
-        told(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
+        refused(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
         let mut other = recipe.clone();
         other.settings.seed = 5;
-        told(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
+        refused(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
         description.set(key::SAMPLES, 1);
         write(&description);
-        told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
+        refused(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
         std::fs::write(&path, "no picture").unwrap();
-        told(&recipe, "Weekender 1", "frame.png");
+        refused(&recipe, "Weekender 1", "frame.png");
     }
 
     #[test]
-    fn a_frame_whose_recipe_is_too_long_for_a_picture_is_whole_too() {
+    fn frame_with_a_long_recipe_is_whole() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("frame.png");
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
@@ -115,9 +115,9 @@ mod tests {
         write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
         assert_eq!(FrameState::of(&path, &recipe, "Weekender 1"), FrameState::Whole);
         recipe.settings.seed = 5;
-        let told = FrameState::of(&path, &recipe, "Weekender 1");
-        assert_eq!(told, FrameState::Wrong(format!("{} is of another picture", path.shown())));
-        let told = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
-        assert!(told.contains("frame.png") && told.contains("open the scene file"), "{told}");
+        let state = FrameState::of(&path, &recipe, "Weekender 1");
+        assert_eq!(state, FrameState::Wrong(format!("{} is of another picture", path.shown())));
+        let message = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
+        assert!(message.contains("frame.png") && message.contains("open the scene file"), "{message}");
     }
 }

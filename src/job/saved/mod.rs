@@ -130,7 +130,6 @@ pub struct SavedFilm {
 pub enum Content {
     /// Nothing else: the file is a scene file.
     Scene,
-    /// A picture.
     Picture {
         /// Samples per pixel, if the file says so.
         samples: Option<u64>,

@@ -1,23 +1,23 @@
-//! Says what would be lost if a film were replaced.
+//! Tells what would be lost if a film were replaced.
 
 use super::difference::same_job;
 use crate::film::{SampleRanges, checkpoint};
 use crate::system::files::ShownPath;
 use std::path::Path;
 
-/// What is in the place where a film is to be written.
+/// What exists where a film is to be written.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Replaced {
     /// No file, an empty one, or a device.
     Nothing,
     /// A film of the same picture, with these samples.
     Same(SampleRanges),
-    /// Something else, in words: `holds ...` or `cannot be read as a film (...)`.
+    /// Anything else: `holds ...` or `cannot be read as a film (...)`.
     Other(String),
 }
 
 impl Replaced {
-    /// Looks at the file. `recipe` is that of the film to be written.
+    /// Examines the file. `recipe` is that of the film to be written.
     pub fn at(path: &Path, recipe: &str) -> Replaced {
         if !std::fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0) {
             return Replaced::Nothing;
@@ -74,7 +74,7 @@ mod tests {
     use crate::job::recipe::{Recipe, file};
 
     #[test]
-    fn what_would_be_lost_is_told_and_what_would_not_is_passed_over() {
+    fn only_real_losses_are_reported() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let mut recipe = Recipe::find("three-spheres").unwrap();
@@ -90,15 +90,21 @@ mod tests {
         let found = Replaced::at(&path, &text);
         assert_eq!(found, Replaced::Same(film.samples().clone()));
         assert_eq!(found.warning(&path, |_| true), None);
-        let told = found.warning(&path, |samples| samples.end() <= 8).unwrap();
-        assert!(told.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"), "{told}");
-        let told = found.refusal(&path).unwrap();
-        assert!(told.contains("30 samples per pixel") && told.contains("--continue"), "{told}");
+        let message = found.warning(&path, |samples| samples.end() <= 8).unwrap();
+        assert!(
+            message.contains("a.exr, which holds 30 samples per pixel of this picture (2..32)"),
+            "{message}"
+        );
+        let message = found.refusal(&path).unwrap();
+        assert!(message.contains("30 samples per pixel") && message.contains("--continue"), "{message}");
 
         let found = Replaced::at(&path, &other);
-        for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
-            assert!(told.contains("another picture") && told.contains("seed is 5 here, 0 there"), "{told}");
-            assert!(!told.contains("--continue"), "{told}");
+        for message in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+            assert!(
+                message.contains("another picture") && message.contains("seed is 5 here, 0 there"),
+                "{message}"
+            );
+            assert!(!message.contains("--continue"), "{message}");
         }
 
         std::fs::write(at("empty.exr"), "").unwrap();
@@ -111,8 +117,8 @@ mod tests {
         for (content, part) in [(&b"a picture"[..], "is not an EXR file"), (&bytes, "is damaged")] {
             std::fs::write(at("no.exr"), content).unwrap();
             let found = Replaced::at(&at("no.exr"), &text);
-            for told in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
-                assert!(told.contains(part), "{told}");
+            for message in [found.warning(&path, |_| true).unwrap(), found.refusal(&path).unwrap()] {
+                assert!(message.contains(part), "{message}");
             }
         }
     }

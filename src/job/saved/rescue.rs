@@ -1,4 +1,4 @@
-//! Rescues samples whose file cannot be written, by saving them wherever there is room.
+//! Rescues samples whose file cannot be written by saving them wherever there is room.
 
 use crate::film::{Description, Film, checkpoint, key};
 use crate::job::recipe::plain_name;
@@ -7,7 +7,7 @@ use std::env;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Most characters of the picture's name in the name of the file.
+/// Longest part of the picture's name in the file name, characters.
 const NAME_LENGTH: usize = 60;
 
 /// Saves the film of the picture `name` at the first place that works, and returns its path: the directories `first`,
@@ -22,7 +22,7 @@ pub fn rescue(
     description: &Description,
 ) -> Result<PathBuf, String> {
     if let Some(state) = state_directory() {
-        // If it cannot be created, writing the file will say so.
+        // If this fails, writing the file will report it.
         let _ = std::fs::create_dir_all(state);
     }
     let others = [Some(env::temp_dir()), state_directory(), home_directory()];
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
+    fn first_working_place_is_used_or_the_loss_is_reported() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         std::fs::write(at("file"), "").unwrap();
@@ -86,7 +86,7 @@ mod tests {
         assert!(!at("unused").exists());
         let second = keep(&[at("made/deep")]).unwrap();
         assert!(second != path && second.exists() && path.exists());
-        // No file system has names as long as a picture's name may be.
+        // A picture's name can be longer than any file name.
         assert!(keep_in(&[at("made")], &"long".repeat(200), &film, &description).unwrap().exists());
 
         let lost = keep(&[at("file"), at("file/x")]).unwrap_err();

@@ -1,4 +1,4 @@
-//! Tests of what is opened, and as what.
+//! Tests of opening files of each kind.
 
 use super::*;
 use crate::job::output::write_image;
@@ -24,10 +24,11 @@ fn written(directory: &TempDir, name: &str, entries: &[(&str, &str)]) -> PathBuf
 }
 
 #[test]
-fn a_film_is_opened_with_its_samples_and_what_it_says() {
+fn film_opens_with_samples_and_description() {
     let directory = tempfile::tempdir().unwrap();
-    let said = [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
-    let path = written(&directory, "a.exr", &said);
+    let entries =
+        [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
+    let path = written(&directory, "a.exr", &entries);
     let opened = open(&path).unwrap();
     assert_eq!((opened.recipe.name.as_str(), opened.stage.map(|stage| stage.id)), ("balls", Some("metal")));
     let Content::Film(read) = opened.content else { panic!("no film") };
@@ -41,19 +42,19 @@ fn a_film_is_opened_with_its_samples_and_what_it_says() {
 }
 
 #[test]
-fn a_picture_says_its_samples_and_what_has_no_name_is_called_as_its_file() {
+fn picture_has_samples_and_is_named_after_its_file() {
     let directory = tempfile::tempdir().unwrap();
-    for (said, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
-        let path = written(&directory, "plain.png", &[(key::SAMPLES, said)]);
+    for (entry, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
+        let path = written(&directory, "plain.png", &[(key::SAMPLES, entry)]);
         let opened = open(&path).unwrap();
-        let Content::Picture { samples: found } = opened.content else { panic!("{said}") };
+        let Content::Picture { samples: found } = opened.content else { panic!("{entry}") };
         assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
         assert!(matches!(open_film(&path), Err(OpenError::Film(CheckpointError::NotExr { .. }))));
     }
 }
 
 #[test]
-fn only_the_film_of_the_same_picture_goes_on() {
+fn only_a_film_of_the_same_picture_continues() {
     let directory = tempfile::tempdir().unwrap();
     let path = written(&directory, "a.exr", &[]);
     let mut recipe = film(&[]).0;
@@ -63,13 +64,13 @@ fn only_the_film_of_the_same_picture_goes_on() {
     recipe.settings.seed = 5;
     let job = recipe.job().unwrap();
     for refused in [resume(&path, &job).map(|_| ()), check_resume(&path, &job)] {
-        let told = refused.unwrap_err().to_string();
-        assert!(told.contains("a.exr") && told.contains("seed is 5 here, 0 there"), "{told}");
+        let message = refused.unwrap_err().to_string();
+        assert!(message.contains("a.exr") && message.contains("seed is 5 here, 0 there"), "{message}");
     }
 }
 
 #[test]
-fn a_film_that_its_recipe_does_not_fit_is_refused() {
+fn film_that_does_not_fit_its_recipe_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let (mut recipe, film, _) = film(&[]);
     let path = directory.path().join("a.exr");
@@ -85,7 +86,7 @@ fn a_film_that_its_recipe_does_not_fit_is_refused() {
 }
 
 #[test]
-fn what_a_file_is_decides_how_it_is_refused() {
+fn refusal_depends_on_the_kind_of_file() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
     for name in ["text.exr", "text.png"] {

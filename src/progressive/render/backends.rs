@@ -9,10 +9,10 @@ use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A renderer and what it was made from.
+/// A renderer and the choice it was made from.
 pub type Backend = (BackendChoice, Box<dyn Renderer>);
 
-/// Runs `work`. A panic becomes an error of `backend`. The film is unchanged then, as renderers promise.
+/// Runs `work`, turning a panic into an error of `backend`. The film is then unchanged, as renderers promise.
 pub fn guarded<T>(
     backend: &'static str,
     work: impl FnOnce() -> Result<T, RenderError>,
@@ -21,7 +21,7 @@ pub fn guarded<T>(
         .unwrap_or_else(|payload| Err(RenderError::of_panic(backend, payload.as_ref())))
 }
 
-/// Closes a backend that is not used any more.
+/// Closes a backend that is no longer used.
 pub fn dismiss(backend: Option<Backend>) {
     if backend.is_some() {
         close(backend);
@@ -33,7 +33,7 @@ fn make(factory: &Mutex<Factory>, choice: &BackendChoice) -> Result<Box<dyn Rend
     made.map_err(|error| RenderError::Backend { backend: choice.name(), reason: error.to_string() })
 }
 
-/// A prepared renderer, and the time that preparing took.
+/// A prepared renderer and the time it took to prepare.
 type Prepared = Result<(Box<dyn Renderer>, Duration), RenderError>;
 
 /// A backend that is prepared on its own thread and takes over when it is ready, while the old one continues.
@@ -134,7 +134,7 @@ impl Render {
             self.film = self.job.new_film();
             self.note_film();
         }
-        // What was not in the film is lost, and is rendered again.
+        // Samples that were not in the film are lost, and rendered again.
         self.requested = self.film.samples().clone();
         self.failed.push(self.choice.clone());
         self.status.given_up.push(self.choice.name());
@@ -148,7 +148,7 @@ impl Render {
         }
     }
 
-    /// Makes the backend if necessary, and has it prepare the job.
+    /// Makes the backend if necessary and has it prepare the job.
     pub(super) fn prepare(
         &mut self,
         backend: &mut Option<Backend>,

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Estimating the error may take at most one part in this many of the time.
+/// Estimating the error may take at most one in this many parts of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
 
 /// Flags that end a long call of a renderer early, set by the handle.
@@ -24,12 +24,12 @@ const ERROR_ESTIMATE_SHARE: u32 = 20;
 pub struct Cancel {
     /// Ends a pass, which spoils the film.
     pub pass: AtomicBool,
-    /// Ends preparing, which can begin again, and a pass that can be taken away more quickly than finished.
+    /// Ends preparing, which can begin again, and passes that are quicker to undo than to finish.
     pub stop: AtomicBool,
 }
 
 impl Cancel {
-    /// Ends whatever is going on, for good.
+    /// Ends all work for good.
     pub fn abandon(&self) {
         self.pass.store(true, Ordering::Relaxed);
         self.stop.store(true, Ordering::Relaxed);
@@ -44,7 +44,7 @@ pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
     pub film: Film,
-    /// The samples of the film, and those that the renderer has not added to it yet.
+    /// The film's samples, and those that the renderer has not added yet.
     requested: SampleRanges,
     cancel: Arc<Cancel>,
     choice: BackendChoice,
@@ -56,7 +56,7 @@ pub(super) struct Render {
     estimated_samples: u64,
     estimated_at: Instant,
     estimate_took: Duration,
-    /// Samples in the last picture; `None` if the next request is to resolve one even of the same film.
+    /// Samples in the last picture; `None` if the next request should resolve one even for the same film.
     pub pictured_samples: Option<u64>,
     pub status: Status,
 }
@@ -122,7 +122,7 @@ impl Render {
         self.status.phase = if self.is_prepared { Phase::Tracing } else { Phase::Preparing };
     }
 
-    /// Obeys a stop. If the render is resumed, what the stop ended begins again.
+    /// Obeys a stop. On resuming, whatever the stop ended begins again.
     pub fn stop(&mut self) {
         self.cancel.stop.store(self.cancel.is_abandoned(), Ordering::Relaxed);
         if !self.status.phase.is_over() {
@@ -168,7 +168,7 @@ impl Render {
     /// The next samples; `None` if none are missing or no time is left for them.
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
         let time_left = match self.plan.stop.time_limit() {
-            // A picture without a sample is of no use to anyone.
+            // A picture without samples is of no use.
             Some(limit) if self.requested.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
@@ -178,7 +178,7 @@ impl Render {
     fn pass(&mut self, renderer: &mut dyn Renderer, is_picture_wanted: bool) -> Result<(), RenderError> {
         if self.meets_noise_target() {
             self.collect(renderer)?;
-            // The samples that were outstanding can show that the estimate was too low.
+            // Outstanding samples can show that the estimate was too low.
             self.estimate_error();
             if self.meets_noise_target() {
                 self.end(EndReason::NoiseTarget);
@@ -193,7 +193,7 @@ impl Render {
             self.end_of_plan();
             return Ok(());
         };
-        // A stop is not to leave a film without a sample.
+        // A stop should not leave a film without samples.
         let is_first = self.requested.count() == 0;
         let (samples, begin) = (range.clone(), Instant::now());
         let outcome = self.add(renderer, |renderer, job, film, cancel| {
@@ -214,7 +214,7 @@ impl Render {
             self.plan.later_pass_target(renderer.heeds_stop()),
         );
         self.requested.insert(range)?;
-        // A renderer can change during use (it lost an adapter or gave up threads) and then reports it here.
+        // A renderer can change during use (lose an adapter or give up threads), which it reports here.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
         if is_picture_wanted && self.film.sample_count() == 0 {
@@ -226,7 +226,7 @@ impl Render {
         Ok(())
     }
 
-    /// Makes the first pass as long as the others if nobody waits for it and the renderer can tell how long it will take.
+    /// Makes the first pass as long as the others if nobody watches and the renderer can predict its time.
     fn plan_first_pass(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         let Some(target) = self.plan.first_pass_target() else { return Ok(()) };
         let gap = self.requested.first_gap(self.plan.range(), u64::MAX);
@@ -235,7 +235,7 @@ impl Render {
             return Ok(());
         }
         let begin = Instant::now();
-        // A small part of the picture does if all samples fit, even should the rest take four times as long.
+        // A quick trial suffices if all samples fit even at a quarter of its speed.
         for (one_in, caution) in [(128, 4.0), (16, 1.0)] {
             let estimate = guarded(self.choice.name(), || {
                 Ok(renderer.try_out(&mut self.film, one_in, &self.cancel.pass))
@@ -267,7 +267,7 @@ impl Render {
         Ok(())
     }
 
-    /// Lets the renderer add samples to the film, and notes who added how many in what time. Some can have arrived
+    /// Lets the renderer add samples to the film, and records who added how many in what time. Some may have arrived
     /// before a failure.
     fn add(
         &mut self,
@@ -277,7 +277,7 @@ impl Render {
         let begin = Instant::now();
         let held = self.film.sample_count();
         let outcome = guarded(self.choice.name(), || work(renderer, &self.job, &mut self.film, &self.cancel));
-        // Before the samples are noted, because the history includes the seconds of their tracing.
+        // Before the samples are recorded, because the history includes the seconds of their tracing.
         self.status.trace += begin.elapsed();
         let added = self.film.sample_count().saturating_sub(held);
         if added > 0 {
@@ -303,7 +303,7 @@ impl Render {
         let renderer = renderer.filter(|_| *view == View::Occupancy);
         let occupancy = renderer.and_then(Renderer::tile_occupancy);
         let transfer = self.job.rules().transfer;
-        // A preview is smoothed; heat maps show what is there.
+        // Previews are smoothed; heat maps show the film as it is.
         let is_smooth = self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
         let rgb8 = if is_smooth {
             view.resolve(&self.film.smoothed(), transfer, None)

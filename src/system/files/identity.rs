@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The file that a path leads to, whether or not it exists yet. Links do not matter.
+/// The file that a path leads to through any links, whether or not it exists yet.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct FileIdentity(PathBuf);
 
@@ -23,7 +23,7 @@ impl FileIdentity {
     }
 }
 
-/// The path without links. The part of it that does not exist yet stays as it is.
+/// Resolves the links of a path. Components that do not exist yet stay as they are.
 ///
 /// # Errors
 /// If a link cannot be read, or leads back to itself.
@@ -47,7 +47,7 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Length and modification time of a file, which change with its content.
+/// A file's length and modification time, which change with its content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     length: u64,

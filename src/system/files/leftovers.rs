@@ -1,7 +1,7 @@
 //! Unfinished files and locks that killed programs leave behind.
 //!
-//! Whoever uses such a file holds a lock on it, which the system releases when the program ends for any reason. The next
-//! run in the directory removes the files whose lock is free.
+//! A program that uses such a file holds a lock on it, which the system releases however the program ends. The next run
+//! in the directory removes the files whose locks are free.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -28,14 +28,14 @@ pub(super) fn create_in(directory: &Path, builder: &mut Builder<'_, '_>) -> io::
     }
 }
 
-/// Removes what killed programs left in `directory`, as far as that is possible.
+/// Removes what killed programs left in `directory`; errors are ignored.
 pub(super) fn remove_from(directory: &Path) {
     let Ok(entries) = fs::read_dir(directory) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         let is_ours = name.starts_with(PREFIX) && (name.ends_with(PART) || name.ends_with(LOCK));
-        // The lock is held until the file is gone, so whoever waits for the lock sees that.
+        // Hold the lock until the file is gone, so that whoever waits for it notices.
         if is_ours
             && entry.file_type().is_ok_and(|kind| kind.is_file())
             && let Ok(file) = File::open(entry.path())
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_nobody_uses_is_removed() {
+    fn only_unused_files_are_removed() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         for name in
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn many_writers_and_cleaners_do_not_disturb_each_other() {
+    fn writers_and_cleaners_do_not_interfere() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path();
         std::thread::scope(|scope| {

@@ -10,10 +10,10 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How long a run waits for another one that is about to end.
+/// How long a run waits for another that is about to end.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Pause between two tries.
+/// Pause between attempts.
 const PAUSE: Duration = Duration::from_millis(5);
 
 /// Another run is writing the file.
@@ -26,8 +26,8 @@ pub struct LockedError {
     pub path: PathBuf,
 }
 
-/// The right to write a file, which one run has at a time. The lock is on a hidden file beside it, because the file
-/// itself is replaced whenever it is written.
+/// The exclusive right to write a file. The lock is a hidden file beside it, because the file itself is replaced
+/// whenever it is written.
 #[derive(Debug)]
 pub struct FileLock {
     /// `None` if there is nothing to lock: see [`FileLock::take`].
@@ -35,8 +35,8 @@ pub struct FileLock {
 }
 
 impl FileLock {
-    /// Locks `path` until the result is dropped. Devices need no lock, and where the system has no locks, runs are not
-    /// kept apart.
+    /// Locks `path` until the result is dropped. Devices need no lock; where the system has no locks, runs are not kept
+    /// apart.
     ///
     /// # Errors
     /// [`LockedError`] if another run has locked it.
@@ -70,13 +70,13 @@ impl FileLock {
 impl Drop for FileLock {
     fn drop(&mut self) {
         if let Some((_, path)) = &self.held {
-            // Still locked, so nobody else has it. If it stays, the next run uses it.
+            // Still locked by us, so nobody else has it. If it stays, the next run reuses it.
             let _ = fs::remove_file(path);
         }
     }
 }
 
-/// Locks the file at `path`, which is created if it is missing, until the result is dropped.
+/// Locks the file at `path`, creating it if necessary, until the result is dropped.
 ///
 /// # Errors
 /// [`ErrorKind::WouldBlock`] if another program has held the lock for all of `patience`; other errors if the file cannot
@@ -87,7 +87,7 @@ pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
         let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
         match file.try_lock() {
             Ok(()) if is_at(&file, path)? => return Ok(file),
-            // Its last owner has removed it just now.
+            // Its last owner has just removed it.
             Ok(()) => {}
             Err(TryLockError::WouldBlock) if begin.elapsed() >= patience => {
                 return Err(ErrorKind::WouldBlock.into());
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_has_the_lock_at_a_time_and_the_others_do_not_wait_for_ever() {
+    fn lock_is_exclusive_and_waiting_is_bounded() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.lock");
         let lock = || lock_path(&path, Duration::ZERO);
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lock_that_is_released_in_time_is_had() {
+    fn lock_released_in_time_is_acquired() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("x.exr");
         let first = FileLock::take(&path).unwrap();
@@ -132,13 +132,13 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_locked_by_all_its_names_and_though_it_is_replaced() {
+    fn lock_covers_all_names_and_survives_replacement() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         let take = |name: &str| FileLock::take_within(&at(name), Duration::ZERO);
         let lock = take("g.exr").unwrap();
-        let told = take("./g.exr").unwrap_err().to_string();
-        assert!(told.contains("g.exr is locked") && told.contains("name another file"), "{told}");
+        let message = take("./g.exr").unwrap_err().to_string();
+        assert!(message.contains("g.exr is locked") && message.contains("name another file"), "{message}");
         crate::system::files::write_text(&at("g.exr"), "a film").unwrap();
         assert!(take("g.exr").is_err());
         drop(take("h.exr").unwrap());
@@ -153,7 +153,7 @@ mod tests {
         assert!(take("g.exr").is_err(), "a check clears up, but not what is in use");
         drop(lock);
         assert!(take("g.exr").is_ok());
-        // A killed run leaves the file of its lock.
+        // A killed run leaves its lock file.
         fs::write(at(".weekender-g.exr.lock"), "").unwrap();
         assert!(take("g.exr").is_ok());
         assert!(!at(".weekender-g.exr.lock").exists());

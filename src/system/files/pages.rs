@@ -5,16 +5,16 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// By this element of its head, a page is known as the program's own. It must be among the first 4096 bytes.
+/// Marks a page as the program's own. It must be within the first 4096 bytes.
 pub const GENERATOR: &str = "<meta name=\"generator\" content=\"Weekender\">";
 
-/// How much of a page is looked through, bytes.
+/// Bytes of a page that are searched.
 const HEAD: u64 = 4096;
 
-/// Checks whether a page can be written to `path` without replacing one of another origin.
+/// Checks whether a page can be written to `path` without replacing a foreign file.
 ///
 /// # Errors
-/// [`WriteError`]: it cannot be written, or there is something without [`GENERATOR`].
+/// [`WriteError`] if `path` cannot be written or holds something without [`GENERATOR`].
 pub fn check_page(path: &Path) -> Result<(), WriteError> {
     check_writable(path)?;
     let is_own = match head(path) {

@@ -1,4 +1,4 @@
-//! Paths: as text in messages and in JSON, free names, and directories of the user.
+//! Paths: as text in messages and JSON, free names, and the user's directories.
 
 use crate::system::console::printable;
 use serde::{Serialize, Serializer};
@@ -8,8 +8,8 @@ use std::path::PathBuf;
 
 /// How messages show a path.
 pub trait ShownPath {
-    /// The path as a piece of one line that cannot control a terminal: see [`printable`]. Bytes that are not UTF-8
-    /// become U+FFFD.
+    /// The path as part of one line that cannot control a terminal: see [`printable`]. Bytes that are not UTF-8 become
+    /// U+FFFD.
     fn shown(&self) -> String;
 }
 
@@ -35,11 +35,11 @@ impl Serialize for JsonPath {
     }
 }
 
-/// The number of names that are tried.
+/// How many names are tried.
 pub const NAME_LIMIT: u32 = 1000;
 
-/// The first of the paths `name(1)`, `name(2)` and so on where nothing exists, not even a link. `None` if all
-/// [`NAME_LIMIT`] of them are taken.
+/// The first of the paths `name(1)`, `name(2)`, ... that is free; even a dangling link takes a name. `None` if all
+/// [`NAME_LIMIT`] are taken.
 pub fn free_name(name: impl Fn(u32) -> PathBuf) -> Option<PathBuf> {
     (1..=NAME_LIMIT).map(name).find(|path| path.symlink_metadata().is_err())
 }
@@ -49,18 +49,17 @@ pub fn state_directory() -> Option<PathBuf> {
     own_directory(env::var_os("XDG_STATE_HOME"), home_directory(), ".local/state")
 }
 
-/// The program's directory for what it can make again, such as small pictures; it may not exist yet.
+/// The program's directory for what it can recreate, such as thumbnails; it may not exist yet.
 pub fn cache_directory() -> Option<PathBuf> {
     own_directory(env::var_os("XDG_CACHE_HOME"), home_directory(), ".cache")
 }
 
-/// The program's directory in the one that a variable names or, if that is not absolute, in the usual one at `home`.
+/// The program's directory inside the one that a variable names or, unless that is absolute, inside `usual` in `home`.
 fn own_directory(named: Option<OsString>, home: Option<PathBuf>, usual: &str) -> Option<PathBuf> {
     let named = named.map(PathBuf::from).filter(|directory| directory.is_absolute());
     Some(named.or_else(|| Some(home?.join(usual)))?.join("weekender"))
 }
 
-/// The user's home directory.
 pub fn home_directory() -> Option<PathBuf> {
     env::home_dir().filter(|home| home.is_absolute())
 }
@@ -71,14 +70,14 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn a_shown_path_is_one_line_without_control_characters() {
+    fn shown_paths_are_one_line_without_control_characters() {
         assert_eq!(Path::new("a\nb\u{1b}[31m\u{202e}c.png").shown(), "a\\nb\\u{1b}[31m\\u{202e}c.png");
         assert_eq!(Path::new("Köln/it's a.png").shown(), "Köln/it's a.png");
     }
 
     #[cfg(unix)]
     #[test]
-    fn bytes_that_are_not_unicode_are_replaced_in_messages_and_in_json() {
+    fn non_unicode_bytes_are_replaced_in_messages_and_json() {
         use std::os::unix::ffi::OsStrExt;
         let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
         assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");

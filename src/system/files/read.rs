@@ -9,35 +9,25 @@ use std::path::{Path, PathBuf};
 /// A file that cannot be read or is not a sensible input.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum InputError {
-    /// The system could not open or read the file.
     #[error("cannot read {}: {reason}; check its name and whether you may read it", path.shown())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The system's error message.
-        reason: String,
-    },
+    Unreadable { path: PathBuf, reason: String },
     /// The path is a directory, a device or a pipe.
     #[error("{} is {kind}, but a file is needed; name a regular file", path.shown())]
     NotFile {
-        /// The path as given.
         path: PathBuf,
-        /// What kind of thing it is, in words.
+        /// What it is instead.
         kind: &'static str,
     },
-    /// The file is longer than the limit for its kind.
     #[error(
         "{} has {}, but {what} of more than {} is not read; check that it is the right file",
         path.shown(), words(*bytes), words(*limit)
     )]
     TooLong {
-        /// The file.
         path: PathBuf,
-        /// Length in bytes.
         bytes: u64,
         /// What the file was expected to be.
         what: &'static str,
-        /// The longest length in bytes that is accepted.
+        /// Longest accepted length in bytes.
         limit: u64,
     },
 }
@@ -64,7 +54,7 @@ pub fn open(path: &Path) -> Result<(File, u64), InputError> {
     Ok((file, length))
 }
 
-/// Reads a file of at most `limit` bytes. `what` says what the file should be, such as "a scene file".
+/// Reads a file of at most `limit` bytes. `what` names the expected kind, such as "a scene file".
 ///
 /// # Errors
 /// [`InputError`].
@@ -117,7 +107,7 @@ mod tests {
     /// The system reports a length of 0 for this file.
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_file_that_is_longer_than_it_reports_is_read_whole_or_not_at_all() {
+    fn file_longer_than_reported_is_read_whole_or_refused() {
         let path = Path::new("/proc/version");
         let whole = fs::read(path).unwrap();
         let length = whole.len() as u64;

@@ -1,4 +1,4 @@
-//! Output files that are written whole or not at all: first beside their destination, then renamed.
+//! Output files written whole or not at all: first beside their destination, then renamed.
 
 use super::identity::resolved;
 use super::leftovers;
@@ -8,13 +8,11 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A file that could not be written. The previous file is unchanged.
+/// A failed write. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {reason}; {}", path.shown(), remedy(reason))]
 pub struct WriteError {
-    /// The file.
     pub path: PathBuf,
-    /// The system's error.
     pub reason: io::Error,
 }
 
@@ -32,9 +30,9 @@ fn remedy(reason: &io::Error) -> &'static str {
     }
 }
 
-/// Writes `path` with `write`: to a new file in the same directory, which then replaces the old one. If anything
-/// fails, the old file is unchanged and the new one is deleted. Links are followed. Devices and pipes are written
-/// directly. The file gets the usual permissions, or those of the file it replaces.
+/// Writes a new file in the directory of `path` with `write`, then renames it over the old one. On failure the old file
+/// is unchanged and the new one is deleted. Links are followed; devices and pipes are written directly. The file gets
+/// the usual permissions, or those of the file it replaces.
 ///
 /// # Errors
 /// [`WriteError`], from `write` or from the file system.
@@ -45,7 +43,7 @@ pub fn replace_file(
     try_write(path, write).map_err(|reason| WriteError { path: path.to_owned(), reason })
 }
 
-/// Replaces `path` with a text, as [`replace_file`] does.
+/// Replaces `path` with `text`: see [`replace_file`].
 ///
 /// # Errors
 /// [`WriteError`].
@@ -53,8 +51,8 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
     replace_file(path, |writer| writer.write_all(text.as_bytes()))
 }
 
-/// Checks whether [`replace_file`] could write `path`. The check creates nothing that stays and does not change an
-/// existing file. It removes unfinished files that killed runs left in the directory.
+/// Checks whether [`replace_file`] could write `path`, without changing an existing file or leaving a new one. Also
+/// removes unfinished files that killed runs left in the directory.
 ///
 /// # Errors
 /// [`WriteError`]: the directory does not exist, a directory has that name, permission is missing, the file is marked
@@ -160,7 +158,7 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
-            // Without this, a system that crashes after the rename may come back with an empty file.
+            // Without this, the file could be empty after a crash that follows the rename.
             new.as_file().sync_data()?;
             new.persist(path).map(drop).map_err(|error| error.error)
         }

@@ -1,7 +1,7 @@
 //! The log, and the report after a panic.
 //!
-//! Rooms write to the log through the crate `log`, as wgpu does. It is off by default: then only the latest lines of
-//! importance are kept in memory, for the report after a panic. Nothing is logged within a pass of the CPU.
+//! Modules log through the crate `log`, as wgpu does. The log is off by default: then only the latest important lines
+//! are kept in memory for a panic report. Nothing is logged within a CPU pass.
 
 mod panic;
 
@@ -18,13 +18,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The variable that chooses what is logged.
+/// The environment variable that filters the log.
 pub const VARIABLE: &str = "RUST_LOG";
 
 /// What `--log` writes without [`VARIABLE`].
 const FILTER_OF_FILE: &str = "warn,weekender=debug";
 
-/// Number of lines that are kept for a report.
+/// Lines kept for a report.
 const KEPT_LINES: usize = 256;
 
 static KEPT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
@@ -32,30 +32,18 @@ static KEPT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
 /// Why the log cannot be started.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
-    /// The filter is not valid.
     #[error(
         "{VARIABLE} is {value:?}, which is not a log filter ({reason}); write a level such as info, or a level for each \
          module such as warn,weekender=debug; levels are error, warn, info, debug, trace and off"
     )]
-    Filter {
-        /// The value of the variable.
-        value: String,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The file cannot be written.
+    Filter { value: String, reason: String },
     #[error("--log {}: {source}; choose a file in a directory that you can write to", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
+    File { path: PathBuf, source: io::Error },
 }
 
 struct Journal {
     filter: Filter,
-    /// Standard error without one.
+    /// `None` for standard error.
     file: Option<Mutex<File>>,
     began: Instant,
 }
@@ -80,15 +68,15 @@ pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
     Ok(())
 }
 
-fn filter_of(words: &str) -> Result<Filter, JournalError> {
+fn filter_of(filter: &str) -> Result<Filter, JournalError> {
     let mut builder = env_filter::Builder::new();
-    match builder.try_parse(words) {
+    match builder.try_parse(filter) {
         Ok(builder) => Ok(builder.build()),
-        Err(error) => Err(JournalError::Filter { value: words.to_owned(), reason: error.to_string() }),
+        Err(error) => Err(JournalError::Filter { value: filter.to_owned(), reason: error.to_string() }),
     }
 }
 
-/// Whether a line is kept for a report: what the program itself did, and the warnings of others.
+/// Whether to keep a line for a report: the program's own steps and the warnings of others.
 fn is_kept(metadata: &Metadata<'_>) -> bool {
     let is_own = metadata.target().starts_with("weekender");
     metadata.level() <= if is_own { Level::Info } else { Level::Warn }
@@ -146,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_filter_chooses_by_module_and_level_and_an_invalid_one_is_an_error() {
+    fn filter_by_module_and_level() {
         let filter = filter_of(FILTER_OF_FILE).unwrap();
         let is_on = |level, target| filter.enabled(&metadata(level, target));
         assert!(is_on(Level::Debug, "weekender::render_gpu") && is_on(Level::Warn, "wgpu_core"));

@@ -1,5 +1,5 @@
-//! What is done about a panic. A panic of a tracer ends only its pass, and another backend continues: that is a message
-//! and a line in the log. A panic that ends the program, or its render, also leaves a report in a file.
+//! Handles panics. If a tracer panics, only its pass ends and another backend continues, with a message and a line in
+//! the log. A panic that ends the program or its render also leaves a report in a file.
 
 use super::kept_text;
 use crate::system::console;
@@ -15,10 +15,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 /// Version, commit and target in one line, for the report.
 static VERSION: OnceLock<String> = OnceLock::new();
 
-/// The words of the latest panic, of whatever thread.
+/// Message of the latest panic on any thread.
 static LATEST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Runs the program of this version. If it panics, writes a report and says where it is.
+/// Runs `program`; if it panics, writes a report and prints its path.
 pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode {
     VERSION.get_or_init(|| version);
     std::panic::set_hook(Box::new(note));
@@ -28,11 +28,11 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
     })
 }
 
-/// Writes what is known about the latest panic to a file, and its path to standard error. Without a panic, does nothing.
+/// Writes a report on the latest panic to a file and prints its path to standard error. Does nothing without a panic.
 pub fn write_report() {
-    let Some(words) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    let Some(message) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     let version = VERSION.get().map_or("unknown", String::as_str);
-    let text = report(version, &command_line(), &words, &kept_text());
+    let text = report(version, &command_line(), &message, &kept_text());
     let name = format!("weekender-report-{}.txt", std::process::id());
     let mut reasons = Vec::new();
     for place in places() {
@@ -57,29 +57,29 @@ fn places() -> Vec<PathBuf> {
     [Some(env::temp_dir()), state, Some(PathBuf::from("."))].into_iter().flatten().collect()
 }
 
-fn report(version: &str, command: &str, words: &str, log: &str) -> String {
+fn report(version: &str, command: &str, message: &str, log: &str) -> String {
     let directory = env::current_dir().map_or_else(|error| error.to_string(), |at| at.display().to_string());
     let log = if log.is_empty() { "(empty)" } else { log };
     format!(
         "Weekender ended by an error of its own. This file tells its developers what happened. It holds nothing but \
          what follows; remove what is private.\n\nversion    {version}\ncommand    {command}\ndirectory  \
-         {directory}\n\n{words}\n\nLog (seconds since the start):\n{log}\n"
+         {directory}\n\n{message}\n\nLog (seconds since the start):\n{log}\n"
     )
 }
 
 /// The command line as a shell would read it.
 fn command_line() -> String {
-    let words: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
+    let arguments: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    shlex::try_join(arguments.iter().map(String::as_str)).unwrap_or_else(|_| arguments.join(" "))
 }
 
 /// The panic hook. It cannot fail, even if standard error is closed.
 fn note(panic: &PanicHookInfo<'_>) {
-    let words = fault_words(panic);
-    log::error!("{words}");
-    console::note(&format!("{words}; please report it with the command that led to it"));
+    let message = fault_message(panic);
+    log::error!("{message}");
+    console::note(&format!("{message}; please report it with the command that led to it"));
     let backtrace = Backtrace::capture();
-    let mut whole = words;
+    let mut whole = message;
     if backtrace.status() == BacktraceStatus::Captured {
         console::note(&backtrace.to_string());
         whole.push_str(&format!("\n\n{backtrace}"));
@@ -87,7 +87,7 @@ fn note(panic: &PanicHookInfo<'_>) {
     *LATEST.lock().unwrap_or_else(PoisonError::into_inner) = Some(whole);
 }
 
-fn fault_words(panic: &PanicHookInfo<'_>) -> String {
+fn fault_message(panic: &PanicHookInfo<'_>) -> String {
     let reason = panic.payload_as_str().unwrap_or("no reason given");
     let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
     let thread = std::thread::current();

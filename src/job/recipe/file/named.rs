@@ -5,12 +5,11 @@ use crate::scene::builtin::is_field;
 use crate::scene::{Material, Parameter, Scene};
 use glam::DVec3;
 
-/// In pictures, fields of at least so many spheres are named: listing a million takes seconds and a hundred megabytes.
+/// Fields of at least this many spheres are named in pictures: listing a million takes seconds and a hundred megabytes.
 /// Smaller fields are listed, so that the picture can be rendered again even if the built-in field changes.
 const NAMED_FROM: usize = 10_000;
 
-/// The name of the built-in field that equals the scene to the bit; `None` if there is none, or if it is small enough to be
-/// listed.
+/// Name of the built-in field that equals the scene to the bit; `None` if there is none, or it is small enough to list.
 pub(super) fn name_of(scene: &Scene) -> Option<String> {
     let count = scene.spheres.len().checked_sub(1).filter(|count| *count >= NAMED_FROM)? as u64;
     is_field(scene, count).then(|| format!("field:{count}"))

@@ -18,7 +18,7 @@ use std::sync::Arc;
 use thiserror::Error;
 use toml::Spanned;
 
-/// Longest scene file, bytes. Ten million spheres take about as many.
+/// Longest scene file, bytes: about ten million spheres.
 const FILE_LIMIT: u64 = 1 << 30;
 
 /// Most bytes of memory per value, key or line of a scene file while it is read. Measured with listed spheres, which need
@@ -37,13 +37,12 @@ pub enum FileError {
     /// The text is not valid, or no picture can be made from it.
     #[error("{name}:{line}:{column}: {reason}")]
     Invalid {
-        /// The file.
         name: String,
         /// From 1.
         line: usize,
         /// In characters, from 1.
         column: usize,
-        /// What is wrong: key, value, limit and remedy.
+        /// Key, value, limit and remedy.
         reason: String,
     },
 }
@@ -85,13 +84,13 @@ pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
-        FileError::at(text, name, error.span().unwrap_or_default().start, in_toml_words(error))
+        FileError::at(text, name, error.span().unwrap_or_default().start, toml_message(error))
     })?;
     recipe_of(raw, name).map_err(|refusal| FileError::at(text, name, refusal.place.start, refusal.reason))
 }
 
-/// The message of a TOML error on one line, with the path of the key and without Rust's words.
-fn in_toml_words(mut error: toml::de::Error) -> String {
+/// Puts a TOML error on one line, with the key's path and without Rust's terms.
+fn toml_message(mut error: toml::de::Error) -> String {
     error.set_input(None);
     [
         ("unknown field", "unknown key"),
@@ -168,7 +167,7 @@ struct RawCamera {
     focus_distance: Option<f64>,
 }
 
-/// What a keyframe leaves out is as in `[camera]`, except for the focus distance: without it, the focus is on `look_at`.
+/// Omitted keys are as in `[camera]`, except for the focus distance: without it, the focus is on `look_at`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawKeyframe {
@@ -203,7 +202,7 @@ fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
     Refusal { place, reason: reason.to_string() }
 }
 
-/// Every value is checked here, where its place is known.
+/// Checks every value here, where its position in the text is known.
 fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
     let (settings, samples_per_pixel) = settings_of(raw.render)?;
     let scene = match raw.scene {
@@ -300,7 +299,7 @@ fn listed_scene(
     spheres: Vec<Spanned<RawSphere>>,
 ) -> Result<Scene, Refusal> {
     let mut scene = Scene { sky, ..Scene::default() };
-    // In the order of the file; the map has sorted them by name.
+    // Restore the file's order; the map sorted them by name.
     let mut named: Vec<_> = materials.into_iter().collect();
     named.sort_by_key(|(name, _)| name.span().start);
     let mut index_of = HashMap::with_capacity(named.len());
@@ -323,7 +322,7 @@ fn listed_scene(
     Ok(scene)
 }
 
-/// The index of a sphere's material. One that is given in place gets a name that no other has.
+/// The index of a sphere's material. An inline one gets a unique name.
 fn material_of(
     value: toml::Value,
     sphere: usize,
@@ -338,7 +337,7 @@ fn material_of(
         }),
         table @ toml::Value::Table(_) => {
             let material = Material::deserialize(table);
-            let material = material.map_err(|error| format!("{what}: {}", in_toml_words(error)))?;
+            let material = material.map_err(|error| format!("{what}: {}", toml_message(error)))?;
             material.validate(what).map_err(|error| error.to_string())?;
             let mut name = format!("sphere-{sphere}");
             while index_of.contains_key(&name) {
@@ -370,7 +369,7 @@ fn camera_of(raw: &Spanned<RawCamera>) -> Result<Camera, Refusal> {
     Ok(camera)
 }
 
-/// The keyframes, with what they leave out taken from `camera`.
+/// The keyframes, completed from `camera`.
 fn keyframes_of(raw: Vec<RawKeyframe>, camera: &Camera) -> Result<Vec<Keyframe>, Refusal> {
     let mut keyframes: Vec<Keyframe> = Vec::with_capacity(raw.len());
     for raw in raw {

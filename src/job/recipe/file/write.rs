@@ -8,7 +8,7 @@ use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, to
 use crate::stages::Rules;
 use glam::DVec3;
 
-/// With more spheres than this, each takes one line, and they come first in the file.
+/// Above this many spheres, each takes one line, and they come first in the file.
 const LONG_FORM_LIMIT: usize = 40;
 
 /// The recipe as a scene file, without its name. Numbers have the fewest digits that give the same bits again.
