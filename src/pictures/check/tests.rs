@@ -1,4 +1,4 @@
-//! Mistakes, their pictures, what blocks cannot show, and what is said.
+//! Mistakes and their pictures, mistakes that blocks cannot show, and the report.
 
 use super::bytes::{is_times_255, is_truncated};
 use super::hypothesis::{Compared, Curve, Hypothesis, Making, Mistake, Studio, compare};
@@ -84,7 +84,7 @@ fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() 
 
 #[test]
 fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
-    // Acne depends on the precision, and the gradient has no rays.
+    // Acne depends on the precision, and the gradient traces no rays.
     let is_traced = |stage: &&Stage| {
         let rules = stage.setup.rules;
         rules.shading != Shading::ImageGradient && rules.surface != SurfaceRule::Acne
@@ -94,7 +94,7 @@ fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
         let right = Hypothesis::right(studio.recipe());
         let plain = Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..right.clone() };
         let [right, plain] = [right, plain].map(|hypothesis| studio.render(&hypothesis, 256).unwrap());
-        // The grid of one sample per pixel meets edges where the precisions may differ.
+        // A one-sample grid hits edges exactly, where precisions may differ.
         let values: Vec<[f64; 3]> =
             right.iter().zip(&plain).map(|(a, b)| [0, 1, 2].map(|i| b[i] - a[i])).collect();
         let (noise, steps, tolerance) = (Noise::Spread, None, 2e-3);
@@ -115,7 +115,7 @@ fn bytes_and_linear_values_belong_together() {
                 let [linear, half_step] = written.linear(byte, 3, 9);
                 assert_eq!(written.byte_of(linear, 3, 9), byte, "{id}, {mistake:?}");
                 assert!(half_step > 0.0);
-                // Of a value times 255, cut off, the upper half of all bytes is one less.
+                // Scaling by 255 and truncating makes the upper half of all bytes one less.
                 let less = written.byte_of(written.times_255(linear, 3, 9), 3, 9);
                 assert_eq!(less, byte - u8::from(byte >= 128), "{id}, {mistake:?}");
             }
@@ -131,7 +131,7 @@ fn bytes_and_linear_values_belong_together() {
 
 #[test]
 fn a_picture_is_laid_out_as_it_was_written() {
-    // Three columns and two rows; each pixel has the number of its place.
+    // Three columns and two rows; each pixel holds its index.
     let linear: Vec<[f64; 3]> = (0..6).map(|place| [0.0, 0.1, 0.2].map(|c| f64::from(place) + c)).collect();
     let laid_out = |id| mistake(id).pictures(&recipe("metal"))[0].written.laid_out(&linear, 3);
     let places = |of: Vec<[f64; 3]>| of.iter().map(|pixel| pixel[0] as u32).collect::<Vec<_>>();
@@ -149,19 +149,19 @@ fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     let middle = |byte: f64| (byte + 0.5) / 256.0;
     close(misfit(&|_, _| [153; 3], &|_, _| [0.5; 3]), (middle(153.0) - 0.5).powi(2) / 2.0);
-    // In the dark, errors count as at 0.02.
+    // Dark values count errors as at 0.02.
     close(misfit(&|_, _| [2; 3], &|_, _| [0.01; 3]), (middle(2.0) - 0.01).powi(2) / 0.08);
-    // The mean of 64 pixels has a 64th of their variance.
+    // The mean of 64 pixels has 1/64 of their variance.
     let chequers = |x: u32, y: u32| [[140, 160][((x + y) % 2) as usize]; 3];
     let (mean, apart) = (middle(150.0) - 0.5, 10.0_f64 / 256.0);
     close(misfit(&chequers, &|_, _| [0.5; 3]), (mean * mean - apart * apart / 63.0) / 2.0);
-    // What is brighter or darker than bytes can tell is no error.
+    // Values beyond the range of bytes are no error.
     close(misfit(&|_, _| [255, 0, 255], &|_, _| [2.0, 0.0, 1.0]), 0.0);
-    // Each row has its own curve.
+    // Each row has its own transfer.
     let halves = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
     let (_, found) = compared([16, 16], Transfer::LinearAboveGamma2, halves, |_, _| [0.25; 3]);
     assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
-    // Noise is no error, and more than noise is one.
+    // Noise is no error; more than noise is.
     let noise = |x: u32, y: u32, c: u32| (crate::kernel::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
     for (more, is_noise) in [(0, true), (12, false)] {
         let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| 100 + more + noise(x, y, c));
@@ -187,13 +187,13 @@ fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
     for planted in MISTAKES.iter().filter(|mistake| mistake.is_at_edges()) {
         assert_eq!(found("antialiased", [64, 36], planted), [Some(planted.id), None]);
     }
-    // The sky changes too slowly to tell a shift of half a pixel from another light.
+    // The sky changes too slowly to tell half a pixel's shift from different light.
     assert_eq!(found("sky", [32, 18], mistake("half-pixel-up")), [None, None]);
 }
 
 #[test]
 fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
-    // Of three hundred values, so many are ends, and so many should be; others are white though they should be dark.
+    // Of 300 values: how many are 0 or 255, how many should be, and how many are white though they should be dark.
     let is_found = |ends: u32, expected_ends: u32, too_bright: u32| {
         let byte = |index: u32| match index {
             index if index < too_bright => [254, 255][index as usize % 2],
@@ -218,7 +218,7 @@ fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_25
         let picture = |of: &dyn Fn(u32) -> f64| -> Vec<[f64; 3]> {
             (0..pixels).map(|pixel| [0, 1, 2].map(|channel| of(3 * pixel + channel))).collect()
         };
-        // The displayed value is the root of the linear one.
+        // The displayed value is the square root of the linear one.
         let darker = picture(&|index| {
             let noise = if index.is_multiple_of(2) { noise } else { -noise };
             value(index) * (1.0 - loss / 256.0_f64).powi(2) + noise
@@ -232,10 +232,10 @@ fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_25
         losses.map(|loss| found(4096, loss, 0.0, [0.25, 0.65])),
         [false, false, false, true, true, true, false, false]
     );
-    // Noise of which a mean over all values cannot be told from no loss.
+    // With this noise, a mean over all values cannot rule out a loss.
     assert_eq!([0.02, 0.2].map(|noise| found(4096, 1.0, noise, [0.25, 0.65])), [true, false]);
     assert!(!found(333, 1.0, 0.0, [0.1, 0.9]) && found(334, 1.0, 0.0, [0.1, 0.9]));
-    // What is too dark or cut off tells nothing.
+    // Values that are too dark or clipped carry no information.
     assert!(!found(2000, 1.0, 0.0, [0.0, 0.049]) && !found(2000, 1.0, 0.0, [0.981, 1.2]));
 }
 
@@ -304,7 +304,7 @@ fn the_difference_is_the_root_mean_square_of_the_channels() {
     let (mine, right) = compared([2, 2], Transfer::LinearAboveGamma2, of, |_, _| [0.25; 3]);
     let stage = Stage::find("sky").unwrap();
     let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None });
-    // The upper row is linear, the lower row the square root.
+    // The upper row is linear, the lower the square root.
     assert_eq!((shown, ours), (bytes.to_vec(), vec![[64; 3], [64; 3], [128; 3], [128; 3]]));
     let colour = |squares: f64| HeatScale::ERROR.colour((squares / 3.0).sqrt() / 255.0);
     let squares = [0.0, 15.0_f64.powi(2), 0.0, 128.0_f64.powi(2) + 127.0_f64.powi(2)];

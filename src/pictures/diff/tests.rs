@@ -1,4 +1,4 @@
-//! Two paths: where they differ, how they leave a sphere, what is said, and the search.
+//! Two paths: where they differ, how they leave a sphere, the sentences, and the search.
 
 use super::*;
 use crate::backends::BackendChoice;
@@ -17,7 +17,7 @@ fn ray(origin: [f64; 3], direction: [f64; 3], sphere: Option<usize>) -> Recorded
     RecordedRay { origin, direction, throughput: [1.0; 3], hit }
 }
 
-/// A path that meets a matte sphere and then the sky.
+/// A path that hits a matte sphere, then the sky.
 fn path() -> PathRecord {
     let rays = vec![ray([0.0; 3], [0.0, 0.0, -1.0], Some(1)), ray([0.0; 3], [0.0, 1.0, 0.0], None)];
     PathRecord { rays, radiance: [0.25, 0.5, 1.0] }
@@ -101,7 +101,7 @@ fn what_comes_after_the_paths_have_parted_does_not_count() {
     let place = |difference: Difference| (difference.ray, difference.quantity);
     assert_eq!(found.first.map(place), Some((0, Quantity::Direction)));
     assert_eq!(found.parting.map(place), Some((1, Quantity::Object)));
-    // The origin of the second ray is the path's largest coordinate, so all of it differs.
+    // The second ray's origin is the path's largest coordinate, so the difference is all of it.
     assert_eq!((found.largest, found.radiance), (1.0, 0.0));
     let told = pair.verdict(&found);
     assert!(
@@ -130,7 +130,7 @@ fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
         let scene = job.scene();
         scene.spheres.iter().position(|sphere| test(scene.material_of(sphere))).unwrap()
     };
-    // A ray downwards meets the top of the sphere; the next one starts there.
+    // A downward ray hits the top of the sphere, where the next one starts.
     let found = |job: &RenderJob, sphere: usize, next: Option<[f64; 3]>, index: usize| {
         let Sphere { center, radius, .. } = job.scene().spheres[sphere];
         let top = (center + radius * glam::DVec3::Y).to_array();
@@ -157,7 +157,7 @@ fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
     ] {
         assert_eq!(found(&job, sphere, next, index).as_deref(), Some(word), "{sphere} {next:?}");
     }
-    // A stage that follows no rays shows what the first one hits.
+    // A stage without bounces shows the first hit.
     let mut recipe = Recipe::find("three-spheres").unwrap();
     recipe.rules.shading = Shading::Normals;
     assert_eq!(found(&recipe.job().unwrap(), metal, None, 0).as_deref(), Some("shown"));
