@@ -1,16 +1,16 @@
-//! The progress of a measurement, on standard error.
+//! Progress of a measurement, on standard error.
 
 use crate::cli::ProgressChoice;
 use crate::cli::terminal::Display;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
-/// Interval of progress lines about the same thing when there is no terminal.
+/// Interval between lines about the same step when there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
 const BAR_STEPS: f64 = 1000.0;
 
-/// What is measured now, the share that is done, and the remaining time.
+/// Shows the current step, the share done and the remaining time.
 pub(super) struct Progress {
     display: Display,
     begin: Instant,
@@ -20,14 +20,14 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// `total` is the expected amount of work, in any unit.
+    /// `total` is the expected work, in any unit.
     pub fn new(choice: ProgressChoice, total: f64) -> Self {
         let display = Display::new(choice, BAR_STEPS as u64, "[{bar:24}] {wide_msg}", "", LINE_INTERVAL);
         let total = total.max(f64::MIN_POSITIVE);
         Progress { display, begin: Instant::now(), done: 0.0, total, what: String::new() }
     }
 
-    /// Shows `what`, of which the amount `within` is done.
+    /// Shows the step `what`, with `within` of its work done.
     pub fn at(&mut self, what: &str, within: f64) {
         let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
         let left = time_left(share, self.begin.elapsed())
@@ -41,7 +41,6 @@ impl Progress {
         }
     }
 
-    /// Counts finished work.
     pub fn finished(&mut self, amount: f64) {
         self.done += amount;
     }
@@ -57,7 +56,7 @@ impl Progress {
     }
 }
 
-/// `None` at the beginning, when nothing can be told.
+/// `None` until there is enough progress to extrapolate.
 fn time_left(share: f64, elapsed: Duration) -> Option<Duration> {
     (share > 0.02).then(|| elapsed.mul_f64((1.0 - share) / share))
 }

@@ -3,8 +3,8 @@
 use super::Mine;
 use super::hypothesis::Compared;
 
-/// Whether nearly all bytes are 0 or 255 although the picture has values in between: colours truncated before they were
-/// scaled.
+/// Whether nearly all bytes are 0 or 255, though the picture should have values in between. Converting to an integer
+/// too early turns dark values into 0 but never into 255.
 pub fn is_truncated(mine: &Mine, right: &Compared) -> bool {
     let is_end = |byte: u8| byte <= 1 || byte >= 254;
     let should_be = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);

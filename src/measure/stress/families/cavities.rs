@@ -1,4 +1,4 @@
-//! Closed rooms, which no light may leave or enter, and the eye on a surface or next to it.
+//! Closed rooms, which no light enters or leaves, and eyes on or near a surface.
 
 use super::build::{Ball, deep, eye, glass, matte, metal, moved, picture, sized};
 use crate::job::recipe::Recipe;
@@ -6,7 +6,6 @@ use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::Material;
 use glam::DVec3;
 
-/// The eye in a closed room.
 pub const CAVITIES: Family = Family {
     id: "cavity",
     title: "The eye in a closed ball",
@@ -16,7 +15,7 @@ pub const CAVITIES: Family = Family {
 
 const WHY: &str = "the room is closed: no path leaves it";
 
-/// Alone, touching the ground, and cut by the ground; near the origin and far from it.
+/// Alone, touching the ground, and cut by it; near the origin and far from it.
 pub fn cavities() -> Vec<Case> {
     let materials = [
         ("white", matte(1.0)),
@@ -66,14 +65,13 @@ pub fn cavities() -> Vec<Case> {
     cases
 }
 
-/// A ball of radius 1 at the origin with the eye in it, and a ground of radius 1000 centred at this height.
+/// A unit ball at the origin around the eye, and a ground of radius 1000 centred at this height.
 fn room(material: Material, ground: Option<f64>) -> Recipe {
     let ground = ground.map(|y| (DVec3::new(0.0, y, 0.0), 1000.0, matte(1.0)));
     let balls: Vec<Ball> = [(DVec3::ZERO, 1.0, material)].into_iter().chain(ground).collect();
     picture(balls, eye(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.3, -1.0, -0.2), 90.0))
 }
 
-/// The eye near surfaces.
 pub const EYE: Family = Family {
     id: "eye",
     title: "The eye on a surface",
@@ -81,12 +79,12 @@ pub const EYE: Family = Family {
              leave it like any other rays.",
 };
 
-/// The eye at several heights above several surfaces, looking away and down.
+/// Eyes at several heights above several surfaces, looking away and down.
 pub fn eye_near_a_surface() -> Vec<Case> {
     let mut cases = Vec::new();
     let heights = [("0", 0.0), ("1e-12", 1e-12), ("1e-9", 1e-9), ("1e-6", 1e-6), ("1e-3", 1e-3)];
     let ball = DVec3::new(0.2, -0.3, 0.1);
-    // Its length is exactly 1 in f64.
+    // Exactly unit length in f64.
     let tilted = DVec3::new(0.48, 0.6, 0.64);
     let surfaces: [(&str, &str, DVec3, f64, DVec3, Material); 4] = [
         ("ball", "a matte ball", ball, 1.0, tilted, matte(0.5)),
