@@ -49,10 +49,7 @@ impl Appearance {
         Appearance { colours, features: features(&lightness, width) }
     }
 
-    /// The mean difference from a picture of the same size.
-    ///
-    /// # Panics
-    /// If the sizes differ.
+    /// The mean difference from another picture. Panics if the sizes differ.
     pub fn difference(&self, other: &Appearance) -> f64 {
         assert_eq!(self.colours.len(), other.colours.len(), "the pictures must have the same size");
         let greatest = greatest_colour_difference();
@@ -69,7 +66,7 @@ impl Appearance {
     }
 }
 
-/// The largest difference between colours of a display: between green and blue.
+/// The largest difference between displayable colours: between green and blue.
 fn greatest_colour_difference() -> f64 {
     let of = |linear| hunt(lab_from_xyz(xyz_from_linear(linear)));
     hyab(of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0])).powf(Q_C)
@@ -145,7 +142,7 @@ fn features(lightness: &Plane, width: usize) -> Vec<[f64; 2]> {
     length(&edge).into_iter().zip(length(&point)).map(|(edge, point)| [edge, point]).collect()
 }
 
-/// Filters rows with one kernel and columns with another. Beyond its borders, a picture repeats its outermost pixels.
+/// Filters rows with one kernel and columns with another. Pixels beyond the border repeat the outermost ones.
 fn convolved(plane: &Plane, width: usize, across: &[f64], down: &[f64]) -> Plane {
     let height = plane.len() / width.max(1);
     let pass =

@@ -1,4 +1,4 @@
-//! Made-up texts as HTML, and what is wrong with them.
+//! Made-up texts as HTML, and errors in them.
 
 use super::back_matter;
 use super::chapter::Chapter;
@@ -30,14 +30,14 @@ fn site() -> Site {
     site
 }
 
-/// The HTML of a text of the chapter on normals.
+/// The HTML of a text in the chapter on normals.
 fn converted(site: &Site, text: &str, uses: &mut Uses) -> Result<String, Fault> {
     let normals = site.chapters.iter().find(|chapter| chapter.id == "normals").unwrap();
     let chapter = Chapter { body: text.to_owned(), lines_before: 4, ..normals.clone() };
     prose::chapter(site, &chapter, uses).map(|html| html.into_string())
 }
 
-/// The HTML of a text of its own.
+/// The HTML of a single text.
 fn alone(site: &Site, text: &str) -> String {
     converted(site, text, &mut Uses::default()).unwrap()
 }

@@ -34,7 +34,7 @@ pub(super) fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Resu
     }))
 }
 
-/// The byte offsets of a record's fields, and its size as an array element as `stride`.
+/// A record's field offsets in bytes, and its size as an array element as `stride`.
 fn record((name, size, fields): records::Layout) -> (String, Value) {
     let fields = fields.into_iter().map(|field| (field.name.to_owned(), field.offset.into()));
     (name, Value::Object(fields.chain([("stride".to_owned(), size.into())]).collect()))
@@ -71,10 +71,10 @@ fn stage_data(stage: &Stage) -> Result<Value> {
         "sliders": sliders(&job, recipe.samples_per_pixel, &exported.scene_index),
         // Loop turns over lists for one ray.
         "turns_over_lists": exported.turns_over_lists,
-        // Most samples in a block.
+        // Most samples per block.
         "block_limit": exported.block_limit,
         "overrides": overrides.collect::<Map<_, _>>(),
-        // The contents of the buffers of group 0.
+        // Contents of the buffers of group 0.
         "buffers": exported.buffers.map(|bytes| STANDARD.encode(bytes)),
     }))
 }

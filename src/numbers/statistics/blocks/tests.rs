@@ -1,4 +1,4 @@
-//! Noise, shifts of blocks, and what is known or not known of a difference.
+//! Noise, shifts of blocks, and unknown values.
 
 use super::*;
 use crate::kernel::sampling::pcg4d;
@@ -133,7 +133,7 @@ fn without_noise_any_difference_is_infinitely_far_off_in_its_direction() {
     assert_eq!(found.blocks[0].z, [f64::NEG_INFINITY, 0.0, f64::INFINITY]);
     assert_eq!((found.blocks[0].means, found.blocks[0].largest()), ([-0.5, 0.0, 0.5], f64::INFINITY));
     assert!(!found.is_within() && (0..3).all(|channel| found.blocks[0].is_known(channel)), "{found:?}");
-    // A block of a single pixel has no spread: what is known of its error is all that there is.
+    // A block of a single pixel has no spread, so only its known error counts.
     let single = BlockTest::of(&Differences {
         width: 1,
         values: &[[2.0, -1.0, 0.0]],
