@@ -1,27 +1,26 @@
-//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, which part of the CPU's
-//! kernels implements it, its pipeline override on the GPU, and its name in summaries.
+//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of the CPU's
+//! kernels that implements it, its pipeline override on the GPU, and its name in summaries.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule};
 
-/// Parts of the CPU's kernels that are compiled in or left out, as bits of their constant parameter. Every combination
-/// must be compiled, so there are fewer parts than features.
+/// Parts of the CPU's kernels that are compiled in or left out: bits of a const parameter. Every combination must be
+/// compiled, so there are fewer parts than features.
 pub mod parts {
     /// Spheres with both roots, and refraction.
     pub const GLASS: u32 = 1;
     /// A lens of nonzero radius.
     pub const LENS: u32 = 2;
-    /// What few scenes need: anchored spheres, specks and steep glass.
+    /// For few scenes: anchored spheres, specks and steep glass.
     pub const EXTREMES: u32 = 4;
     /// Traversal of the hierarchy.
     pub const HIERARCHY: u32 = 8;
     /// The rules of the stages.
     pub const RULES: u32 = 16;
-    /// All parts.
     pub const ALL: u32 = 31;
-    /// No part: every kernel has the code, or the CPU tracer checks the job at run time.
+    /// Every kernel has the code, or the CPU tracer checks the job at run time.
     pub const NONE: u32 = 0;
 
     const WORDS: [(u32, &str); 5] = [
@@ -34,13 +33,13 @@ pub mod parts {
 
     pub(super) const STAGE_RULES: &str = "stage rules";
 
-    /// Describes in words what a kernel with these parts supports.
+    /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
         let present = words_of(parts);
         if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
     }
 
-    /// The words for the parts that a kernel with these parts leaves out.
+    /// Names the parts that a kernel with these parts leaves out.
     pub fn left_out(parts: u32) -> Vec<&'static str> {
         words_of(!parts)
     }
@@ -53,34 +52,31 @@ pub mod parts {
 /// How a job's spheres are sorted, as the features need to know it.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Number of spheres of which only the nearer root counts.
+    /// Spheres whose nearer root alone counts.
     pub opaque_count: usize,
-    /// Number of spheres of which both roots count.
+    /// Spheres whose roots both count.
     pub two_root_count: usize,
     /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
     /// Whether a hierarchy holds the spheres of one and two roots.
     pub has_hierarchy: bool,
-    /// Whether a sphere is so small relative to its distance that a hit's depth hardly determines where on it the hit
-    /// is.
+    /// Whether a sphere is so small for its distance that a hit's depth hardly determines where on it the hit is.
     pub has_specks: bool,
 }
 
-/// Between these refraction indices, the refracted direction computed from the cosine of incidence is accurate to
-/// rounding. Beyond them, rounding of the cosine loses the critical angle.
+/// Between these indices, the refracted direction computed from the cosine of incidence is accurate to rounding. Beyond
+/// them, rounding of the cosine loses the critical angle.
 const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
 
 /// For paths of up to this many rays inside glass, each ray may change the angle of incidence by a rounding error, and
 /// the critical angle is still accurate to 1e-6.
 const GENTLE_DEPTH: u32 = 64;
 
-/// A type that a feature can have, as a pipeline override.
+/// A feature's type, as a pipeline override.
 pub trait Override: Copy + Eq {
-    /// The type's name in WGSL.
     const TYPE: &'static str;
-    /// The value as the device takes it; a truth value becomes 0 or 1.
+    /// The value on the device; booleans become 0 or 1.
     fn number(self) -> u32;
-    /// The value as a WGSL literal.
     fn literal(self) -> String;
 }
 
@@ -124,9 +120,9 @@ macro_rules! last {
     };
 }
 
-/// Declares [`Features`]. Each feature has a type and, in brackets: the value for which a kernel needs no code (`off`);
-/// the value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
-/// kernels that implements it (`cpu`); and the words for its values from 1 on (`says`). An expression then computes the
+/// Declares [`Features`]. Each feature has a type and, in brackets: the value that needs no kernel code (`off`); the
+/// value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
+/// kernels that implements it (`cpu`); and the labels of its values from 1 on (`says`). An expression then computes the
 /// value from the job and its spheres. A feature's override in WGSL is its name in capitals.
 macro_rules! features {
     (
@@ -285,7 +281,7 @@ impl Features {
         words.chain(few).collect::<Vec<_>>().join(", ")
     }
 
-    /// The words for what a kernel with exactly these features leaves out. The rules of the stages count as one.
+    /// Names what a kernel with exactly these features leaves out. The rules of the stages count as one.
     pub fn left_out(&self) -> Vec<&'static str> {
         let is_told = |(part, words): &(u32, &'static str)| {
             !words.is_empty() && *part != parts::RULES && *words != "compressed hierarchy"

@@ -6,8 +6,8 @@ use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 
-/// A sphere relative to an origin. Its box is widened by the rounding error of the intersection test. The box is
-/// computed on demand: in a scene of millions of spheres, storing boxes would take most of a build's time.
+/// A sphere relative to an origin, with its box widened by the rounding error of the intersection test. The box is
+/// computed on demand, because storing millions of boxes would take most of a build's time.
 pub(super) struct Bounded<'scene, 'origin> {
     sphere: &'scene Sphere,
     origin: &'origin DVec3,

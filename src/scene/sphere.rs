@@ -7,16 +7,16 @@ use std::ops::RangeInclusive;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Centre, scene units.
+    /// Scene units.
     pub center: DVec3,
-    /// Radius, scene units, greater than 0. The book's early editions made hollow spheres with a negative radius; since
-    /// version 4 a hollow sphere contains a sphere of the inverse refraction index.
+    /// Scene units, greater than 0. The book's early editions made hollow spheres with a negative radius; since version
+    /// 4 a hollow sphere contains one of the inverse refraction index.
     pub radius: f64,
     /// Index into [`super::Scene::materials`].
     pub material: usize,
 }
 
-/// Limits on the radius, scene units. The square of the smallest must be a normal number in `f32`.
+/// Limits on the radius, scene units. The smallest square must be a normal `f32`.
 pub const RADIUS_LIMITS: RangeInclusive<f64> = 1e-18..=LENGTH_LIMIT;
 
 impl Sphere {
