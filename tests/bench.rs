@@ -72,7 +72,7 @@ fn rows_have_sane_figures() {
             }
             assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");
             if row["lanes"] == 1 {
-                // A path that is absorbed costs its lane one more iteration.
+                // An absorbed path costs its lane one more iteration.
                 assert!(number(row, "lanes_in_use") > 0.9, "{row}");
             }
             assert!(number(row, "efficiency") > 0.0);
@@ -94,7 +94,7 @@ fn without_a_compiler_the_baseline_is_left_out() {
     assert!(output.status.success());
     let table = text(&output.stdout);
     assert!(table.contains("skipped") && table.contains("no-such-compiler"), "{table}");
-    // An empty name is none.
+    // An empty name counts as none.
     command.env("CC", " ");
     let table = text(&command.output().unwrap().stdout);
     assert!(table.contains("C89, cc -O2"), "{table}");
@@ -163,7 +163,7 @@ fn all_stages_and_scenes_are_measured_unless_some_are_named() {
         group.map(|row| row["name"].as_str().unwrap()).collect()
     };
     assert_eq!(names(true), Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>());
-    // Every other built-in scene is the picture of a stage.
+    // Every other built-in scene is a stage's picture.
     assert_eq!(names(false), ["field"]);
     for row in rows {
         assert_eq!(row["same_bits"], true, "{row}");

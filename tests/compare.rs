@@ -18,7 +18,6 @@ fn compare(arguments: &[&str], directory: &Path) -> (i32, String, String) {
     weekender(&[&["compare"], arguments].concat(), directory)
 }
 
-/// Renders `out` with `flags`.
 fn render(directory: &Path, out: &str, flags: &[&str]) {
     let usual = ["--batch", "--device", "cpu", "--progress", "off", "--out", out];
     let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "160x90"] };
@@ -75,7 +74,7 @@ fn integer_and_float_pictures_are_compared_with_films() {
         let (code, text, _) = compare(&[name, "cpu"], at);
         assert!(code == 0 && text.contains("cpu"), "{text}");
     }
-    // A picture without a description counts as one of another program, so its scene has to be given.
+    // A picture without a description counts as another program's, so its scene must be given.
     let plain = image::open(at.join("a.png")).unwrap().to_rgb8();
     plain.save(at.join("plain.png")).unwrap();
     let scene = ["--scene", "three-spheres"];
@@ -93,7 +92,7 @@ fn integer_and_float_pictures_are_compared_with_films() {
     fs::write(at.join("turned.pfm"), &pfm).unwrap();
     let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
     assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
-    // In a float picture, quantisation is not known, so only blocks in the smooth sky may show a difference.
+    // A float picture's quantisation is unknown, so only blocks in the smooth sky may show a difference.
     let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
     assert!(text.contains("floats") && text.contains("verdict"), "{text}");
 }
@@ -102,7 +101,7 @@ fn integer_and_float_pictures_are_compared_with_films() {
 fn a_picture_is_decoded_as_its_recipe_says() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // Linear integers, and ones of which only the upper half is linear: the recipe decides, whatever --encoding says.
+    // Linear integers, entirely or only in the upper half: the recipe overrides --encoding.
     for stage in ["diffuse", "gamut"] {
         render(at, "film.exr", &["--stage", stage, "--samples", "64"]);
         render(at, "picture.png", &["--stage", stage, "--samples", "64"]);
@@ -155,7 +154,7 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, value) in [("number.pfm", 0.5), ("nan.pfm", f32::NAN), ("minus.pfm", -f32::INFINITY)] {
-        // A PFM begins with the lowest row: row 5 of the file is row 10 of 16 from above.
+        // A PFM starts with the lowest row: row 5 of the file is row 10 of 16 from above.
         let pixels = (0..64 * 16).flat_map(|i| [if i == 5 * 64 + 30 { value } else { 0.5 }; 3]);
         let header = b"PF\n64 16\n-1\n".iter().copied();
         fs::write(at.join(name), header.chain(pixels.flat_map(f32::to_le_bytes)).collect::<Vec<u8>>())
@@ -209,7 +208,7 @@ fn backends_agree_on_the_same_samples() {
     }
     let (code, text, _) = compare(&["cpu", "cpu", "--samples", "4", "--size", "96x54"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
-    // A backend compared with a film renders the film's scene, size and samples.
+    // A backend compared with a film renders its scene, size and samples.
     render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
     let (code, text, errors) = compare(&["film.exr", "portable"], at);
     assert!(

@@ -131,7 +131,7 @@ fn a_difference_is_found_marked_and_told() {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
-    // The difference is the second less the first.
+    // The difference is the second minus the first.
     let numbers = |label: &str| -> Vec<f64> {
         let line = found.lines().rfind(|line| line.starts_with(label)).unwrap();
         line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
@@ -217,7 +217,7 @@ fn what_cannot_be_compared_is_refused() {
     }
 }
 
-/// The page shows the end of what a command prints. Both of its sides are the same on every processor.
+/// The companion shows the end of a command's output. Both sides are the same on every processor.
 #[test]
 fn the_page_shows_what_the_program_prints() {
     let page = include_str!("../docs/compare.md");

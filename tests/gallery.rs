@@ -1,4 +1,4 @@
-//! `weekender gallery`: what is rendered again, what an interruption and a full disk leave, and the page.
+//! `weekender gallery`: which stills are rendered again, the state after an interruption or a full disk, and the page.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -30,7 +30,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Runs a gallery that must succeed, and returns the stages that were rendered.
+/// Runs a gallery that must succeed, and returns the rendered stages.
 fn rendered(at: &Path, arguments: &[&str]) -> Vec<String> {
     let output = run(at, &[&["--out", "g"], arguments].concat());
     let printed = text(&output.stdout);
@@ -60,7 +60,7 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
     assert!(rendered(at, &SMALL).is_empty());
     assert_eq!(std::fs::read(file("index.html")).unwrap(), page);
 
-    // A damaged byte and a file that is gone; a younger file alone is no change.
+    // A damaged byte and a deleted file; a newer file alone is no change.
     let mut bytes = std::fs::read(file("red-sphere.png")).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
@@ -77,7 +77,7 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
     std::fs::write(file("gallery.json"), json.replace(&fingerprint, "0123456789abcdef")).unwrap();
     assert_eq!(rendered(at, &SMALL), ["aliased"]);
 
-    // A description that cannot be read is no loss of pictures, only of time.
+    // An unreadable description only costs time, not pictures.
     std::fs::write(file("gallery.json"), "{").unwrap();
     let output = run(at, &[&["--out", "g"], &SMALL[..]].concat());
     assert!(text(&output.stderr).contains("gallery.json"), "{}", text(&output.stderr));
@@ -92,7 +92,7 @@ fn a_full_picture_is_also_good_enough_for_quick_ones() {
     let quick = [&["--quick"][..], &only].concat();
     assert_eq!(rendered(at, &quick), ["sky", "antialiased"]);
     assert_eq!(pictures(at)[0]["width"], 480);
-    // One sample more or less would not be the figure, so its full picture is the quick one.
+    // One sample more or less would change the figure, so its full picture is also the quick one.
     assert_eq!(rendered(at, &only), ["sky"]);
     let sky = &pictures(at)[0];
     assert_eq!(
@@ -178,7 +178,7 @@ fn bad_input_is_refused_with_a_remedy() {
     assert_eq!(std::fs::read(at.join("file")).unwrap(), b"");
 }
 
-/// What `attribute` holds everywhere on the page.
+/// Every value of `attribute` on the page.
 fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
     let begin = format!(" {attribute}=\"");
     page.split(&begin).skip(1).filter_map(|rest| rest.split('"').next()).collect()

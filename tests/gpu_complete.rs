@@ -1,4 +1,4 @@
-//! All requested samples are added: with long paths, many samples, loops that a driver ends early, and a device that
+//! All requested samples are added, despite long paths, many samples, loops that a driver cuts short, and a device that
 //! leaves samples out.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -20,7 +20,7 @@ fn picture_mean(film: &Film) -> f64 {
     means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
 }
 
-/// Each thread would need far more loop iterations than llvmpipe allows.
+/// Each thread needs far more loop iterations than llvmpipe allows.
 #[test]
 fn few_pixels_with_many_samples_are_whole() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -32,7 +32,7 @@ fn few_pixels_with_many_samples_are_whole() {
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
 }
 
-/// The eye in a closed white ball: no path ends before its last ray, and none brings light.
+/// The eye in a closed white ball: every path runs to its last ray, and none brings light.
 fn closed(max_depth: u32) -> RenderJob {
     let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
     let white = scene.add_material("white", Material::Lambertian { albedo: DVec3::ONE });
@@ -48,11 +48,11 @@ fn every_ray_of_the_longest_paths_is_traced() {
     let stats = gpu.accumulate(&job, 0..8, &mut film, &go_on()).unwrap();
     assert_eq!((stats.paths, stats.rays), (15 * 8, 15 * 8 * 10_000));
     assert_eq!((film.rejected(), picture_mean(&film)), (0, 0.0));
-    // The recorded paths are just as long.
+    // Recorded paths are just as long.
     assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
 }
 
-/// Three spheres with glass in which the angle of incidence is stored from ray to ray.
+/// Three spheres with glass that stores the angle of incidence from ray to ray.
 fn steep_glass() -> (Scene, Camera) {
     let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
     for named in &mut scene.materials {
@@ -82,7 +82,7 @@ fn paths_that_are_put_aside_give_the_same_film() {
     }
 }
 
-/// The next picture does not take up the paths that an abandoned picture has put aside.
+/// A new picture does not resume the paths that an abandoned one put aside.
 #[test]
 fn what_an_abandoned_picture_put_aside_is_lost() {
     let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
@@ -90,7 +90,7 @@ fn what_an_abandoned_picture_put_aside_is_lost() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
     let long = closed(200);
-    // Ends while dispatches are under way, however long the device takes to begin.
+    // Cancel while dispatches are under way, however long the device takes to start.
     let mut time = Duration::from_millis(10);
     while used.report().dispatches < 3 {
         let cancel = go_on();
@@ -109,7 +109,7 @@ fn what_an_abandoned_picture_put_aside_is_lost() {
     assert!(!told.iter().any(|message| message.contains("traced again")), "{told:?}");
 }
 
-/// What a film has already got stays in it; what is still on the device is traced again, and does not count twice.
+/// A film keeps the samples it has; those still on the device are traced again and do not count twice.
 #[test]
 fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
     let Some(mut other) = gpu(GpuOptions::default()) else { return };
@@ -131,7 +131,7 @@ fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
     }
 }
 
-/// If a ray needs more iterations for a list than a dispatch allows, the picture is traced ray by ray. A list that no
+/// If a list needs more iterations per ray than a dispatch allows, the picture is traced ray by ray. A list that no
 /// loop can handle is refused.
 #[test]
 fn long_lists_are_whole_or_refused() {
@@ -171,7 +171,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
         let said = short.take_messages().join("; ");
         assert!(said.contains("traced again") && said.contains("the device added only 0 of"), "{said}");
-        // The same with several passes, whenever it is noticed.
+        // The same over several passes, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();
         for start in [0, 8, 16, 24] {

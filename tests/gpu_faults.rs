@@ -1,4 +1,4 @@
-//! Device faults in each phase of a render: the picture is complete in the end, and the user is told.
+//! Device faults in each phase of a render: the picture still becomes complete, and the user gets a message.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -78,7 +78,7 @@ fn a_fault_during_a_pause_is_survived() {
     }
 }
 
-/// As when the window is resized while the device does not answer.
+/// As when the window is resized while the device hangs.
 #[test]
 fn a_new_job_is_begun_while_the_device_hangs() {
     let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };

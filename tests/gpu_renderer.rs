@@ -1,4 +1,4 @@
-//! The whole GPU renderer: known radiance, odd sizes, films that another backend continues, failures.
+//! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -83,7 +83,7 @@ fn odd_sizes() {
     }
 }
 
-/// The gradient ends in the last column and row, of which a picture of one column or row has none.
+/// The gradient ends in the last column and row, which a picture of one column or row does not have.
 #[test]
 fn a_gradient_of_one_column_or_row_is_a_number() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -219,7 +219,7 @@ fn film_goes_on_from_cpu_to_gpu_and_back() {
         / (80.0 * 45.0);
     assert!(difference.abs() < 1e-5, "{difference}");
 
-    // Adding the same samples twice is refused, and nothing is added.
+    // Adding samples twice is refused, and the film is unchanged.
     let before = film.clone();
     assert!(matches!(gpu.accumulate(&job, 120..130, &mut film, &go_on()), Err(RenderError::Film(_))));
     assert!(film == before);
@@ -245,7 +245,7 @@ fn samples_stay_on_the_device_until_they_are_fetched() {
     let expected = rendered(&mut other, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
-    // The first pass fetches the film by itself, because the cost of fetching is not yet known.
+    // The first pass fetches the film by itself, because the cost of fetching is still unknown.
     let mut rays = gpu.advance(&job, 0..4, &mut film, &go_on()).unwrap().rays;
     assert_eq!((film.sample_count(), rays), (0, 0));
     let second = gpu.advance(&job, 4..8, &mut film, &go_on()).unwrap();

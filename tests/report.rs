@@ -1,4 +1,4 @@
-//! `weekender report`: what it writes, how it continues after an interruption, and what it refuses.
+//! `weekender report`: its files, how it resumes after an interruption, and what it refuses.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::fs;
@@ -54,7 +54,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
         let samples: Vec<u64> = points.iter().map(|p| p["samples"].as_u64().unwrap()).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16, 32]);
         let of = |point: usize, key: &str| points[point][key].as_f64().unwrap();
-        // With 16 times as many samples, the true and the estimated error are at least 3 times smaller.
+        // With 16 times as many samples, true and estimated errors are at least 3 times smaller.
         for key in ["mse", "mse_estimate", "rel_mse"] {
             assert!(of(5, key) < of(1, key) / 9.0, "{key}: {} to {}", of(1, key), of(5, key));
         }
@@ -150,7 +150,7 @@ fn calibration_holds_estimates_against_true_errors() {
     }
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
     assert!(table.contains("4 of 4 ratios are within 1 ± 0.05"), "{table}");
-    // With only one half, there is no estimate to check.
+    // A single half gives no estimate to check.
     let (code, _, message) = report(&[&small[..], &["--estimate-error", "off"]].concat(), at);
     assert_eq!(code, 2, "{message}");
     assert!(message.contains("--estimate-error") && message.contains("--calibration"), "{message}");
@@ -163,7 +163,7 @@ fn a_report_goes_on_with_what_is_there() {
     let sobol = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol"]].concat();
     assert_eq!(report(&sobol, at).0, 0);
     let first = data(at);
-    // More curves with the same settings: existing ones stay the same to the bit, even their times.
+    // More curves with the same settings: existing ones stay the same bit for bit, even their times.
     let both = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol,independent"]].concat();
     assert_eq!(report(&both, at).0, 0);
     let second = data(at);
@@ -239,13 +239,13 @@ mod interrupted {
         flags.split(' ').collect()
     }
 
-    /// Starts a report and presses Ctrl-C while its reference is rendered. Returns the film that was saved.
+    /// Starts a report and presses Ctrl-C while its reference is rendered. Returns the saved film.
     fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
-        // If the key is pressed before the first pass or after the last one, try again.
+        // Try again if the key was pressed before the first pass or after the last.
         for _ in 0..30 {
             let mut command = command(&[&["--progress", "on"], long().as_slice()].concat(), directory);
             let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
-            // It prints its first line when the reference starts.
+            // The first line appears when the reference starts.
             let mut stderr = BufReader::new(child.stderr.take().unwrap());
             let mut words = String::new();
             stderr.read_line(&mut words).unwrap();
@@ -281,7 +281,7 @@ mod interrupted {
         renderer.accumulate(&job, 0..16_384, &mut uninterrupted, &AtomicBool::new(false)).unwrap();
         assert!(whole.film == uninterrupted, "{} and {}", kept.film.samples(), whole.film.samples());
 
-        // With the saved samples set to zero, the result contains only the missing ones.
+        // With the saved samples zeroed, the result only contains the missing ones.
         let mut black = kept.film.clone();
         black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
         checkpoint::save(&path, &black, &kept.description).unwrap();

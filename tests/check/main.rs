@@ -1,4 +1,4 @@
-//! `weekender check`: right pictures are right, planted mistakes are named, damaged files are understood.
+//! `weekender check`: right pictures pass, planted mistakes are named, damaged files are understood.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod book;
@@ -17,7 +17,7 @@ fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> 
     Mine { width, height, bytes, format: "P3", damages: Vec::new() }
 }
 
-/// The id of the mistake that is found, or "right".
+/// The id of the mistake found, or "right".
 fn found(mine: &Mine, stage: Option<&str>) -> &'static str {
     let stage = stage.map(|id| Stage::find(id).unwrap());
     let finding = judge(mine, stage).unwrap();
@@ -62,7 +62,7 @@ fn planted_mistakes_are_named() {
     }
 }
 
-/// Some mistake is always a little nearer than none, but no mistake turns one scene into another.
+/// Some mistake always fits slightly better than none, but no mistake turns one scene into another.
 #[test]
 fn another_scene_is_blamed_on_no_mistake() {
     for (shown, stage) in [("lambertian-gamma", "hollow-glass"), ("metal-fuzzy", "lambertian-gamma")] {
@@ -98,7 +98,7 @@ fn every_form_of_a_picture_is_read() {
         assert_eq!((mine.width, mine.height, &mine.bytes), (2, 1, &bytes), "{}", text(file));
         assert!(mine.damages.is_empty(), "{:?}", mine.damages);
     }
-    // White space after the header is one byte; more of it belongs to the pixels.
+    // Only one byte of white space follows the header; more of it belongs to the pixels.
     assert_eq!(read(b"P6 1 1 255\n\n\r\n").bytes, [*b"\n\r\n"]);
     // Values are scaled by the largest one.
     assert_eq!(read(b"P3 1 1 1 0 1 1").bytes, [[0, 255, 255]]);
@@ -218,7 +218,7 @@ fn exit_codes_files_and_json_tell_the_finding() {
         let read = Mine::read(&at.join("d").join(name)).unwrap();
         assert_eq!((read.width, read.height), (200, 112), "{name}");
     }
-    // Our own picture of the same place is right.
+    // Our own picture in the same place is right.
     let output = check(at, &[&["d/ours.png"], &stage[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
 

@@ -1,4 +1,4 @@
-//! Faults of the texts end the command, with file and line.
+//! Errors in the texts end the command and name file and line.
 
 use super::{checkout, companion, text};
 use std::fs;
@@ -17,7 +17,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A checkout with what the page is made of.
+/// A checkout with the page's files.
 fn texts() -> TempDir {
     let directory = TempDir::new().unwrap();
     for folder in ["docs/companion", "src", "shaders", "reference"] {
@@ -28,7 +28,7 @@ fn texts() -> TempDir {
 
 const CHAPTER: &str = "docs/companion/05-sphere.md";
 
-/// Builds the page after a change of one file and returns what was said.
+/// Builds the page after changing one file, and returns the messages.
 fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> String {
     let path = texts.path().join(file);
     let original = fs::read_to_string(&path).unwrap();

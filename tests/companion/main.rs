@@ -1,4 +1,4 @@
-//! `weekender companion` as a program: the page, its links, its HTML, and what it says about faulty texts.
+//! `weekender companion` as a program: the page, its links and HTML, and its messages about faulty texts.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod faults;
@@ -94,7 +94,7 @@ fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
     let count = |part: &str| PAGE.html.matches(part).count();
     assert!(count("<figure class=\"code\"") > 30 && count("<math") > 30 && count("data-stage=") > 25);
     let body = PAGE.html.split("<main").nth(1).unwrap().split("<script").next().unwrap();
-    // Nothing of the texts' own notation is left.
+    // None of the texts' own notation remains.
     for part in ["{{", "}}", "[@", "](glossary:", "](book:", "](page:"] {
         assert!(!body.contains(part), "{part}");
     }
@@ -111,7 +111,7 @@ fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
         std::fs::read_to_string(kept).unwrap().replace("\"processor\": \"", "\"processor\": \"Reader's ");
     let file = directory.path().join("own.json");
     std::fs::write(&file, own).unwrap();
-    // The stills of the other page are used again.
+    // Reuses the stills of the other page.
     let output = companion(PAGE.directory.path(), &["--bench", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let html = std::fs::read_to_string(PAGE.directory.path().join("index.html")).unwrap();
@@ -133,7 +133,7 @@ fn ctrl_c_leaves_the_page_and_says_how_to_go_on() {
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let mut said = BufReader::new(child.stderr.take().unwrap());
-    // The first line of progress: a figure is being rendered.
+    // The first line of progress means that a figure is being rendered.
     let mut line = String::new();
     said.read_line(&mut line).unwrap();
     let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();

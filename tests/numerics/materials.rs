@@ -1,4 +1,4 @@
-//! What surfaces do: cases 14 to 18, 20 to 22. (Book 1, sections 9 to 11.)
+//! Surfaces: cases 14 to 18, 20 to 22. (Book 1, sections 9 to 11.)
 
 use crate::common::*;
 use glam::DVec3;
@@ -56,7 +56,7 @@ fn case_15_matte_ball_under_the_sky() {
             sum += z;
             squares += z * z;
             largest = largest.max(z.abs());
-            // The blue of the sky is the same everywhere.
+            // The sky's blue is the same everywhere.
             assert!((found[2] - expected.z).abs() < 1e-6, "{found:?}, not {expected}");
         }
     }

@@ -22,7 +22,7 @@ fn case_26_no_draw_repeats() {
     }
 }
 
-/// The mean of `n` independent samples has 1/n of the variance of one sample, whatever is sampled.
+/// Whatever is sampled, the mean of `n` independent samples has 1/n of the variance of one.
 #[test]
 fn independent_samples_are_independent() {
     const SAMPLES: u32 = 64;

@@ -18,7 +18,7 @@ pub fn under_white_sky(balls: &[Ball]) -> Scene {
     Scene { sky: WHITE, ..scene(balls) }
 }
 
-/// The balls and forty more far behind the eye, which is enough for a hierarchy.
+/// The balls and forty more far behind the eye, enough for a hierarchy.
 pub fn among_many(balls: &[Ball]) -> Vec<Ball> {
     let far = |i: u32| (DVec3::new(f64::from(i) - 20.0, 0.0, 500.0), 0.1, lambertian(0.5));
     balls.iter().copied().chain((0..40).map(far)).collect()
@@ -160,7 +160,7 @@ fn an_eye_on_a_surface_sees_it_from_outside() {
     }
 }
 
-/// A shell of glass and a coat of glass on a matte ball, beside the eye.
+/// A glass shell and a glass coat on a matte ball, beside the eye.
 pub fn shells_at(at: DVec3, thickness: f64) -> (Scene, Camera) {
     let left = at + DVec3::new(-1.1, 0.0, 0.0);
     let right = at + DVec3::new(1.1, 0.0, 0.0);
@@ -239,7 +239,7 @@ fn total_reflection_lasts() {
 #[test]
 fn steep_glass_is_right() {
     for index in [10.0, 100.0, 1e4, 1e6] {
-        // So close to the centre that about half of the rays meet the surface below the critical angle.
+        // So close to the centre that about half the rays meet the surface below the critical angle.
         for offset in [0.0, 1.5 / index] {
             let eye = DVec3::new(offset, 0.0, 0.0);
             let camera =
@@ -279,7 +279,7 @@ fn no_light_gets_into_a_closed_ball() {
     }
 }
 
-/// Spheres much larger than what lies on them are anchored there, in the order of the scene, whichever gains most.
+/// Spheres much larger than what is on them are anchored there, in the scene's order, whichever gains most.
 #[test]
 fn large_spheres_are_anchored_at_their_details() {
     let grounds = [

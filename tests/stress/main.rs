@@ -1,4 +1,4 @@
-//! The suite of stiff scenes: its quick part on every class of CPU arithmetic, and the program around it.
+//! The stiff scenes: the quick ones on every class of CPU arithmetic, and the program around them.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 mod exact;
@@ -21,7 +21,7 @@ fn suite() -> Suite {
     Suite::new(best(true).into_iter().chain(best(false)).map(backend).chain([reference]).collect())
 }
 
-/// The case with fewer samples: an error in these cases affects many samples.
+/// Fewer samples suffice, because an error in these cases affects many of them.
 fn small(case: &Case) -> Case {
     let mut case = case.clone();
     case.recipe.samples_per_pixel = case.recipe.samples_per_pixel.min(8);
