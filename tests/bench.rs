@@ -86,7 +86,7 @@ fn rows_have_sane_figures() {
 }
 
 #[test]
-fn without_a_compiler_the_baseline_is_left_out() {
+fn baseline_is_skipped_without_compiler() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     command.env("CC", "no-such-compiler").arg("bench").args(TINY).args(["--scene", "metals"]);
@@ -125,7 +125,7 @@ fn features(directory: &Path, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
+fn specialised_and_general_kernels_agree() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--scene", "three-spheres", "--scene", "book"]);
     let device = &report["features"][0];
@@ -154,7 +154,7 @@ fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
 }
 
 #[test]
-fn all_stages_and_scenes_are_measured_unless_some_are_named() {
+fn measures_everything_by_default() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--samples", "2"]);
     let rows = report["features"][0]["rows"].as_array().unwrap();
@@ -171,7 +171,7 @@ fn all_stages_and_scenes_are_measured_unless_some_are_named() {
 }
 
 #[test]
-fn bad_flags_are_refused_before_anything_is_measured() {
+fn bad_flags_fail_early() {
     let cases: [(&[&str], &str); 10] = [
         (&["--features", "--scale", "10..20"], "--scale"),
         (&["--features", "--plot", "chart.svg"], "--plot"),

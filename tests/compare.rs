@@ -31,7 +31,7 @@ fn json(arguments: &[&str], directory: &Path) -> (i32, serde_json::Value) {
 }
 
 #[test]
-fn films_that_differ_in_noise_are_equal_but_not_with_a_larger_sphere() {
+fn noise_is_equal_but_larger_sphere_differs() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "a.exr", &["--samples", "64"]);
@@ -62,7 +62,7 @@ fn films_that_differ_in_noise_are_equal_but_not_with_a_larger_sphere() {
 }
 
 #[test]
-fn integer_and_float_pictures_are_compared_with_films() {
+fn pictures_compare_with_films() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "film.exr", &["--samples", "256"]);
@@ -114,7 +114,7 @@ fn a_picture_is_decoded_as_its_recipe_says() {
 }
 
 #[test]
-fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
+fn backend_repeats_samples_without_estimate() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "one-half.png", &["--samples", "16", "--estimate-error", "off"]);
@@ -125,7 +125,7 @@ fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
 }
 
 #[test]
-fn a_clipped_picture_differs_from_a_dark_one_is_equal_to_itself_and_is_not_judged_next_to_another() {
+fn clipped_picture_verdicts() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, dark) in [("white.png", 0), ("half.png", 32)] {
@@ -150,7 +150,7 @@ fn a_clipped_picture_differs_from_a_dark_one_is_equal_to_itself_and_is_not_judge
 }
 
 #[test]
-fn nan_or_infinity_in_only_one_picture_is_a_difference() {
+fn non_finite_in_one_picture_differs() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, value) in [("number.pfm", 0.5), ("nan.pfm", f32::NAN), ("minus.pfm", -f32::INFINITY)] {
@@ -175,7 +175,7 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
 }
 
 #[test]
-fn the_worst_block_is_named_by_its_column_and_row() {
+fn worst_block_has_column_and_row() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, by) in [("a.png", 0), ("b.png", 20)] {

@@ -56,7 +56,7 @@ fn records_of_all_samples_add_up_to_the_film() {
 }
 
 #[test]
-fn the_cpu_and_the_reference_agree_on_most_paths() {
+fn cpu_matches_reference_on_most_paths() {
     let job = small("three-spheres", 32, 18);
     let best = Isa::available().last().copied();
     let mut parted = 0;
@@ -162,7 +162,7 @@ fn equal_sides_agree_to_the_bit() {
 }
 
 #[test]
-fn the_cpu_and_the_reference_agree_within_the_tolerance() {
+fn cpu_matches_reference_within_tolerance() {
     let (code, text, errors) = diff(&["--sides", "cpu,reference", "--pixel", "400,220"]);
     assert_eq!(code, 0, "{text}{errors}");
     assert!(text.contains("the paths agree: the largest difference is") && text.contains('≈'), "{text}");

@@ -50,7 +50,7 @@ fn pictures(at: &Path) -> Vec<Value> {
 const SMALL: [&str; 3] = ["--quick", "--only", "sky,red-sphere,antialiasing"];
 
 #[test]
-fn only_what_is_missing_damaged_or_changed_is_rendered() {
+fn renders_only_outdated_stills() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let all = ["sky", "red-sphere", "aliased", "antialiased"];
@@ -85,7 +85,7 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
 }
 
 #[test]
-fn a_full_picture_is_also_good_enough_for_quick_ones() {
+fn full_still_satisfies_quick_order() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let only = ["--only", "sky,antialiased"];
@@ -130,7 +130,7 @@ fn ctrl_c_keeps_finished_pictures() {
 
 #[cfg(unix)]
 #[test]
-fn a_full_disk_ends_it_with_a_remedy_and_keeps_what_was_written() {
+fn full_disk_keeps_finished_stills() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // Blocks of 512 bytes: the first picture and its description fit, the second does not.

@@ -65,7 +65,7 @@ fn steep_glass() -> (Scene, Camera) {
 
 /// Putting paths aside does not change the film.
 #[test]
-fn paths_that_are_put_aside_give_the_same_film() {
+fn putting_paths_aside_keeps_film() {
     let scenes: [(Scene, Camera); 3] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA), steep_glass()];
     for hierarchy in [HierarchyKind::Whole, HierarchyKind::Compressed] {
         let options = GpuOptions { hierarchy: Some(hierarchy), ..GpuOptions::default() };
@@ -84,7 +84,7 @@ fn paths_that_are_put_aside_give_the_same_film() {
 
 /// A new picture does not resume the paths that an abandoned one put aside.
 #[test]
-fn what_an_abandoned_picture_put_aside_is_lost() {
+fn abandoned_paths_are_not_resumed() {
     let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
     let Some(mut used) = gpu(options.clone()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
@@ -111,7 +111,7 @@ fn what_an_abandoned_picture_put_aside_is_lost() {
 
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.
 #[test]
-fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
+fn cancelled_samples_on_device_are_lost() {
     let Some(mut other) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
@@ -159,7 +159,7 @@ fn long_lists_are_whole_or_refused() {
 }
 
 #[test]
-fn samples_that_a_device_leaves_out_are_traced_again() {
+fn omitted_samples_are_traced_again() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [50, 43], 12, SamplerKind::Sobol, true);
     let Some(mut good) = gpu(GpuOptions::default()) else { return };
@@ -184,7 +184,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
 }
 
 #[test]
-fn a_device_that_always_leaves_samples_out_fails() {
+fn device_that_always_omits_samples_fails() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
     let injection =
@@ -202,7 +202,7 @@ fn a_device_that_always_leaves_samples_out_fails() {
 }
 
 #[test]
-fn samples_that_a_film_has_already_are_refused_and_the_device_goes_on() {
+fn duplicate_samples_are_refused() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -217,7 +217,7 @@ fn samples_that_a_film_has_already_are_refused_and_the_device_goes_on() {
 }
 
 #[test]
-fn samples_that_are_found_missing_at_the_end_are_traced_again_and_no_others() {
+fn only_missing_samples_are_traced_again() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
     let Some(mut good) = gpu(GpuOptions::default()) else { return };

@@ -16,7 +16,7 @@ fn libraries() -> BTreeSet<String> {
 }
 
 #[test]
-fn the_driver_stays_loaded_after_the_last_renderer() {
+fn driver_stays_loaded() {
     let before = libraries();
     let Some(gpu) = gpu_common::gpu(GpuOptions::default()) else { return };
     let while_open = libraries();

@@ -41,7 +41,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
 }
 
 #[test]
-fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
+fn fault_in_any_phase_completes_picture() {
     // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
         let points = [

@@ -78,7 +78,7 @@ fn parted_share(a: &mut dyn Renderer, b: &mut dyn Renderer, job: &RenderJob) -> 
 const INDICES: [u64; 4] = [0, 5, 50, 499];
 
 #[test]
-fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
+fn every_job_matches_cpu_by_sample() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let mut failures = Vec::new();

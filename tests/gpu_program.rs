@@ -34,7 +34,7 @@ fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
 const OUT_OF_MEMORY: &str = "--simulate-out-of-memory";
 
 #[test]
-fn a_fault_leaves_a_whole_picture_and_a_warning() {
+fn fault_completes_picture_with_warning() {
     let directory = tempfile::tempdir().unwrap();
     let faults = [
         ("--simulate-device-lost", "lost"),
@@ -86,7 +86,7 @@ fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
 
 /// The device's samples equal the GPU's bit for bit, and the others the CPU's.
 #[test]
-fn a_film_after_a_fault_holds_what_the_counts_say() {
+fn film_after_fault_matches_counts() {
     let directory = tempfile::tempdir().unwrap();
     let lost =
         ["--samples", "256", "--simulate-invalid-call", "5", "--out", "both.exr", "--json", "both.json"];
@@ -114,7 +114,7 @@ fn a_film_after_a_fault_holds_what_the_counts_say() {
 }
 
 #[test]
-fn cpu_and_gpu_share_a_film_and_say_who_did_what() {
+fn cpu_and_gpu_share_film() {
     let directory = tempfile::tempdir().unwrap();
     let arguments = ["--device", "cpu,gpu", "--samples", "256", "--out", "both.exr", "--json", "both.json"];
     if run(&directory, &arguments).is_none() {

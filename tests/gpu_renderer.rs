@@ -85,7 +85,7 @@ fn odd_sizes() {
 
 /// The gradient ends in the last column and row, which a picture of one column or row does not have.
 #[test]
-fn a_gradient_of_one_column_or_row_is_a_number() {
+fn single_column_gradient_is_finite() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut recipe = Stage::find("ppm-gradient").unwrap().recipe();
     for size in [[1, 5], [5, 1], [1, 1]] {
@@ -238,7 +238,7 @@ fn cancelled_between_dispatches() {
 }
 
 #[test]
-fn samples_stay_on_the_device_until_they_are_fetched() {
+fn samples_stay_on_device_until_fetched() {
     let new = || gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() });
     let (Some(mut other), Some(mut gpu)) = (new(), new()) else { return };
     let job = three_spheres([50, 43], 12, true);
@@ -266,7 +266,7 @@ fn samples_stay_on_the_device_until_they_are_fetched() {
 }
 
 #[test]
-fn a_new_film_does_not_get_the_old_ones_samples() {
+fn new_film_gets_no_old_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 36], 8, false);
     let expected = rendered(&mut gpu, &job, 4);
@@ -286,7 +286,7 @@ fn a_new_film_does_not_get_the_old_ones_samples() {
 }
 
 #[test]
-fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
+fn unwanted_kernel_does_not_block() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 36], 8, false);
     let outcome = gpu.prepare(&job, &AtomicBool::new(true));
@@ -295,7 +295,7 @@ fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
 }
 
 #[test]
-fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
+fn cpu_takes_over_after_fault() {
     // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid] {
         let options = GpuOptions {
@@ -371,7 +371,7 @@ fn many_spheres_and_large_radiance() {
 }
 
 #[test]
-fn a_camera_that_moves_keeps_the_scene_on_the_device() {
+fn moving_camera_keeps_scene_on_device() {
     let Some(mut moved) = gpu(GpuOptions::default()) else { return };
     let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
     rendered(&mut moved, &job, 2);

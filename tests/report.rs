@@ -39,7 +39,7 @@ fn data(at: &Path) -> serde_json::Value {
 }
 
 #[test]
-fn a_report_has_its_files_and_figures_that_make_sense() {
+fn report_has_files_and_plausible_figures() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, text, errors) =
@@ -124,7 +124,7 @@ fn the_baseline_is_a_curve_of_its_own() {
 }
 
 #[test]
-fn calibration_holds_estimates_against_true_errors() {
+fn calibration_compares_estimates_with_errors() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let small =
@@ -193,7 +193,7 @@ fn a_report_goes_on_with_what_is_there() {
 }
 
 #[test]
-fn a_scene_that_became_another_is_measured_again() {
+fn changed_scene_is_measured_again() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let scene = |radius: &str| {
@@ -267,7 +267,7 @@ mod interrupted {
     }
 
     #[test]
-    fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
+    fn interrupted_reference_resumes() {
         let at = TempDir::new().unwrap();
         let at = at.path();
         let path = at.join("found/reference-three-spheres.exr");
@@ -300,7 +300,7 @@ mod interrupted {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused_before_anything_is_rendered() {
+fn bad_requests_fail_before_rendering() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::write(at.join("file"), "").unwrap();

@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_general_kernel_keeps_what_affects_the_samples() {
+    fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
         let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
         assert_eq!(special.generalised(), own);

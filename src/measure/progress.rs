@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_time_left_follows_from_the_share_that_is_done() {
+    fn time_left_is_extrapolated() {
         let left = |share| time_left(share, Duration::from_secs(10)).map(|left| left.as_secs());
         assert_eq!([0.25, 0.5, 1.0, 0.02].map(left), [Some(30), Some(10), Some(0), None]);
     }

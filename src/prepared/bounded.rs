@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_leaves_room_for_the_rounding_of_radius_and_place() {
+    fn boxes_allow_for_rounding() {
         for (place, radius) in [(0.0, 3.0), (5.0, 0.1), (-7.0, 7.0)] {
             let (center, origin) = (DVec3::new(0.0, place, 0.0), DVec3::ZERO);
             let sphere = Sphere { center, radius, material: 0 };

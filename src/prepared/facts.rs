@@ -311,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_that_is_tiny_for_its_place_is_no_layer_with_itself() {
+    fn tiny_distant_sphere_is_no_layer() {
         for center in [DVec3::new(4.0, 1.0, 0.0), DVec3::splat(-1e3), DVec3::X] {
             for radius in [1e-18, 1e-16, 1e-14] {
                 let facts = Facts::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layer_is_as_thick_as_its_surfaces_are_apart() {
+    fn layer_thickness_is_surface_distance() {
         let layer = |a: (f64, f64), b: (f64, f64)| {
             let facts = Facts::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
             facts.layers.first().map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))

@@ -289,7 +289,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hierarchy_serves_only_groups_with_the_same_anchored_spheres() {
+    fn hierarchy_is_shared_with_same_anchors() {
         let groups = |indices: &[u32], roots: Roots| {
             let anchored = |&index: &u32| Anchored { index, roots, under_eye: false, near: DVec3::ZERO };
             Groups {
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn an_eye_within_rounding_of_a_surface_is_on_it() {
+    fn eye_within_rounding_is_on_surface() {
         for far in [1e8, -1e8] {
             let position = DVec3::splat(far);
             let eye = Eye { position, lens_radius: 0.0 };

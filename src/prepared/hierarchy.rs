@@ -278,7 +278,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tree_that_no_other_builder_keeps_low_enough_is_halved() {
+    fn too_deep_tree_is_halved() {
         // Each sphere is twice as far away as the one before, so any split that pays leaves most of them together.
         let far = |place: i32| 2_f64.powi(place);
         let sphere = |place| Sphere { center: DVec3::X * far(place), radius: 0.1 * far(place), material: 0 };
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_and_spheres_lie_in_the_order_of_a_walk() {
+    fn layout_is_depth_first() {
         let spheres = crate::scene::builtin::field(3000).0.spheres;
         let hierarchy = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Quick);
         let is_leaf = |node: &Node<f32>| node.count & COUNT_MASK > 0;

@@ -318,7 +318,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_is_the_most_samples_whose_sum_fits_32_bits() {
+    fn block_sum_fits_32_bits() {
         let limit = |units: f64| block_limit(units / FIXED_POINT_SCALE);
         for power in 1..=7 {
             // 2^power samples of this many units are 2^32 - 2^power, and one unit more makes 2^32.

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prepared_scene_that_follows_the_camera_is_valid() {
+    fn scene_following_camera_is_valid() {
         let before = job("field:300");
         let mut camera = *before.camera();
         camera.look_from.x += 0.25;

@@ -224,7 +224,7 @@ mod tests {
 
     /// Decoded bounds, marks and links of whole nodes match the compressed nodes or lie within them.
     #[test]
-    fn whole_boxes_lie_within_compressed_ones_and_hold_their_spheres() {
+    fn whole_boxes_nest_between_spheres_and_compressed() {
         let spheres = field(3000).0.spheres;
         let built = WideBvh::build(&spheres, DVec3::ZERO);
         let rows = built.whole_nodes();

@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lens_has_the_radius_of_its_cone_at_the_plane_in_focus() {
+    fn lens_radius_follows_defocus_angle() {
         // Half of 90 degrees has the tangent 1, and half of 120 that of 60 degrees.
         for (angle, distance, radius) in
             [(90.0, 3.0, 3.0), (120.0, 2.0, 2.0 * 3.0_f64.sqrt()), (0.0, 5.0, 0.0)]

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn places_and_directions_are_each_others_inverse() {
+    fn place_inverts_direction() {
         let camera = Camera { look_from: DVec3::new(3.0, 2.0, 1.0), ..Camera::BOOK };
         for at in [[0.0, 0.0], [0.5, 0.5], [1.0, 0.25]] {
             let point = camera.look_from + 7.0 * camera.direction_through(at, 1.5);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_hits_at_the_same_distance_the_first_of_the_scene_is_seen() {
+    fn first_sphere_wins_tie() {
         let mut scene = two();
         scene.spheres.push(scene.spheres[1]);
         for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {

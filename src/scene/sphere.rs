@@ -55,7 +55,7 @@ mod tests {
 
     /// Case 37.
     #[test]
-    fn radii_are_positive_and_of_a_size_that_f32_holds() {
+    fn radii_are_positive_and_fit_f32() {
         for radius in [0.0, -0.0, -1.0, 1e-30, 1e30] {
             let refused = refusal(DVec3::ZERO, radius, 0);
             assert!(

@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_books_pictures_are_400_pixels_wide_and_1200_in_its_last_chapter() {
+    fn book_widths() {
         for stage in Stage::ALL {
             let expected = if stage.chapter() == "14" { 1200 } else { 400 };
             assert_eq!(stage.book_width(), expected, "{}", stage.id);

@@ -156,7 +156,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_sample_is_at_most_as_bright_as_the_sky_or_the_colours_of_the_stage() {
+    fn brightest_sample_is_sky_or_stage_colour() {
         let sky = Sky { bottom: DVec3::new(0.0, 2e-8, 0.0), top: DVec3::new(1e-8, 0.0, 0.0) };
         let scene = Scene { sky, ..Scene::default() };
         assert_eq!(Rules::FINISHED.brightest(&scene), 2e-8);

@@ -86,7 +86,7 @@ fn every_link_leads_somewhere() {
 }
 
 #[test]
-fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
+fn page_is_complete_and_self_contained() {
     let ids = Html::new(&PAGE.html).ids();
     for id in ["content", "contents", "figure-normals", "normals", "glossary", "term-lane", "live-data"] {
         assert!(ids.contains(&id), "{id}");
@@ -104,7 +104,7 @@ fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
 }
 
 #[test]
-fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
+fn bench_flag_replaces_stored_benchmark() {
     let directory = TempDir::new().unwrap();
     let kept = checkout().join("docs/companion/measured/speed.json");
     let own =
@@ -126,7 +126,7 @@ fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_leaves_the_page_and_says_how_to_go_on() {
+fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     let directory = TempDir::new().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     command.arg("companion").arg("--out").arg(directory.path()).args(["--progress", "on"]);

@@ -122,7 +122,7 @@ fn faults(pair: &Pair, shader: &[String], twin: &[String]) -> Vec<String> {
 }
 
 #[test]
-fn twins_have_the_same_functions_in_the_same_order() {
+fn twins_have_same_functions_in_order() {
     for pair in PAIRS {
         let shader = functions(&read(&format!("shaders/{}", pair.shader)));
         let twin: Vec<String> =

@@ -178,7 +178,7 @@ fn hierarchy_and_list_agree() {
 
 /// A hundred scenes of various sizes, at scales from `1e-12` to `1e12`.
 #[test]
-fn hierarchy_and_list_agree_on_a_hundred_scenes() {
+fn hierarchy_matches_list_on_hundred_scenes() {
     let mut random = Random::new(11);
     let (mut hits, mut rays) = (0, 0);
     for seed in 100..200 {
@@ -299,7 +299,7 @@ fn boxes_are_widened_alike_on_every_side() {
 
 /// A renderer reuses its prepared scene for the next job unless the rules change.
 #[test]
-fn a_renderer_of_other_rules_before_renders_the_same() {
+fn renderer_reused_after_other_rules() {
     let balls: Vec<_> = (0..125)
         .map(|i| {
             (

@@ -226,7 +226,7 @@ fn case_22_mirrors_have_no_noise() {
 }
 
 #[test]
-fn a_sine_that_rounding_pushes_above_1_is_grazing() {
+fn sine_rounded_above_1_is_grazing() {
     let l = Reference;
     for sine2 in [0.0, 0.25, 1.0, 1.0 + f64::EPSILON, 1.1] {
         let incidence = incidence_of_sine2(l, l.constant(sine2));

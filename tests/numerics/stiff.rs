@@ -281,7 +281,7 @@ fn no_light_gets_into_a_closed_ball() {
 
 /// Spheres much larger than what is on them are anchored there, in the scene's order, whichever gains most.
 #[test]
-fn large_spheres_are_anchored_at_their_details() {
+fn large_spheres_are_anchored_at_details() {
     let grounds = [
         (DVec3::Y * -(1e4 + 10.0), 1e4, DVec3::new(0.01, 1.0, 0.0).normalize()),
         (DVec3::Y * (1e6 + 10.0), 1e6, DVec3::new(0.0, -1.0, 1e-4).normalize()),

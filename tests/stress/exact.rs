@@ -179,7 +179,7 @@ fn outside(scene: &Scene, eye: DVec3) -> DVec3 {
 }
 
 #[test]
-fn rays_from_the_eye_hit_what_they_hit_in_106_bits() {
+fn first_hits_match_106_bits() {
     let is_checked = |recipe: &Recipe| {
         recipe.camera.defocus_angle_degrees == 0.0 && recipe.scene.spheres.len() <= CHECKED_SPHERES
     };
@@ -203,7 +203,7 @@ fn scene(balls: &[(DVec3, f64)]) -> Scene {
 }
 
 #[test]
-fn hits_are_exact_where_f64_has_no_digits_left() {
+fn exact_hits_beyond_f64() {
     // A gap of 1e-9 in front of a ball at 1e9: f64 cannot resolve its square.
     let far = scene(&[(DVec3::new(1e9, 0.0, 0.0), 1e9 - 1e-3)]);
     let (_, distance) = first_hit(&far, DVec3::ZERO, DVec3::X).unwrap();

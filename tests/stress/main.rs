@@ -51,7 +51,7 @@ fn the_quick_cases_are_right_on_every_level() {
 }
 
 #[test]
-fn the_books_arithmetic_fails_where_its_threshold_is_a_length_of_the_scene() {
+fn book_threshold_breaks_small_scenes() {
     let (mut suite, go_on) = (suite(), AtomicBool::new(false));
     for id in ["scaled/1e-3", "cavity/white-touching-of-1e-3"] {
         let case = cases().iter().find(|case| case.id == id).unwrap();
@@ -65,7 +65,7 @@ fn weekender(arguments: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn the_program_prints_a_table_and_writes_json_and_pictures() {
+fn program_writes_table_json_and_pictures() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out");
     let json = directory.path().join("figures.json");

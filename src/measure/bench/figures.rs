@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_compared_with_the_baseline_of_their_own_scene() {
+    fn ratio_uses_baseline_of_same_scene() {
         let run =
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();

@@ -272,7 +272,7 @@ mod tests {
     use figures::{DeviceFigures, GainRow};
 
     #[test]
-    fn a_run_takes_as_many_samples_as_its_time_allows() {
+    fn samples_fit_time_limit() {
         for (seconds_per_sample, expected) in [(0.0, 100), (0.01, 100), (0.011, 50), (0.04, 26), (9.0, 2)] {
             assert_eq!(affordable(100, 2, seconds_per_sample, 1.04), expected, "{seconds_per_sample}");
         }
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busy_machine_and_runs_that_differ_are_reasons_to_doubt() {
+    fn load_and_spread_warn() {
         let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
         let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
         let rows = vec![

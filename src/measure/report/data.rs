@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_measured_against_another_reference_is_discarded() {
+    fn changed_reference_discards_runs() {
         let run = |scene: &str| Run {
             curve: Curve { scene: scene.to_owned(), ..curve("cpu", "sobol") },
             seed: 0,

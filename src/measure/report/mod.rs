@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn each_point_is_measured_on_the_samples_so_far_until_a_limit() {
+    fn points_accumulate_until_limit() {
         let go_on = AtomicBool::new(false);
         let recipe = small();
         let job = job(&recipe, SamplerKind::Sobol, 3, true).unwrap();
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_goes_on_only_with_the_same_settings() {
+    fn resumes_only_with_same_settings() {
         let at = tempfile::tempdir().unwrap();
         let path = at.path().join("report.json");
         let data = data();

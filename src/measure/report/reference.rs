@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_film_of_the_same_paths_is_a_reference() {
+    fn reference_needs_same_paths() {
         let (_directory, path) = place();
         let recipe = small();
         let made = made(&path, &cpu(None), 2).unwrap();
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_with_the_random_numbers_of_a_measured_picture_is_no_reference() {
+    fn reference_needs_independent_samples() {
         use SamplerKind::{Independent, Sobol};
         let (_directory, path) = place();
         let recipe = small();
@@ -274,7 +274,7 @@ mod tests {
 
     /// The measured error combines those of reference and picture, which are independent.
     #[test]
-    fn errors_are_means_without_the_error_of_the_reference() {
+    fn errors_exclude_reference_error() {
         let mut film = Film::new(16, 9, 2);
         for (half, radiance) in film.halves_mut().iter_mut().zip([0.25, 0.75]) {
             half.iter_mut().for_each(|sum| sum.add(fixed_point([radiance; 3]).unwrap()));
@@ -293,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shown_decides_how_different_pictures_look() {
+    fn flip_uses_display_values() {
         let pixels = [[0.25; 3], [4.0; 3], [-1.0; 3], [0.25; 3]];
         let equals = |transfer: Transfer, shown: [f64; 4]| {
             let shown = shown.map(|x| [x; 3]);
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backend_that_fails_is_an_error_and_the_film_is_kept() {
+    fn failed_backend_keeps_film() {
         let (_directory, path) = place();
         made(&path, &cpu(None), 2).unwrap();
         let error = made(&path, &cpu(Some(0)), 8).err().unwrap();
@@ -324,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_of_the_same_backend_is_continued_and_any_other_is_replaced() {
+    fn only_same_backend_continues_film() {
         let (_directory, path) = place();
         let exact = BackendChoice::Reference { threads: Some(1) };
         let job = recipe_of(&small()).job().unwrap();

@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_has_its_slope_its_times_and_its_spread() {
+    fn curve_slope_times_and_spread() {
         let found = one(runs("cpu", "sobol", 0.04, 0.01), &[0.01, 0.001]);
         let last = found.points.last().unwrap();
         assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12, "{last:?}");
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_is_better_than_the_reference_has_no_error_to_go_by() {
+    fn picture_better_than_reference_has_no_error() {
         let mut better = runs("cpu", "sobol", 0.04, 0.01);
         better.iter_mut().for_each(|run| run.points[8].mse = -1e-6);
         let found = one(better, &[0.01]);
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_ends_where_most_of_its_pictures_end() {
+    fn curve_ends_with_most_pictures() {
         let mut some = runs("cpu", "sobol", 1.0, 1.0);
         some[0].points.truncate(5);
         some[1].points.truncate(3);

@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn backends_are_compared_with_the_best_sampler_of_the_baseline() {
+    fn ratio_uses_best_baseline_sampler() {
         let curves = [
             curve("c89", "independent", 40.0),
             curve("c89", "sobol", 20.0),

@@ -238,7 +238,7 @@ mod tests {
     const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
 
     #[test]
-    fn scenes_without_a_hierarchy_are_also_rendered_with_one() {
+    fn small_scenes_also_get_hierarchy() {
         for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
             let mut recipe = one_ball();
             let scene = Arc::make_mut(&mut recipe.scene);
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn far_spheres_surround_the_eye_and_cover_nothing() {
+    fn far_spheres_are_invisible() {
         let recipe = Recipe::builtin("two-spheres").unwrap();
         let with = with_far_spheres(&recipe, 2.0);
         let added = &with.scene.spheres[recipe.scene.spheres.len()..];

@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_right_if_every_case_is_right_on_every_backend() {
+    fn run_is_right_if_all_cases_are() {
         let right = || case(vec![measured(Some(0.0), 1.0, None)]);
         let mut wrong = right();
         wrong.measured[0].verdict = Verdict::Wrong("off".to_owned());

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_is_measured_on_every_backend_in_every_form() {
+    fn case_covers_all_backends_and_forms() {
         let (mut suite, go_on) = (real(), AtomicBool::new(false));
         let report = suite.run(find("shells/1"), &go_on);
         let who: Vec<_> = report.measured.iter().map(|m| (m.backend.as_str(), m.form)).collect();
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backend_that_does_not_start_or_refuses_has_no_picture_and_is_not_right() {
+    fn missing_picture_is_not_right() {
         let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
         let go_on = AtomicBool::new(false);
         let mut suite = real();
@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn each_backend_is_compared_with_its_own_picture_and_the_books_with_ours() {
+    fn same_samples_compare_per_backend() {
         let cpu = painter("cpu", |job| if job.rules().surface == SurfaceRule::Book { 0.875 } else { 0.75 });
         let exact = painter("f64", |job| if job.rules().surface == SurfaceRule::Book { 0.625 } else { 0.5 });
         assert_eq!(
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_is_compared_with_the_plain_picture_of_the_reference_and_warnings_excuse() {
+    fn forms_compare_with_plain_reference() {
         let cpu = painter("cpu", |_| 0.25);
         let exact = painter("f64", |job| if is_far(job) { 0.25 } else { 0.5 });
         assert_eq!(
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn a_renderer_that_panics_is_replaced_and_cancelling_is_noticed() {
+    fn panicking_renderer_is_replaced() {
         let go_on = AtomicBool::new(false);
         let small = sized(one_ball(), [2, 2], 4);
         let mut broken = painter("cpu", |_| panic!("on purpose"));

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_is_a_little_longer_than_its_values_unless_it_has_limits() {
+    fn axis_adds_margin_without_limits() {
         for (scale, limits, values, expected) in [
             (Scale::Linear, None, &[100.0, 0.0, f64::NAN, 50.0][..], [-4.0, 104.0]),
             (Scale::Log, None, &[1e3, 10.0, -5.0], [1.0 - 0.08, 3.0 + 0.08]),

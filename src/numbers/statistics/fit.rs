@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slopes_deviation_is_that_of_a_regression() {
+    fn slope_deviation_matches_regression() {
         // The logarithms are 0, 1, 2 for the time and 0, 1, 0 for the error. The squares around their mean of 1/3 sum
         // to 2/3, with one degree of freedom; those of the times sum to 2.
         let points = [(0.0_f64, 0.0_f64), (1.0, 1.0), (2.0, 0.0)];
@@ -164,7 +164,7 @@ mod tests {
     /// The measured slope is weighted by its uncertainty (at least that of a scatter of .02) against a slope of -.5 +-
     /// .08.
     #[test]
-    fn a_steep_or_flat_history_is_believed_only_as_far_as_pictures_are_known_to_fall() {
+    fn predicted_slope_is_bounded() {
         // The logarithms of four times, each twice the last, have squares around their mean of 5 ln(2)^2.
         let measured = 5.0 * 2.0_f64.ln().powi(2) / 0.02_f64.powi(2);
         let prior = 1.0 / 0.08_f64.powi(2);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_reached_or_cannot_be_reached_has_no_prediction() {
+    fn reached_or_unreachable_target_has_no_prediction() {
         let points = curve(-0.5, 6);
         let now = points[5];
         for (now, target) in [
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prediction_reaches_two_deviations_to_either_side() {
+    fn prediction_spans_two_deviations() {
         let now = Point { time: 3.0, error: 0.01 };
         let found = predict(&[], now, 0.005).unwrap();
         // Half the error takes 4 times the time. The logarithm of the time is uncertain by .02 / .5 from the

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dot_is_spread_as_the_papers_gaussians_have_it() {
+    fn dot_spreads_by_paper_gaussians() {
         // `sum a sqrt(pi / b) exp(-pi^2 x^2 / b)` with the constants of the paper's table 1, at distances `x` of 0,
         // 2, 4 and 9 pixels at 67 pixels per degree, relative to the value at 0; and that value relative to the sum
         // of all weights.
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_survive_the_way_to_opponents_and_back() {
+    fn opponent_colours_round_trip() {
         let rgb = [0.2, 0.7, 0.4];
         let back = linear_from_xyz(xyz_from_opponent(opponent_from_xyz(xyz_from_linear(rgb))));
         assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-12), "{back:?}");

@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_may_begin_with_the_number_of_a_section() {
+    fn section_number_splits_from_heading() {
         assert_eq!(split_heading("6.1 Shading with Normals"), Some(("6.1", "Shading with Normals")));
         for heading in ["1. Paths", "6 Normals", "What a lane is", "6.x Normals", "6.1"] {
             assert_eq!(split_heading(heading), None, "{heading}");

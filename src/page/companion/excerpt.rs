@@ -168,7 +168,7 @@ mod tests {
     ];
 
     #[test]
-    fn items_are_found_behind_qualifiers_and_end_with_their_brace_or_semicolon() {
+    fn items_are_found_whole() {
         let found = |item: &str, docs| {
             find_item(SOURCE, item, docs).map(|range| (range.start() + 1, range.end() + 1))
         };

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_have_their_lines_and_files_that_cannot_be_read_are_named() {
+    fn entries_have_lines_and_errors_name_files() {
         let directory = tempfile::tempdir().unwrap();
         let library = Library::Checkout(directory.path().to_owned());
         std::fs::write(directory.path().join("a.toml"), "# A\n[z]\nx = 1\n\n[b]\nx = 2\n").unwrap();

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_section_has_the_excerpts_since_the_one_before() {
+    fn section_has_new_excerpts() {
         let first_lines = |after: Option<&str>, section: &str| -> Vec<String> {
             let first = |excerpt: Excerpt| excerpt.text.lines().next().unwrap_or_default().to_owned();
             excerpts_between(after, section).into_iter().map(first).collect()

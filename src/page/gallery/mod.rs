@@ -110,7 +110,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn figures_cover_every_stage_in_the_books_order() {
+    fn figures_cover_every_stage_in_order() {
         let shown: HashSet<&str> =
             Figure::ALL.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage_id).collect();
         assert_eq!(shown, Stage::ALL.iter().map(|stage| stage.id).collect());

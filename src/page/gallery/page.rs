@@ -117,7 +117,7 @@ mod tests {
     use crate::page::gallery::Still;
 
     #[test]
-    fn a_page_has_every_figure_and_says_which_pictures_are_missing() {
+    fn page_has_figures_and_placeholders() {
         let mut stills = Stills::default();
         for (id, backend) in [("metal", "gpu x"), ("metal-fuzzy", "cpu y"), ("book", "gpu x")] {
             stills.set(Still { backend: backend.to_owned(), ..Still::of(id) });

@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn every_change_of_a_recipe_changes_the_fingerprint() {
+    fn fingerprint_covers_whole_recipe() {
         let recipe = Quality::Quick.recipe(Stage::find("metal-fuzzy").unwrap());
         let change = |change: &dyn Fn(&mut Recipe)| {
             let mut recipe = recipe.clone();
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn the_index_is_read_as_it_was_written_without_foreign_entries() {
+    fn index_round_trips_without_unknown_stages() {
         let directory = tempfile::tempdir().unwrap();
         let mut stills = Stills::read(directory.path());
         assert_eq!(stills.all(), []);

@@ -138,7 +138,7 @@ mod tests {
 
     /// The spheres are the ground, the middle one, the glass, the bubble in it, and the metal.
     #[test]
-    fn a_slider_moves_the_spheres_of_its_material_and_the_bubble_in_the_glass() {
+    fn sliders_cover_material_and_bubble() {
         let hollow = sliders_of(three_spheres(LeftSphere::HollowGlass), 64);
         assert_eq!(with_key(&hollow, "index"), [("Index of refraction", 1.5, &[2][..], &[1][..])]);
         assert_eq!(with_key(&hollow, "fuzz"), [("Fuzz (right)", 1.0, &[0][..], &[][..])]);
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_metals_the_largest_has_a_slider_for_all_its_spheres() {
+    fn largest_of_many_metals_has_slider() {
         let mut scene = Scene::default();
         for (name, fuzz, radii) in
             [("small", 0.1, &[0.1, 0.2][..]), ("large", 2.5, &[0.3, 0.7]), ("middle", 0.4, &[0.6])]
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn every_slider_can_show_the_value_of_its_stage() {
+    fn slider_ranges_contain_stage_values() {
         for stage in Stage::ALL {
             let (recipe, id) = (stage.recipe(), stage.id);
             let job = recipe.job().unwrap();

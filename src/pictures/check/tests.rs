@@ -42,7 +42,7 @@ fn compared(
 }
 
 #[test]
-fn every_mistake_has_its_own_id_and_shows_in_some_stage() {
+fn mistakes_have_unique_ids_and_apply_somewhere() {
     let mut ids: Vec<&str> = MISTAKES.iter().map(|mistake| mistake.id).collect();
     ids.sort_unstable();
     ids.dedup();
@@ -62,7 +62,7 @@ fn every_mistake_has_its_own_id_and_shows_in_some_stage() {
 }
 
 #[test]
-fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() {
+fn bubble_is_air_inside_glass() {
     let (glass, air) = (1.5, 1.0 / 1.5);
     let found = |spheres: &[(f64, f64, f64)]| {
         let mut recipe = recipe("metal");
@@ -83,7 +83,7 @@ fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() 
 }
 
 #[test]
-fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
+fn plain_tracer_matches_fast_tracer() {
     // Acne depends on the precision, and the gradient traces no rays.
     let is_traced = |stage: &&Stage| {
         let rules = stage.setup.rules;
@@ -142,7 +142,7 @@ fn a_picture_is_laid_out_as_it_was_written() {
 }
 
 #[test]
-fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
+fn misfit_is_displayed_error_beyond_noise() {
     let misfit = |bytes: &dyn Fn(u32, u32) -> [u8; 3], linear: &dyn Fn(u32, u32) -> [f64; 3]| {
         compared([16, 8], Transfer::Linear, bytes, linear).1.misfit
     };
@@ -171,7 +171,7 @@ fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
 }
 
 #[test]
-fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
+fn pixel_mistakes_show_only_at_edges() {
     let found = |id: &str, size: [u32; 2], planted: &'static Mistake| {
         let mut studio = Studio::new(recipe(id), size).unwrap();
         let right = Hypothesis::right(studio.recipe());
@@ -192,7 +192,7 @@ fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
 }
 
 #[test]
-fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
+fn truncated_picture_is_mostly_ends() {
     // Of 300 values: how many are 0 or 255, how many should be, and how many are white though they should be dark.
     let is_found = |ends: u32, expected_ends: u32, too_bright: u32| {
         let byte = |index: u32| match index {
@@ -211,7 +211,7 @@ fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
 }
 
 #[test]
-fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_255() {
+fn scaling_by_255_needs_clear_loss() {
     let right = Hypothesis::right(&recipe("lambertian-gamma"));
     let found = |pixels: u32, loss: f64, noise: f64, [from, to]: [f64; 2]| {
         let value = |index: u32| from + (to - from) * f64::from(index * 7919 % 12_289) / 12_289.0;
@@ -240,7 +240,7 @@ fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_25
 }
 
 #[test]
-fn a_mistake_of_our_own_is_found_with_its_picture_and_told() {
+fn planted_mistake_is_found_and_reported() {
     let stage = Stage::find("metal-fuzzy").unwrap();
     let size = [48, 27];
     for planted in ["flipped-rows", "sky-reversed"].map(mistake) {
@@ -264,7 +264,7 @@ fn a_mistake_of_our_own_is_found_with_its_picture_and_told() {
 }
 
 #[test]
-fn what_is_said_depends_on_damages_shape_and_how_much_is_explained() {
+fn report_covers_damage_shape_and_mistake() {
     let stage = Stage::find("metal").unwrap();
     let right = |is_noise| Compared {
         hypothesis: Hypothesis::right(&stage.recipe()),
@@ -298,7 +298,7 @@ fn what_is_said_depends_on_damages_shape_and_how_much_is_explained() {
 }
 
 #[test]
-fn the_difference_is_the_root_mean_square_of_the_channels() {
+fn rough_difference_is_rms_of_channels() {
     let bytes = [[64, 64, 64], [64, 79, 64], [128, 128, 128], [0, 255, 128]];
     let of = |x: u32, y: u32| bytes[(2 * y + x) as usize];
     let (mine, right) = compared([2, 2], Transfer::LinearAboveGamma2, of, |_, _| [0.25; 3]);

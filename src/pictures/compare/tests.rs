@@ -56,7 +56,7 @@ fn both_ways(a: &Picture, b: &Picture) -> [Comparison; 2] {
 }
 
 #[test]
-fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
+fn noise_hides_offset_unless_samples_are_shared() {
     let noise = compare(&noisy(1, 0.0), &noisy(2, 0.0));
     assert!(noise.is_equal(), "{:?}", noise.reasons);
     assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
@@ -73,7 +73,7 @@ fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
 }
 
 #[test]
-fn the_noise_of_a_difference_is_that_of_both_films() {
+fn difference_noise_combines_both_films() {
     let film = |seed: u32, samples: u64, middle: f64| {
         let mut film = Film::new(80, 48, 2);
         for (sample, pixel) in (0..samples).flat_map(|sample| (0..PIXELS).map(move |pixel| (sample, pixel))) {
@@ -118,7 +118,7 @@ fn a_mean_that_rounding_moves_is_equal() {
 }
 
 #[test]
-fn blocks_that_are_nearer_than_noise_allows_are_noted() {
+fn too_similar_blocks_are_noted() {
     let halves = |seed| move |half: u32, pixel: u32| random(pixel, half, seed);
     let [one, other] = [1, 2].map(|seed| film_of(halves(seed)));
     let swapped = film_of(|half, pixel| random(pixel, 1 - half, 1));
@@ -129,7 +129,7 @@ fn blocks_that_are_nearer_than_noise_allows_are_noted() {
 }
 
 #[test]
-fn nan_or_infinity_in_only_one_picture_is_a_difference() {
+fn non_finite_in_one_picture_differs() {
     let with = |value: f64| {
         let mut picture = floats(|pixel| 0.5 + 0.2 * random(pixel, 0, 1));
         picture.pixels[200..260].iter_mut().for_each(|pixel| pixel[1] = value);
@@ -158,7 +158,7 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
 }
 
 #[test]
-fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
+fn clipped_integer_matches_anything_larger() {
     let whole = |value: f64| bytes(move |pixel| if pixel == 7 { value } else { 0.3 });
     let float = |value: f64| floats(move |pixel| if pixel == 7 { value } else { 0.3 });
     for beyond in [1.0, 50.0, f64::INFINITY] {
@@ -182,7 +182,7 @@ fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
 }
 
 #[test]
-fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
+fn clipped_block_differs_only_from_dark() {
     let scene = |seed: u32| move |pixel: u32| 0.2 + 0.4 * random(pixel, 0, seed);
     let is_clipped =
         |found: &Comparison| found.reasons.iter().any(|reason| reason.contains("darker in the other"));
@@ -227,7 +227,7 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
 }
 
 #[test]
-fn pictures_are_the_same_to_the_bit_only_in_one_format() {
+fn bit_equality_needs_same_format() {
     let picture = |steps: Option<f64>, limit: f64| {
         let value = |pixel| if pixel == 7 { f64::NAN } else { 0.5 + 0.2 * random(pixel, 0, 1) };
         Picture { steps: steps.map(|step| vec![[step; 3]; PIXELS]), limit, ..floats(value) }
@@ -240,7 +240,7 @@ fn pictures_are_the_same_to_the_bit_only_in_one_format() {
 }
 
 #[test]
-fn a_difference_is_measured_by_the_steps_of_both_pictures() {
+fn difference_is_relative_to_both_steps() {
     let picture = |step: f64, value: f64| {
         let steps = (step > 0.0).then(|| vec![[step; 3]; PIXELS]);
         Picture { steps, limit: 0.99, ..floats(move |_| value) }
@@ -259,7 +259,7 @@ fn a_difference_is_measured_by_the_steps_of_both_pictures() {
 }
 
 #[test]
-fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else() {
+fn fewer_levels_are_no_difference() {
     let directory = tempfile::tempdir().unwrap();
     let read = |most: u32, is_rounded: bool, brighter: f64| {
         let mut file = format!("P6 64 64 {most} ").into_bytes();
@@ -292,7 +292,7 @@ fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
 }
 
 #[test]
-fn in_pictures_that_are_equal_elsewhere_a_hole_differs_and_a_few_pixels_allow_no_verdict() {
+fn few_pixels_allow_no_verdict() {
     let hole = changed(|x, y| (33..37).contains(&x) && (17..20).contains(&y), -0.25);
     assert!(hole.reasons.iter().any(|reason| reason.starts_with("a block is")), "{hole:?}");
     let worst = hole.test.worst(1)[0];
@@ -313,7 +313,7 @@ fn in_pictures_that_are_equal_elsewhere_a_hole_differs_and_a_few_pixels_allow_no
 }
 
 #[test]
-fn only_channels_of_blocks_that_differ_count_as_tries() {
+fn only_differing_channels_count_as_tries() {
     /// Column, row and channel.
     type Place = (usize, usize, usize);
     let one = floats(|pixel| 0.3 + 0.2 * random(pixel, 0, 1));
@@ -331,7 +331,7 @@ fn only_channels_of_blocks_that_differ_count_as_tries() {
 }
 
 #[test]
-fn a_heat_map_shows_differences_and_frames_the_worst_blocks() {
+fn heat_map_frames_worst_blocks() {
     let nan = f64::NAN;
     // In turn, in the middle of a block: a difference, a value an eighth below the format's limit, one above it, NaN in
     // one picture, NaN in both.
@@ -394,7 +394,7 @@ fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
 }
 
 #[test]
-fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_recipe_says() {
+fn counterpart_sample_count_precedence() {
     let recipe = small();
     let mut seeded = recipe.clone();
     seeded.settings.seed = 7;

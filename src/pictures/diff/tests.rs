@@ -89,7 +89,7 @@ fn the_first_difference_is_found_and_told() {
 }
 
 #[test]
-fn what_comes_after_the_paths_have_parted_does_not_count() {
+fn nothing_counts_after_paths_part() {
     let job = job();
     let mut changed = path();
     changed.rays[0].direction[0] = 1e-3;
@@ -111,7 +111,7 @@ fn what_comes_after_the_paths_have_parted_does_not_count() {
 }
 
 #[test]
-fn positions_are_as_exact_as_the_largest_that_the_path_has_passed() {
+fn positions_allow_for_largest_coordinate() {
     let job = job();
     let path = |z: f64| {
         let rays =
@@ -125,7 +125,7 @@ fn positions_are_as_exact_as_the_largest_that_the_path_has_passed() {
 }
 
 #[test]
-fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
+fn departure_follows_material_and_next_ray() {
     let of = |job: &RenderJob, test: fn(&Material) -> bool| {
         let scene = job.scene();
         scene.spheres.iter().position(|sphere| test(scene.material_of(sphere))).unwrap()
@@ -164,7 +164,7 @@ fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
 }
 
 #[test]
-fn a_ray_that_just_misses_what_the_other_hits_is_told() {
+fn near_miss_is_reported() {
     let job = job();
     let sphere = job.scene().spheres[1];
     let path = |beside: f64, hit| {
@@ -206,7 +206,7 @@ fn rays_that_only_one_path_has_are_shown() {
 }
 
 #[test]
-fn the_sample_that_differs_most_is_found_in_its_pixel() {
+fn search_finds_worst_sample() {
     let mut recipe = Recipe::find("three-spheres").unwrap();
     (recipe.settings.width, recipe.settings.height) = (12, 7);
     let job = recipe.job().unwrap();

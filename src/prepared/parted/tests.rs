@@ -35,7 +35,7 @@ fn row(count: u32) -> impl Iterator<Item = Sphere> {
 }
 
 #[test]
-fn a_thousand_spheres_in_runs_of_nested_ones_are_a_crowd() {
+fn nested_runs_are_crowded() {
     // The first 31 pairs of a run do not count.
     let spheres = |shell: u32, apart: u32| shells(shell).chain(row(apart)).collect::<Vec<_>>();
     assert!(nested(&spheres(1056, 1000)) && !nested(&spheres(1055, 1001)));
@@ -126,7 +126,7 @@ fn sides(spheres: &[Sphere]) -> Option<[Vec<u32>; 2]> {
 }
 
 #[test]
-fn a_split_pays_most_where_area_times_spheres_is_least() {
+fn split_minimises_area_times_spheres() {
     // One ball in each of the sixteen bins.
     let even: Vec<Sphere> = (0..16).map(|place| ball(f64::from(place), 0.25)).collect();
     let all: Vec<u32> = (0..16).collect();
@@ -164,7 +164,7 @@ fn a_half_is_taken_along_the_widest_key() {
 }
 
 #[test]
-fn a_tree_holds_every_sphere_once_in_leaves_that_are_not_too_full() {
+fn tree_holds_every_sphere_once() {
     let spheres: Vec<Sphere> = row(100).chain(shells(30)).collect();
     let bounded = Bounded::all(&spheres, &DVec3::ZERO);
     let trees = [(1, false), (1, true), (4, false), (4, true), (130, false)];

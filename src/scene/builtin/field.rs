@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn spheres_of_a_field_touch_the_ground_and_not_each_other() {
+    fn field_spheres_touch_only_ground() {
         let (scene, _) = field(900);
         let (ground, small) = scene.spheres.split_first().expect("a ground");
         for (index, sphere) in small.iter().enumerate() {
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_with_a_changed_part_is_no_longer_the_field() {
+    fn changed_field_is_not_field() {
         let (scene, _) = field(17);
         assert!(is_field(&scene, 17) && !is_field(&scene, 16));
         let mut other = scene.clone();

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scene_is_valid_and_the_same_each_time() {
+    fn scenes_are_valid_and_deterministic() {
         for builtin in BuiltinScene::ALL {
             let (scene, camera) = (builtin.build)();
             scene.validate().expect(builtin.name);

@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn draws_are_uniform_and_belong_to_their_index() {
+    fn draws_are_uniform_and_indexed() {
         let first = |index| Draws::new(1, index).unit();
         let numbers: Vec<f64> = (0..10_000).map(first).collect();
         let mean = numbers.iter().sum::<f64>() / 1e4;

@@ -93,7 +93,7 @@ mod tests {
 
     /// Otherwise their times would not be comparable.
     #[test]
-    fn a_tame_twin_has_as_many_paths_of_the_same_length() {
+    fn tame_twins_are_comparable() {
         let twins: Vec<_> = cases().iter().filter_map(|case| Some((case, case.tame.as_ref()?))).collect();
         assert!(twins.len() > 40, "{}", twins.len());
         for (case, tame) in twins {

@@ -41,7 +41,7 @@ fn noise_passes_as_often_as_it_should() {
 }
 
 #[test]
-fn a_shift_of_one_block_and_a_faint_shift_of_all_are_found() {
+fn strong_local_and_faint_global_shifts_are_found() {
     let (values, variances) = noise(96, 64, 1);
     let noises = [Noise::Variances(&variances), Noise::Spread];
     let mut one = values.clone();
@@ -59,7 +59,7 @@ fn a_shift_of_one_block_and_a_faint_shift_of_all_are_found() {
 }
 
 #[test]
-fn steps_and_tolerance_excuse_what_they_explain() {
+fn steps_and_tolerance_excuse_differences() {
     let shifted = vec![[0.004; 3]; 64 * 64];
     let none = vec![[0.0; 3]; 64 * 64];
     let with = |steps, tolerance| {
@@ -93,7 +93,7 @@ fn what_is_known_counts_as_endless_freedom() {
 }
 
 #[test]
-fn a_rare_path_that_both_halves_hold_is_no_difference() {
+fn rare_path_in_both_halves_is_no_difference() {
     let none = vec![[0.0; 3]; 64];
     let mut values = none.clone();
     values[9] = [-1.0 / 32.0; 3];
@@ -106,7 +106,7 @@ fn a_rare_path_that_both_halves_hold_is_no_difference() {
 }
 
 #[test]
-fn one_channel_is_enough_for_pictures_that_are_too_near_or_too_far() {
+fn one_channel_decides() {
     let (values, variances) = noise(96, 64, 3);
     for channel in 0..3 {
         let scaled = |of: &[[f64; 3]], by: f64| -> Vec<[f64; 3]> {
@@ -127,7 +127,7 @@ fn one_channel_is_enough_for_pictures_that_are_too_near_or_too_far() {
 }
 
 #[test]
-fn without_noise_any_difference_is_infinitely_far_off_in_its_direction() {
+fn noiseless_difference_is_infinite() {
     let none = vec![[0.0; 3]; 64];
     let found = test(8, &[[-0.5, 0.0, 0.5]; 64], Noise::Variances(&none));
     assert_eq!(found.blocks[0].z, [f64::NEG_INFINITY, 0.0, f64::INFINITY]);
@@ -146,7 +146,7 @@ fn without_noise_any_difference_is_infinitely_far_off_in_its_direction() {
 }
 
 #[test]
-fn a_channel_that_is_not_known_counts_neither_as_block_nor_as_try() {
+fn unknown_channel_is_not_counted() {
     // Two of four blocks have an unknown value in the second channel.
     let (mut values, variances) = noise(32, 8, 4);
     values[3][1] = f64::NAN;
