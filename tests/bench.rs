@@ -145,11 +145,12 @@ fn specialised_and_general_kernels_agree() {
         }
     }
     let level = report["machine"]["levels"].as_array().unwrap().last().unwrap();
-    let words = |row: &Value| (row["kernel"].as_str().unwrap().to_owned(), row["left_out"].to_string());
-    let (kernel, left_out) = words(&rows[0]);
+    let kernel_parts =
+        |row: &Value| (row["kernel"].as_str().unwrap().to_owned(), row["left_out"].to_string());
+    let (kernel, left_out) = kernel_parts(&rows[0]);
     assert_eq!(kernel, "glass", "{level}");
     assert!(left_out.contains("lens"), "{left_out}");
-    let (kernel, left_out) = words(&rows[1]);
+    let (kernel, left_out) = kernel_parts(&rows[1]);
     assert!(kernel.contains("lens") && !left_out.contains("lens"), "{kernel}; {left_out}");
 }
 

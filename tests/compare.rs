@@ -163,8 +163,8 @@ fn non_finite_in_one_picture_differs() {
     for (first, second) in [("number.pfm", "nan.pfm"), ("nan.pfm", "minus.pfm"), ("minus.pfm", "number.pfm")]
     {
         let (code, text, _) = compare(&[first, second, "--heat-map", "map.png"], at);
-        let told = "3 channels of 1 pixels are NaN or infinite in only one picture, the first at 30,10:";
-        assert!(code == 1 && text.contains(told), "{text}");
+        let note = "3 channels of 1 pixels are NaN or infinite in only one picture, the first at 30,10:";
+        assert!(code == 1 && text.contains(note), "{text}");
         let (_, found) = json(&[first, second], at);
         assert_eq!(found["non_finite"]["first"], serde_json::json!([30, 10]), "{found}");
         let map = image::open(at.join("map.png")).unwrap().to_rgb8();

@@ -117,9 +117,9 @@ fn ctrl_c_keeps_finished_pictures() {
     let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(signalled.success());
     let output = child.wait_with_output().unwrap();
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("1 picture missing") && told.contains("the same command again"), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("1 picture missing") && message.contains("the same command again"), "{message}");
     let stages: Vec<Value> = pictures(at).iter().map(|still| still["stage"].clone()).collect();
     assert_eq!(stages, ["sky"]);
     let page = std::fs::read_to_string(at.join("g/index.html")).unwrap();
@@ -139,10 +139,10 @@ fn full_disk_keeps_finished_stills() {
         env!("CARGO_BIN_EXE_weekender")
     );
     let output = Command::new("sh").current_dir(at).args(["-c", &limited]).output().unwrap();
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
     for part in ["sky.png", "1 picture", "ulimit -f"] {
-        assert!(told.contains(part), "{told} should say {part}");
+        assert!(message.contains(part), "{message} should say {part}");
     }
     let names: HashSet<String> = std::fs::read_dir(at.join("g"))
         .unwrap()
@@ -169,10 +169,10 @@ fn bad_input_is_refused_with_a_remedy() {
             .args(arguments)
             .output()
             .unwrap();
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         for part in parts {
-            assert!(told.contains(part), "{arguments:?} should say {part:?}: {told}");
+            assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
         }
     }
     assert_eq!(std::fs::read(at.join("file")).unwrap(), b"");
@@ -189,13 +189,13 @@ fn a_page_of_another_origin_is_not_replaced() {
     let at = TempDir::new().unwrap();
     let page = at.path().join("index.html");
     std::fs::write(&page, "<title>Me</title>").unwrap();
-    for words in ["gallery --quick", "companion --quick", "stress --filter tiny"] {
+    for invocation in ["gallery --quick", "companion --quick", "stress --filter tiny"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-        command.current_dir(at.path()).args(words.split(' ')).args(["--out", "."]);
+        command.current_dir(at.path()).args(invocation.split(' ')).args(["--out", "."]);
         let output = command.output().unwrap();
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains("there is a page that Weekender did not write; move it away"), "{told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("there is a page that Weekender did not write; move it away"), "{message}");
         assert_eq!(std::fs::read_to_string(&page).unwrap(), "<title>Me</title>");
     }
 }

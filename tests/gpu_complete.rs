@@ -105,8 +105,8 @@ fn abandoned_paths_are_not_resumed() {
         time *= 2;
     }
     assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    let told = used.take_messages();
-    assert!(!told.iter().any(|message| message.contains("traced again")), "{told:?}");
+    let messages = used.take_messages();
+    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
 }
 
 /// A film keeps the samples it has; those still on the device are traced again and do not count twice.

@@ -73,19 +73,19 @@ fn every_shader_is_valid_to_tint() {
         return;
     }
     // An invalid shader fails, so tint really checks the others.
-    assert!(!told_by_tint("fn broken( {", &[]).status.success());
+    assert!(!run_tint("fn broken( {", &[]).status.success());
     for entry_point in EntryPoint::ALL {
         for values in variants() {
             let values: Vec<String> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
-            let output = told_by_tint(&source(entry_point), &values);
-            let told = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{}: {told}", entry_point.name());
+            let output = run_tint(&source(entry_point), &values);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {message}", entry_point.name());
         }
     }
 }
 
 /// tint's output for a shader with overrides.
-fn told_by_tint(text: &str, overrides: &[String]) -> std::process::Output {
+fn run_tint(text: &str, overrides: &[String]) -> std::process::Output {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("shader.wgsl");
     std::fs::write(&file, text).unwrap();

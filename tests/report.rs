@@ -247,9 +247,9 @@ mod interrupted {
             let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
             // The first line appears when the reference starts.
             let mut stderr = BufReader::new(child.stderr.take().unwrap());
-            let mut words = String::new();
-            stderr.read_line(&mut words).unwrap();
-            assert!(words.contains("reference of three-spheres"), "{words}");
+            let mut line = String::new();
+            stderr.read_line(&mut line).unwrap();
+            assert!(line.contains("reference of three-spheres"), "{line}");
             Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
             let mut rest = String::new();
             stderr.read_to_string(&mut rest).unwrap();

@@ -23,7 +23,7 @@ pub mod parts {
     /// Every kernel has the code, or the CPU tracer checks the job at run time.
     pub const NONE: u32 = 0;
 
-    const WORDS: [(u32, &str); 5] = [
+    const LABELS: [(u32, &str); 5] = [
         (GLASS, "glass"),
         (LENS, "lens"),
         (EXTREMES, "extremes"),
@@ -35,17 +35,17 @@ pub mod parts {
 
     /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
-        let present = words_of(parts);
+        let present = labels_of(parts);
         if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
     }
 
     /// Names the parts that a kernel with these parts leaves out.
     pub fn left_out(parts: u32) -> Vec<&'static str> {
-        words_of(!parts)
+        labels_of(!parts)
     }
 
-    fn words_of(parts: u32) -> Vec<&'static str> {
-        WORDS.iter().filter(|(part, _)| parts & part != 0).map(|(_, word)| *word).collect()
+    fn labels_of(parts: u32) -> Vec<&'static str> {
+        LABELS.iter().filter(|(part, _)| parts & part != 0).map(|(_, label)| *label).collect()
     }
 }
 
@@ -133,7 +133,7 @@ macro_rules! features {
                 off $off:expr
                 $(, general $general:expr)?
                 $(, cpu $part:ident)?
-                $(, says $($words:literal)+)?
+                $(, says $($labels:literal)+)?
             ] = $answer:expr;
         )*
     ) => {
@@ -179,29 +179,29 @@ macro_rules! features {
                 )),*].concat()
             }
 
-            /// For each feature that is off: the part of the CPU's kernels that implements it, and the words for its
+            /// For each feature that is off: the part of the CPU's kernels that implements it, and the label of its
             /// value 1.
-            fn words_off(&self) -> Vec<(u32, &'static str)> {
+            fn labels_off(&self) -> Vec<(u32, &'static str)> {
                 let switches = [$((
                     last!(parts::NONE $(, parts::$part)?),
                     self.$name == $off,
-                    word(true, &[$($($words),+)?]),
+                    label(true, &[$($($labels),+)?]),
                 )),*];
                 let off = switches.into_iter().filter(|(_, is_off, _)| *is_off);
-                off.map(|(part, _, words)| (part, words)).collect()
+                off.map(|(part, _, label)| (part, label)).collect()
             }
 
-            /// For each feature, its name and the words for its value.
-            fn words(&self) -> Vec<(&'static str, &'static str)> {
-                vec![$((stringify!($name), word(self.$name, &[$($($words),+)?]))),*]
+            /// For each feature, its name and the label of its value.
+            fn labels(&self) -> Vec<(&'static str, &'static str)> {
+                vec![$((stringify!($name), label(self.$name, &[$($($labels),+)?]))),*]
             }
         }
     };
 }
 
-fn word(value: impl Override, words: &[&'static str]) -> &'static str {
+fn label(value: impl Override, labels: &[&'static str]) -> &'static str {
     let index = (value.number() as usize).checked_sub(1);
-    index.and_then(|index| words.get(index)).copied().unwrap_or("")
+    index.and_then(|index| labels.get(index)).copied().unwrap_or("")
 }
 
 features! {
@@ -273,20 +273,20 @@ features! {
 impl Features {
     /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
-        let is_told =
-            |(name, words): &(&str, &str)| !(words.is_empty() || self.cwbvh && *name == "hierarchy");
-        let words = self.words().into_iter().filter(is_told).map(|(_, words)| words.to_owned());
+        let is_listed =
+            |(name, label): &(&str, &str)| !(label.is_empty() || self.cwbvh && *name == "hierarchy");
+        let labels = self.labels().into_iter().filter(is_listed).map(|(_, label)| label.to_owned());
         let count = self.opaque_count + self.two_root_count;
         let few = self.few_spheres.then(|| format!("{count} spheres in constants"));
-        words.chain(few).collect::<Vec<_>>().join(", ")
+        labels.chain(few).collect::<Vec<_>>().join(", ")
     }
 
     /// Names what a kernel with exactly these features leaves out. The rules of the stages count as one.
     pub fn left_out(&self) -> Vec<&'static str> {
-        let is_told = |(part, words): &(u32, &'static str)| {
-            !words.is_empty() && *part != parts::RULES && *words != "compressed hierarchy"
+        let is_listed = |(part, label): &(u32, &'static str)| {
+            !label.is_empty() && *part != parts::RULES && *label != "compressed hierarchy"
         };
-        let off = self.words_off().into_iter().filter(is_told).map(|(_, words)| words);
+        let off = self.labels_off().into_iter().filter(is_listed).map(|(_, label)| label);
         let rules = (self.parts() & parts::RULES == 0).then_some(parts::STAGE_RULES);
         off.chain(rules).collect()
     }

@@ -41,9 +41,9 @@ impl Baseline {
         let baseline = Baseline { directory, compiler, job: None };
         let source = baseline.file("rt_weekend.c");
         fs::write(&source, SOURCE).context("cannot write the C program")?;
-        let mut words = baseline.compiler.split_whitespace();
-        let output = Command::new(words.next().unwrap_or("cc"))
-            .args(words)
+        let mut command = baseline.compiler.split_whitespace();
+        let output = Command::new(command.next().unwrap_or("cc"))
+            .args(command)
             .args(FLAGS)
             .arg("-o")
             .args([baseline.program(), source])
@@ -186,12 +186,12 @@ fn scene_text(scene: &Scene, camera: &Camera) -> String {
     for sphere in &scene.spheres {
         let place = format!("{} {:?}", three(sphere.center), sphere.radius);
         let material = scene.material_of(sphere);
-        let words = material.parameters().into_iter().map(|(_, parameter)| match parameter {
+        let numbers = material.parameters().into_iter().map(|(_, parameter)| match parameter {
             Parameter::Number(number) => format!(" {number:?}"),
             Parameter::Colour(colour) => format!(" {}", three(colour)),
         });
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{} {place}{}", material.kind(), words.collect::<String>());
+        let _ = writeln!(text, "{} {place}{}", material.kind(), numbers.collect::<String>());
     }
     text
 }

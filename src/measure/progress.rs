@@ -32,11 +32,11 @@ impl Progress {
         let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
         let left = time_left(share, self.begin.elapsed())
             .map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        let (position, words) = ((share * BAR_STEPS) as u64, format!("{:3.0} % {what}{left}", 100.0 * share));
+        let (position, text) = ((share * BAR_STEPS) as u64, format!("{:3.0} % {what}{left}", 100.0 * share));
         if self.what == what {
-            self.display.update(position, || words);
+            self.display.update(position, || text);
         } else {
-            self.display.announce(position, || words);
+            self.display.announce(position, || text);
             what.clone_into(&mut self.what);
         }
     }

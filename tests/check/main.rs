@@ -231,9 +231,9 @@ fn exit_codes_files_and_json_tell_the_finding() {
         (&["d/mine.png", "--out", "d"], "would replace"),
     ] {
         let output = check(at, arguments);
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-        assert!(told.contains(part), "{arguments:?} should say {part}: {told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(part), "{arguments:?} should say {part}: {message}");
         assert_eq!(text(&output.stdout), "", "{arguments:?}");
     }
 }

@@ -162,7 +162,7 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
         if !mean.is_finite() {
             continue;
         }
-        let (told, freedom) = match differences.noise {
+        let (noise_variance, freedom) = match differences.noise {
             Noise::Variances(variances) => {
                 let sum: f64 = pixels().map(|pixel| variances[pixel][channel]).sum();
                 let squares: f64 = pixels().map(|pixel| variances[pixel][channel].powi(2)).sum();
@@ -184,14 +184,14 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
         // deviation.
         let known = step * step + differences.tolerance.powi(2);
         // The rare paths are a guess, so they add no degrees of freedom.
-        let variance = told + (differences.rare / count).powi(2);
+        let variance = noise_variance + (differences.rare / count).powi(2);
         let total = variance + known;
         means[channel] = mean;
         if total > 0.0 {
             // Known variance has infinitely many degrees of freedom (Welch and Satterthwaite).
             let freedom = freedom * (total / variance.max(1e-9 * total)).powi(2);
             z[channel] = from_student(mean / total.sqrt(), freedom);
-            noise_share[channel] = Some(told / total);
+            noise_share[channel] = Some(noise_variance / total);
         } else if mean != 0.0 {
             z[channel] = f64::INFINITY.copysign(mean);
             noise_share[channel] = Some(1.0);

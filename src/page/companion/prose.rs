@@ -48,9 +48,9 @@ pub fn short_text(
 }
 
 /// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
-fn slug(words: &str) -> String {
+fn slug(heading: &str) -> String {
     let mut slug = String::new();
-    for c in words.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
+    for c in heading.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
         match c.to_lowercase().next() {
             Some(c) if c.is_ascii_alphanumeric() => slug.push(c),
             _ if slug.ends_with('-') || slug.is_empty() => {}
@@ -175,17 +175,17 @@ impl Converter<'_> {
 
     fn heading<'e>(&mut self, level: usize, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Markup> {
         let mut inner = Vec::new();
-        let mut words = String::new();
+        let mut plain_text = String::new();
         while let Some((event, at)) = rest.next() {
             match &event {
                 Event::End(TagEnd::Heading(_)) => break,
-                Event::Text(text) | Event::Code(text) => words.push_str(text),
+                Event::Text(text) | Event::Code(text) => plain_text.push_str(text),
                 _ => {}
             }
             self.convert(event, &at, rest, &mut inner)?;
         }
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str()).unwrap_or_default();
-        let anchor = format!("{chapter}-{}", slug(&words));
+        let anchor = format!("{chapter}-{}", slug(&plain_text));
         let is_new = self.uses.anchors.insert(anchor.clone());
         ensure!(is_new, "another heading has the anchor #{anchor}; choose other words");
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();

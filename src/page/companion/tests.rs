@@ -137,10 +137,10 @@ fn back_matter_appears_once() {
     ] {
         assert!(html.contains(part), "{part}: {html}");
     }
-    for (marks, told) in
+    for (marks, message) in
         [(&[GLOSSARY_MARK; 2][..], "{{glossary}} must"), (&[GLOSSARY_MARK], "{{references}} must")]
     {
-        assert!(fill(marks).unwrap_err().message.starts_with(told), "{marks:?}");
+        assert!(fill(marks).unwrap_err().message.starts_with(message), "{marks:?}");
     }
 }
 

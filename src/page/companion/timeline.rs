@@ -41,15 +41,15 @@ pub fn figure(id: &str) -> Result<Markup> {
     let paths: Vec<_> = (0..LANES).map(lane).collect();
     let [plain, refilled] = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
     let columns = plain.len().max(refilled.len()).max(1);
-    let words = |timeline: &Timeline| {
+    let summary = |timeline: &Timeline| {
         format!("{} steps, {:.0} % of the lanes at work", timeline.len(), 100.0 * timeline.share_at_work())
     };
-    let title = format!("Without refill: {}. With refill: {}.", words(&plain), words(&refilled));
+    let title = format!("Without refill: {}. With refill: {}.", summary(&plain), summary(&refilled));
     Ok(html! {
         figure .timeline id={ "timeline-" (id) } {
-            p .label { "Without refill, all lanes wait for the longest path: " (words(&plain)) }
+            p .label { "Without refill, all lanes wait for the longest path: " (summary(&plain)) }
             (drawing(&plain, columns))
-            p .label { "With refill, a lane starts its next path at once: " (words(&refilled)) }
+            p .label { "With refill, a lane starts its next path at once: " (summary(&refilled)) }
             (drawing(&refilled, columns))
             ul .legend aria-hidden="true" {
                 @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }

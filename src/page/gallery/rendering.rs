@@ -155,11 +155,11 @@ impl Work<'_> {
         let plan = Studio::plan(recipe.samples_per_pixel);
         let (display, tasks) = (&mut self.display, self.tasks);
         let (status, film) = self.studio.render(recipe.job()?, plan, None, |event| match event {
-            Event::Warning(words) => display.say(&format!("warning: {words}")),
+            Event::Warning(message) => display.say(&format!("warning: {message}")),
             Event::Stopping => {}
             Event::Status(_, status) => {
-                let (words, done) = progress(tasks, number, status);
-                display.update(done, || words);
+                let (message, done) = progress(tasks, number, status);
+                display.update(done, || message);
             }
         });
         if let Phase::Failed(reason) = &status.phase {
@@ -200,8 +200,8 @@ fn progress(tasks: &[Task], number: usize, status: &Status) -> (String, u64) {
     let done = status.samples_per_pixel;
     let error = status.error.map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
     let (count, planned) = (tasks.len(), recipe.samples_per_pixel);
-    let words = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
-    (words, paths(&tasks[..number]) + done * pixels(recipe))
+    let message = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
+    (message, paths(&tasks[..number]) + done * pixels(recipe))
 }
 
 fn paths(tasks: &[Task]) -> u64 {

@@ -256,9 +256,9 @@ fn planted_mistake_is_found_and_reported() {
         let json = figures(path, &mine, &finding, &[]);
         assert_eq!(json["mistake"]["id"], planted.id);
         assert_eq!((&json["is_right"], &json["mistake"]["explains_all"]), (&false.into(), &true.into()));
-        let told = text(path, &mine, &finding, &[]);
+        let report = text(path, &mine, &finding, &[]);
         for part in [planted.title, planted.remedy, planted.section, &stage.url()] {
-            assert!(told.contains(part), "{told} should say {part}");
+            assert!(report.contains(part), "{report} should say {part}");
         }
     }
 }
@@ -278,22 +278,24 @@ fn report_covers_damage_shape_and_mistake() {
     };
     let finding = Finding { stage, right: right(true), mistake: None };
     let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
-    let (told, verdict) = said([40, 20], vec![damage], &finding);
-    assert!(told.contains("\nfile     it is torn\nchange   mend it\n"), "{told}");
+    let (report, verdict) = said([40, 20], vec![damage], &finding);
+    assert!(report.contains("\nfile     it is torn\nchange   mend it\n"), "{report}");
     assert_eq!(verdict, Verdict::Different, "a damaged file is not right for other programs");
-    let (told, verdict) = said([40, 40], Vec::new(), &finding);
-    assert!(told.contains("noise only") && told.contains("the picture is square"), "{told}");
+    let (report, verdict) = said([40, 40], Vec::new(), &finding);
+    assert!(report.contains("noise only") && report.contains("the picture is square"), "{report}");
     assert_eq!(verdict, Verdict::Same);
     let hypothesis = mistake("swapped-channels").pictures(&stage.recipe()).remove(0);
     let found = Compared { hypothesis, ..right(false) };
-    let (told, _) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
+    let (report, _) =
+        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
     for part in
         ["most likely a mistake: ", "seen     the channels seem to be blue, green, red", "second mistake"]
     {
-        assert!(told.contains(part), "{told}");
+        assert!(report.contains(part), "{report}");
     }
-    let (told, verdict) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
-    assert!(told.contains("none of the known mistakes explains it"), "{told}");
+    let (report, verdict) =
+        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
+    assert!(report.contains("none of the known mistakes explains it"), "{report}");
     assert_eq!(verdict, Verdict::Different);
 }
 

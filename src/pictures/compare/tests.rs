@@ -306,8 +306,8 @@ fn few_pixels_allow_no_verdict() {
         let found = changed(|x, y| (x, y) == (30, 20), by);
         let text =
             format!("only 1 of 3840 pixels differ by more than rounding, most by {:.1e} at 30,20", by.abs());
-        let told: Vec<&String> = found.notes.iter().chain(&found.unclear).collect();
-        assert!(told.iter().any(|told| told.starts_with(&text)), "{told:?}");
+        let messages: Vec<&String> = found.notes.iter().chain(&found.unclear).collect();
+        assert!(messages.iter().any(|message| message.starts_with(&text)), "{messages:?}");
         assert_eq!(found.verdict(), verdict, "{by}");
     }
 }

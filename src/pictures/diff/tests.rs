@@ -65,14 +65,14 @@ fn the_first_difference_is_found_and_told() {
         ),
     ];
     let job = job();
-    for (ray, quantity, change, told) in cases {
+    for (ray, quantity, change, expected) in cases {
         let mut changed = path();
         change(&mut changed);
         for paths in [[&path(), &changed], [&changed, &path()]] {
             let pair = pair(&job, paths, 1e-4);
             let first = pair.compare().first.unwrap();
             assert_eq!((first.ray, first.quantity), (ray, quantity));
-            assert!(pair.sentence(&first).contains(told), "{}", pair.sentence(&first));
+            assert!(pair.sentence(&first).contains(expected), "{}", pair.sentence(&first));
         }
     }
     let original = path();
@@ -82,8 +82,8 @@ fn the_first_difference_is_found_and_told() {
     let mut changed = path();
     changed.rays[1].direction[0] = 3e-5;
     let near = pair(&job, [&original, &changed], 1e-4);
-    let told = "the paths agree: the largest difference is 3.0e-5, and up to 1e-4 is allowed";
-    assert_eq!(near.verdict(&near.compare()), told);
+    let expected = "the paths agree: the largest difference is 3.0e-5, and up to 1e-4 is allowed";
+    assert_eq!(near.verdict(&near.compare()), expected);
     let unit = 1.0 / crate::film::FIXED_POINT_SCALE;
     assert_eq!(radiance_amount([0.0, unit, unit], [unit, 0.0, unit]), 0.0);
 }
@@ -103,10 +103,10 @@ fn nothing_counts_after_paths_part() {
     assert_eq!(found.parting.map(place), Some((1, Quantity::Object)));
     // The second ray's origin is the path's largest coordinate, so the difference is all of it.
     assert_eq!((found.largest, found.radiance), (1.0, 0.0));
-    let told = pair.verdict(&found);
+    let verdict = pair.verdict(&found);
     assert!(
-        told.starts_with("ray 1: the directions")
-            && told.contains(". Then ray 2: the paths part: cpu meets the sky")
+        verdict.starts_with("ray 1: the directions")
+            && verdict.contains(". Then ray 2: the paths part: cpu meets the sky")
     );
 }
 
@@ -172,7 +172,7 @@ fn near_miss_is_reported() {
         PathRecord { rays: vec![ray(origin.to_array(), [0.0, 0.0, -1.0], hit)], radiance: [0.0; 3] }
     };
     let hitting = path(0.999, Some(1));
-    let told = |beside: f64, is_swapped: bool| {
+    let sentence = |beside: f64, is_swapped: bool| {
         let missing = path(beside, None);
         let paths = if is_swapped { [&missing, &hitting] } else { [&hitting, &missing] };
         pair(&job, paths, 1e-3).sentence(&Difference {
@@ -181,10 +181,10 @@ fn near_miss_is_reported() {
             amount: f64::INFINITY,
         })
     };
-    assert!(told(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
-    assert!(told(1.005, true).contains("cpu meets the sky, gpu sphere 1 (center); cpu misses"));
+    assert!(sentence(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
+    assert!(sentence(1.005, true).contains("cpu meets the sky, gpu sphere 1 (center); cpu misses"));
     for beside in [0.5, 1.011, 3.0] {
-        assert!(!told(beside, false).contains("misses"), "{beside}");
+        assert!(!sentence(beside, false).contains("misses"), "{beside}");
     }
 }
 

@@ -25,12 +25,12 @@ pub fn cavities() -> Vec<Case> {
     ];
     let mut cases = Vec::new();
     for (material_name, material) in materials {
-        let words = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
+        let phrase = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
         for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
             let stiff = match place {
-                "alone" => format!("the eye in a closed {words} ball"),
-                "touching" => format!("the eye in a {words} ball that stands on the ground"),
-                _ => format!("the eye in a {words} ball that the ground cuts"),
+                "alone" => format!("the eye in a closed {phrase} ball"),
+                "touching" => format!("the eye in a {phrase} ball that stands on the ground"),
+                _ => format!("the eye in a {phrase} ball that the ground cuts"),
             };
             let name = format!("{material_name}-{place}");
             let case = Case::new(&CAVITIES, name, stiff, room(material, ground)).every(0.0, WHY);
@@ -92,18 +92,18 @@ pub fn eye_near_a_surface() -> Vec<Case> {
         ("glass", "a glass ball", ball, 1.0, tilted, glass(1.5)),
         ("metal", "a metal ball", ball, 1.0, tilted, metal(0.5, 0.0)),
     ];
-    for (surface, words, center, radius, up, material) in surfaces {
+    for (surface, phrase, center, radius, up, material) in surfaces {
         for (name, height) in heights {
             let look_from = center + (radius + height) * up;
             let away = picture([(center, radius, material)], eye(look_from, look_from + up, 90.0));
             let place = if height == 0.0 { "on".to_owned() } else { format!("{height:e} above") };
-            let stiff = format!("the eye {place} {words}, looking away from it");
+            let stiff = format!("the eye {place} {phrase}, looking away from it");
             let why = "nothing but a sky of 1 is in view";
             let case = Case::new(&EYE, format!("{surface}-{name}-away"), stiff, away).every(1.0, why);
             cases.push(case.quick_if(surface == "ball"));
             if height > 0.0 && surface != "glass" {
                 let down = picture([(center, radius, material)], eye(look_from, center, 90.0));
-                let stiff = format!("the eye {place} {words}, looking at it");
+                let stiff = format!("the eye {place} {phrase}, looking at it");
                 let why = "a convex surface that reflects half the light fills the view, and each path bounces once";
                 cases.push(Case::new(&EYE, format!("{surface}-{name}-down"), stiff, down).every(0.5, why));
             }
