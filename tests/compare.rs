@@ -98,7 +98,7 @@ fn pictures_compare_with_films() {
 }
 
 #[test]
-fn a_picture_is_decoded_as_its_recipe_says() {
+fn picture_is_decoded_by_its_recipe() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // Linear integers, entirely or only in the upper half: the recipe overrides --encoding.
@@ -218,7 +218,7 @@ fn backends_agree_on_the_same_samples() {
 }
 
 #[test]
-fn what_cannot_be_compared_exits_with_2() {
+fn incomparable_pictures_exit_with_2() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "a.exr", &["--samples", "2"]);

@@ -185,7 +185,7 @@ fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_page_of_another_origin_is_not_replaced() {
+fn foreign_page_is_not_replaced() {
     let at = TempDir::new().unwrap();
     let page = at.path().join("index.html");
     std::fs::write(&page, "<title>Me</title>").unwrap();
@@ -201,7 +201,7 @@ fn a_page_of_another_origin_is_not_replaced() {
 }
 
 #[test]
-fn the_page_is_complete_and_needs_no_network() {
+fn page_is_complete_and_offline() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     rendered(at, &SMALL);

@@ -22,7 +22,7 @@ fn picture_mean(film: &Film) -> f64 {
 
 /// Each thread needs far more loop iterations than llvmpipe allows.
 #[test]
-fn few_pixels_with_many_samples_are_whole() {
+fn few_pixels_with_many_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
@@ -41,7 +41,7 @@ fn closed(max_depth: u32) -> RenderJob {
 }
 
 #[test]
-fn every_ray_of_the_longest_paths_is_traced() {
+fn longest_paths_are_complete() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = closed(10_000);
     let mut film = job.new_film();
@@ -134,7 +134,7 @@ fn cancelled_samples_on_device_are_lost() {
 /// If a list needs more iterations per ray than a dispatch allows, the picture is traced ray by ray. A list that no
 /// loop can handle is refused.
 #[test]
-fn long_lists_are_whole_or_refused() {
+fn long_lists_are_complete_or_refused() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let list = |count: u32| {
         let (mut scene, camera) = (BuiltinScene::ALL[0].build)();

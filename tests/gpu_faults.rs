@@ -62,7 +62,7 @@ fn fault_in_any_phase_completes_picture() {
 }
 
 #[test]
-fn a_fault_during_a_pause_is_survived() {
+fn fault_during_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
         let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
@@ -80,7 +80,7 @@ fn a_fault_during_a_pause_is_survived() {
 
 /// As when the window is resized while the device hangs.
 #[test]
-fn a_new_job_is_begun_while_the_device_hangs() {
+fn new_job_starts_while_device_hangs() {
     let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
     let mut progressive = Progressive::spawn().unwrap();
     for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {

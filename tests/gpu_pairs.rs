@@ -217,7 +217,7 @@ fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool
 }
 
 #[test]
-fn blocks_of_other_samples_agree() {
+fn independent_samples_agree_by_block() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let mut unfused = unfused();
@@ -240,7 +240,7 @@ fn blocks_of_other_samples_agree() {
 }
 
 #[test]
-fn blocks_of_other_pictures_do_not() {
+fn different_pictures_disagree_by_block() {
     let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = |scene: &Scene| job_of(scene, camera, [48, 32], 20, SamplerKind::Sobol, false);
     let right = job(&scene);

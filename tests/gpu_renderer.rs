@@ -30,7 +30,7 @@ fn adapters_are_listed() {
 }
 
 #[test]
-fn software_is_taken_only_when_allowed() {
+fn software_adapter_needs_permission() {
     let Some(software) = adapters().into_iter().find(|a| a.is_software) else { return };
     let options = GpuOptions { adapter: Some(software.name.clone()), ..GpuOptions::default() };
     assert!(matches!(GpuRenderer::new(options), Err(GpuError::Software { .. })));
@@ -97,7 +97,7 @@ fn single_column_gradient_is_finite() {
 }
 
 #[test]
-fn dispatches_and_slabs_do_not_show() {
+fn dispatches_and_slabs_are_invisible() {
     let Some(mut whole) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([50, 43], 12, true);
     let expected = rendered(&mut whole, &job, 37);
@@ -140,7 +140,7 @@ fn specialised_is_general() {
 
 /// Only the fuzz of metals uses the random direction here.
 #[test]
-fn fuzzy_metal_alone_is_the_cpus() {
+fn lone_fuzzy_metal_matches_cpu() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = |fuzz: f64| {
         let mut scene = Scene::default();
@@ -198,7 +198,7 @@ fn hierarchies_agree() {
 }
 
 #[test]
-fn film_goes_on_from_cpu_to_gpu_and_back() {
+fn film_moves_between_cpu_and_gpu() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let job = three_spheres([80, 45], 24, true);
@@ -328,7 +328,7 @@ fn cpu_takes_over_after_fault() {
 }
 
 #[test]
-fn resolves_to_the_films_picture() {
+fn resolve_matches_film() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 37], 8, true);
     let film = rendered(&mut gpu, &job, 8);

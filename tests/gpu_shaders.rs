@@ -65,7 +65,7 @@ fn every_shader_is_valid() {
 /// tint is another browser's compiler. No package system that we know of has it, so its absence is only reported unless
 /// `WEEKENDER_REQUIRE_TINT=1`.
 #[test]
-fn every_shader_is_valid_to_tint() {
+fn tint_accepts_every_shader() {
     if let Err(error) = std::process::Command::new("tint").arg("--version").output() {
         let is_required = std::env::var("WEEKENDER_REQUIRE_TINT").as_deref() == Ok("1");
         assert!(!is_required, "tint cannot be run: {error}");
@@ -138,7 +138,7 @@ fn layouts_agree() {
 
 /// A record as the host writes it has the length and field order that the shaders expect.
 #[test]
-fn words_are_those_of_the_fields() {
+fn words_match_fields() {
     let vectors = ShadingRecord {
         reference: [1.0, 2.0, 3.0],
         albedo: [5.0, 6.0, 7.0],

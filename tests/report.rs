@@ -91,7 +91,7 @@ fn report_has_files_and_plausible_figures() {
 }
 
 #[test]
-fn the_baseline_is_a_curve_of_its_own() {
+fn baseline_has_own_curve() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, _, errors) =
@@ -157,7 +157,7 @@ fn calibration_compares_estimates_with_errors() {
 }
 
 #[test]
-fn a_report_goes_on_with_what_is_there() {
+fn report_resumes() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let sobol = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol"]].concat();

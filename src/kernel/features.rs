@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_what_is_off() {
+    fn left_out_lists_disabled_features() {
         let features = Features { lens: false, cavity: false, ..Features::default() };
         assert_eq!(
             features.left_out(),

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_in_stops_has_its_numbers() {
+    fn range_in_stops_has_marks() {
         let scale = HeatScale::luminance([-8.0, 4.0]);
         let names: Vec<_> = scale.marks().into_iter().map(|(_, name)| name).collect();
         assert_eq!(names, ["0.0039", "0.031", "0.25", "2", "16"]);

@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_of_many_copies_stays() {
+    fn first_of_copies_remains() {
         let copies = (0..10_000).map(|i| (DVec3::new(f64::from(i % 3), 0.0, -0.0), 1.0 + f64::from(i % 2)));
         let facts = Facts::of(&scene(copies));
         assert_eq!(facts.covered, (6..10_000).collect::<Vec<_>>());
@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_beyond_a_border_are_near_it() {
+    fn neighbouring_cells_are_found() {
         for (number, next) in [
             (5.0, Some(4.0)),
             (5.019, Some(4.0)),

@@ -316,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_meets_only_the_boxes_that_it_enters() {
+    fn ray_visits_only_entered_boxes() {
         // A row along x, and a ray that leaves it at once.
         let sphere = |place: i32| Sphere { center: f64::from(place) * DVec3::X, radius: 0.25, material: 0 };
         let spheres: Vec<Sphere> = (0..100).map(sphere).collect();

@@ -216,7 +216,7 @@ mod tests {
 
     /// Case 31.
     #[test]
-    fn a_camera_without_direction_is_refused() {
+    fn camera_without_direction_is_refused() {
         let refused = message(Camera { look_at: DVec3::ZERO, ..Camera::BOOK });
         assert!(refused.contains("look_from and look_at are both [0, 0, 0]"), "{refused}");
         assert!(refused.contains("move one"), "{refused}");

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn materials_reflect_no_more_than_they_get() {
+    fn materials_gain_no_energy() {
         for albedo in [DVec3::new(0.0, 1.1, 0.0), DVec3::new(0.0, 0.0, -0.1)] {
             assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
             assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));

@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn skies_are_bright_but_not_too_bright() {
+    fn sky_brightness_is_limited() {
         let under = |sky| Scene { sky, ..Scene::default() }.validate();
         under(Sky { bottom: DVec3::ZERO, top: DVec3::splat(SKY_LIMIT) }).expect("within the limits");
         let bright = under(Sky { top: DVec3::splat(101.0), ..Sky::default() }).expect_err("refused");

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn from_inside_the_far_side_is_seen() {
+    fn inside_eye_sees_far_side() {
         let pick = two().pick(DVec3::NEG_Z, DVec3::NEG_Z).unwrap();
         assert_eq!((pick.sphere, pick.distance, pick.normal), (1, 0.5, DVec3::Z));
         let on_surface = two().pick(DVec3::new(0.0, 0.0, -0.5), DVec3::Z);

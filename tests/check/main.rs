@@ -64,7 +64,7 @@ fn planted_mistakes_are_named() {
 
 /// Some mistake always fits slightly better than none, but no mistake turns one scene into another.
 #[test]
-fn another_scene_is_blamed_on_no_mistake() {
+fn other_scene_matches_no_mistake() {
     for (shown, stage) in [("lambertian-gamma", "hollow-glass"), ("metal-fuzzy", "lambertian-gamma")] {
         assert_eq!(found(&mine(shown, "", 30, 7), Some(stage)), "unknown", "{shown} as {stage}");
     }
@@ -83,7 +83,7 @@ fn the_stage_is_found() {
 const P3: &str = "P3\n# tiny\n2 1\n255\n0 1 2\n253 254 255\n";
 
 #[test]
-fn every_form_of_a_picture_is_read() {
+fn every_format_is_read() {
     let bytes = vec![[0, 1, 2], [253, 254, 255]];
     let read = |file: &[u8]| Mine::decode(file).unwrap_or_else(|reason| panic!("{reason}"));
     for file in [
@@ -118,7 +118,7 @@ fn every_form_of_a_picture_is_read() {
 }
 
 #[test]
-fn damages_are_repaired_and_told() {
+fn damage_is_repaired_and_reported() {
     let utf_16: Vec<u8> = [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     let utf_16_be: Vec<u8> =
         [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_be_bytes).collect();
@@ -162,7 +162,7 @@ fn damages_are_repaired_and_told() {
 }
 
 #[test]
-fn damages_are_counted_and_repaired_together() {
+fn multiple_damages_are_repaired() {
     let file = "hello\nP3\n2 1\n255\nScanlines: 2\n1 2.5 nan\nDone.\n\n300 -1 1e3 8 9";
     let mine = Mine::decode(file.as_bytes()).unwrap();
     let titles: Vec<&str> = mine.damages.iter().map(|damage| damage.title.as_str()).collect();
@@ -193,7 +193,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn exit_codes_files_and_json_tell_the_finding() {
+fn finding_sets_exit_code_files_and_json() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, mistake) in [("right.ppm", ""), ("wrong.ppm", "gamma-twice")] {
@@ -239,7 +239,7 @@ fn exit_codes_files_and_json_tell_the_finding() {
 }
 
 #[test]
-fn a_picture_that_shows_too_little_is_refused() {
+fn blank_or_tiny_picture_is_refused() {
     let directory = TempDir::new().unwrap();
     let path = directory.path().join("tiny.ppm");
     let read = |width: usize, height: usize, pixels: String| {

@@ -42,7 +42,7 @@ fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> Stri
 }
 
 #[test]
-fn faults_of_a_chapter_name_its_line() {
+fn chapter_errors_name_line() {
     let texts = texts();
     let lines = fs::read_to_string(texts.path().join(CHAPTER)).unwrap().lines().count();
     let line = lines + 2;
@@ -73,7 +73,7 @@ fn faults_of_a_chapter_name_its_line() {
 }
 
 #[test]
-fn faults_of_other_files_name_them() {
+fn other_errors_name_file() {
     let texts = texts();
     for (file, added, message) in [
         (

@@ -48,7 +48,7 @@ fn checkout() -> PathBuf {
 }
 
 #[test]
-fn the_page_is_valid_small_and_rendered_once() {
+fn page_is_valid_small_and_rendered_once() {
     let directory = PAGE.directory.path();
     assert_valid(&directory.join("index.html"));
     let stills = std::fs::read_dir(directory.join("figures")).unwrap();

@@ -118,7 +118,7 @@ fn four_hits(words: &Words) -> u32 {
 }
 
 #[test]
-fn compressed_boxes_are_met_as_they_should() {
+fn compressed_box_hits() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (mut parted, mut met, mut ordered) = (0, 0, 0);
     let inputs = |i: u32| {

@@ -154,7 +154,7 @@ fn arithmetic_has_twins() {
 
 /// The check itself finds differences.
 #[test]
-fn a_function_of_one_side_is_found() {
+fn missing_twin_is_found() {
     let pair = Pair { shader: "a", twins: &["b"], shader_alone: &[("x", "")], twin_alone: &[] };
     let names = |list: &str| list.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     assert!(faults(&pair, &names("f x g"), &names("f g")).is_empty());

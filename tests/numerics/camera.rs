@@ -179,7 +179,7 @@ fn case_34_camera_at_a_million() {
 
 /// Rays from all over the lens meet where the ray from its middle is in focus.
 #[test]
-fn rays_of_a_lens_meet_in_the_plane_of_focus() {
+fn lens_rays_meet_in_focus_plane() {
     let camera = Camera {
         look_from: DVec3::new(3.0, 1.0, -2.0),
         look_at: DVec3::new(0.5, 0.2, -1.0),

@@ -127,7 +127,7 @@ fn case_25_not_a_number() {
 
 /// Each pixel of a part equals the whole picture's, with the transfer of its own row.
 #[test]
-fn a_part_of_a_picture_is_cut_out_of_it() {
+fn crop_matches_whole_picture() {
     let (scene, camera) = (three_spheres(LeftSphere::HollowGlass), Camera::BOOK);
     let film = render(&mut widest(), &job(&scene, camera, size(7, 5)), 0..2);
     for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {

@@ -268,7 +268,7 @@ fn same_packets<L: Lanes<Real = f32>>(
 
 /// The book's final picture with and without the hierarchy.
 #[test]
-fn hierarchy_and_list_render_the_same_film() {
+fn hierarchy_and_list_render_same_film() {
     let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
     let prepared = PreparedScene::<f32>::new(&job);
     assert!(prepared.hierarchy.is_some(), "the book has a hierarchy");
@@ -282,7 +282,7 @@ fn hierarchy_and_list_render_the_same_film() {
 
 /// Rays along an axis from afar, on either side, that pass a box within its margin or beyond it.
 #[test]
-fn boxes_are_widened_alike_on_every_side() {
+fn boxes_are_widened_on_every_side() {
     const FAR: f64 = 1e6;
     let l = Scalar::<true>;
     let node = Node { low: [-1.0; 3], high: [1.0; 3], ..Node::default() };

@@ -76,7 +76,7 @@ fn case_12_single_against_double() {
 /// A path draws the same numbers as the scalar oracle: in an empty scene, each sample is the sky in the direction given
 /// by [`numbers`] and the camera.
 #[test]
-fn samples_are_those_of_the_oracle() {
+fn samples_match_oracle() {
     let (width, height) = (24, 16);
     let sky = Sky::default();
     for sampler in weekender::job::render::SamplerKind::ALL {
@@ -241,7 +241,7 @@ fn case_38_eye_inside_a_matte_sphere() {
 
 /// Red goes from 0 at the left to 1 at the right, green from 0 at the top to 1 at the bottom. (Section 2.)
 #[test]
-fn the_image_gradient_spans_the_picture() {
+fn image_gradient_spans_picture() {
     for (width, height) in [(16, 9), (1, 5), (5, 1)] {
         let mut recipe = Stage::find("ppm-tiny").unwrap().recipe();
         (recipe.settings.width, recipe.settings.height) = (width, height);

@@ -81,7 +81,7 @@ fn small_ball_beside_larger_is_exact() {
 
 /// On far balls, the normal at a hit has length 1 however coarsely the distance is rounded.
 #[test]
-fn specks_are_shaded_as_balls_are() {
+fn specks_shade_like_balls() {
     for radius in [1e-4, 1e-6, 1e-8] {
         let balls = [(DVec3::new(0.0, 0.0, -1.0), radius, lambertian(0.5))];
         let camera = Camera { vfov_degrees: 0.01, ..Camera::BOOK };

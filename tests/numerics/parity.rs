@@ -58,7 +58,7 @@ fn case_39_all_packets_render_the_same_scenes() {
 
 /// Tiles, threads and passes do not change the picture.
 #[test]
-fn tiles_threads_and_passes_do_not_show() {
+fn tiles_threads_and_passes_are_invisible() {
     let threaded = |threads| CpuRenderer::new(CpuOptions { threads: Some(threads), ..CpuOptions::default() });
     for name in ["three-spheres", "close-up"] {
         let recipe = Recipe::find(name).unwrap();

@@ -110,7 +110,7 @@ fn assert_twins<L: Lanes>(l: L) {
 }
 
 #[test]
-fn lanes_draw_the_numbers_of_the_oracle() {
+fn lanes_draw_oracle_numbers() {
     assert_twins(Scalar::<false>);
     assert_twins(Reference);
     #[cfg(target_arch = "x86_64")]

@@ -212,7 +212,7 @@ fn exact_hits_beyond_f64() {
 }
 
 #[test]
-fn a_ray_leaves_the_surface_that_it_starts_on() {
+fn ray_leaves_its_surface() {
     let ball = scene(&[(DVec3::ZERO, 1.0)]);
     assert_eq!(first_hit(&ball, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)), None);
     assert_eq!(first_hit(&ball, DVec3::Y, -DVec3::Y), Some((0, 2.0)));

@@ -32,7 +32,7 @@ fn small(case: &Case) -> Case {
 }
 
 #[test]
-fn the_quick_cases_are_right_on_every_level() {
+fn quick_cases_are_right_on_every_level() {
     let (mut suite, go_on) = (suite(), AtomicBool::new(false));
     let mut wrong = Vec::new();
     for case in cases().iter().filter(|case| case.is_quick) {

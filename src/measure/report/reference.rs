@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_film_is_not_replaced() {
+    fn foreign_file_is_not_replaced() {
         let (_directory, path) = place();
         std::fs::write(&path, "no film").unwrap();
         let error = made(&path, &cpu(None), 4).err().unwrap().to_string();

@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_is_worked_out_by_hand() {
+    fn rounding_matches_hand_calculation() {
         let pixels = [[[1.0, 2.0, 3.0], [3.0, -2.0, 1.0]], [[-1.0, 0.0, 2.0], [1.0, 4.0, 2.0]]];
         let of = |pixels: &[[[f64; 3]; 2]]| {
             rounding("a scene", "a backend", &uneven(pixels), &uneven(&vec![[[0.0; 3]; 2]; pixels.len()]))

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_is_worked_out_by_hand() {
+    fn level_matches_hand_calculation() {
         // Two samples in the first half and one in the second.
         let film = row(3, [&[[4.0, 8.0, 12.0], [2.0; 3]], &[[5.0, 1.0, 3.0], [4.0; 3]]]);
         let level = Level::of(&film);
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_channel_that_is_farthest_off_counts() {
+    fn worst_channel_counts() {
         let every = Against::Every([0.5, 0.25, 0.75]);
         for (mean, off) in [
             ([0.75, 0.5, 0.625], 0.25),

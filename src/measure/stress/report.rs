@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_has_the_worst_of_its_backends() {
+    fn row_shows_worst_backend() {
         let offsets = [(Some(0.1), 3.0, Some(2.0)), (Some(-0.5), 8.0, Some(2.0)), (None, 9.0, None)];
         let mut found = case(offsets.map(|(offset, seconds, tame)| measured(offset, seconds, tame)).into());
         assert_eq!(found.cells(), ["1", "-5.0e-1", "-5.0e-1 (0)", "4.0x", ""]);

@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn targets_are_met_between_points_and_beyond() {
+    fn crossings_interpolate_and_extrapolate() {
         let points = curve(-0.5, 7);
         let within = time_to(&points, 0.02).unwrap();
         assert!((within.time - 25.0).abs() < 1e-9 && !within.is_extrapolated);

@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn black_and_white_are_as_the_paper_has_them() {
+    fn black_and_white_match_paper() {
         // Only the lightness differs, by 100: the paper's formula, evaluated by hand.
         let difference = constant([0.0; 3]).difference(&constant([1.0; 3]));
         let greatest = greatest_colour_difference();

@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn students_quantiles_become_normal_ones() {
+    fn student_quantiles_become_normal() {
         // Two-sided quantiles of Student's distribution for probabilities of 5 % and .1 %.
         for (freedom, five_percent, per_mille) in
             [(5.0, 2.5706, 6.8688), (20.0, 2.0860, 3.8495), (63.0, 1.9983, 3.4515)]

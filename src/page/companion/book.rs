@@ -44,7 +44,7 @@ mod tests {
     use crate::stages::Stage;
 
     #[test]
-    fn headings_are_those_of_the_stages() {
+    fn headings_match_stages() {
         let book: Book = Library::Embedded.toml(FILE).unwrap();
         for stage in Stage::ALL {
             assert_eq!(book.heading(stage.section), Some(stage.section_title), "{}", stage.id);

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_facts_are_named_with_their_line() {
+    fn wrong_facts_name_line() {
         for (text, line, word) in [("Text", 1, "+++"), ("+++\ntitle = \"A\"\ncolour = 1\n+++\n", 3, "colour")]
         {
             let fault = Chapter::parse(FILE, text).unwrap_err();

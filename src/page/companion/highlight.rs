@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_unchanged_apart_from_the_tags() {
+    fn highlighting_keeps_text() {
         for (language, code) in [
             ("rust", include_str!("../../render_cpu/sphere.rs")),
             ("wgsl", include_str!("../../../shaders/path.wgsl")),

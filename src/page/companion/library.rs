@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn every_file_of_the_folder_is_in_the_program() {
+    fn every_file_is_embedded() {
         let paths = FILES.iter().map(|(path, _)| (*path).to_owned());
         let embedded: BTreeSet<String> = paths.filter(|path| path.starts_with(FOLDER)).collect();
         let mut found = BTreeSet::new();

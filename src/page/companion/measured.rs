@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_benchmark_has_the_figures_of_each_row() {
+    fn benchmark_table_rows() {
         let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
         let row = |name: &str, kind: &str, lanes: usize, speed: Value, skipped: Option<&str>| {
             json!({"name": name, "kind": kind, "lanes": lanes, "threads": 3, "paths_per_second": speed, "skipped": skipped,
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comparison_is_with_the_first_row() {
+    fn comparison_uses_first_row() {
         let row = |name: &str, median: f64, in_use: Option<f64>| json!({"name": name, "paths_per_second": {"median": median, "min": 1e6, "max": 9e6}, "in_use": in_use});
         let html = |rows: &[Value]| {
             let json = json!({"about": "Mappings.", "machine": "a GPU", "rows": rows});
@@ -414,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_the_digits_that_count() {
+    fn numbers_have_significant_digits() {
         assert_eq!([5.214e6, 10e6, 54.62e6, 154.2e6].map(millions), ["5.21", "10.0", "54.6", "154"]);
         let times = [1234.6, 12.34, 0.1234, 0.000_012_34, 0.0].map(three_digits);
         assert_eq!(times, ["1235", "12.3", "0.123", "0.000012", "0.000000"]);

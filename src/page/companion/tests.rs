@@ -81,7 +81,7 @@ fn links_are_recorded_with_lines() {
 }
 
 #[test]
-fn headings_code_and_formulas_have_their_form() {
+fn headings_code_and_formulas_render() {
     let site = site();
     for (text, html) in [
         (

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_figure_says_what_refill_gains() {
+    fn figure_states_gain_of_refill() {
         let html = figure("three-spheres").unwrap().into_string();
         let steps = |after: &str| -> f64 {
             let rest = &html[html.find(after).unwrap() + after.len()..];

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stills_keep_the_shape_of_their_stage() {
+    fn stills_keep_aspect_ratio() {
         for stage in Stage::ALL {
             let own = stage.recipe();
             for quality in [Quality::Quick, Quality::Full] {

@@ -87,7 +87,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_stage_has_the_numbers_of_its_recipe() {
+    fn stage_data_matches_recipe() {
         for stage in Stage::ALL {
             let (data, setup) = (stage_data(stage).unwrap(), stage.setup);
             assert_eq!([&data["width"], &data["height"]], [setup.width, setup.height], "{}", stage.id);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_far_away_has_an_origin_of_its_own() {
+    fn distant_scene_has_own_origin() {
         const AWAY: DVec3 = DVec3::new(4096.0, 0.0, -65_536.0);
         let near = Stage::find("normals").unwrap();
         let scene = || {

@@ -105,7 +105,7 @@ fn plain_tracer_matches_fast_tracer() {
 }
 
 #[test]
-fn bytes_and_linear_values_belong_together() {
+fn bytes_and_linear_values_correspond() {
     for id in ["sky", "metal", "gamut"] {
         let recipe = recipe(id);
         let others = ["no-gamma", "gamma-early", "gamma-twice", "scale-255"].map(mistake);
@@ -130,7 +130,7 @@ fn bytes_and_linear_values_belong_together() {
 }
 
 #[test]
-fn a_picture_is_laid_out_as_it_was_written() {
+fn layout_follows_mistake() {
     // Three columns and two rows; each pixel holds its index.
     let linear: Vec<[f64; 3]> = (0..6).map(|place| [0.0, 0.1, 0.2].map(|c| f64::from(place) + c)).collect();
     let laid_out = |id| mistake(id).pictures(&recipe("metal"))[0].written.laid_out(&linear, 3);

@@ -102,7 +102,7 @@ fn difference_noise_combines_both_films() {
 
 /// With many samples, the noise of the mean is far below the effect of rounding.
 #[test]
-fn a_mean_that_rounding_moves_is_equal() {
+fn mean_within_rounding_is_equal() {
     let picture = |offset: f64| {
         let samples = 1 << 20;
         let sum = (samples / 2) as f64 * (0.5 + offset) * FIXED_POINT_SCALE;
@@ -420,7 +420,7 @@ fn counterpart_sample_count_precedence() {
 }
 
 #[test]
-fn a_backend_and_a_file_keep_their_order() {
+fn backend_and_file_keep_order() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
     let recipe = small();
@@ -453,7 +453,7 @@ fn two_backends_render_the_same_samples() {
 }
 
 #[test]
-fn jobs_are_noted_if_they_explain_the_result() {
+fn jobs_are_noted_if_relevant() {
     type Change = fn(&mut Recipe);
     let film = |change: Change, samples: Range<u64>| {
         let mut recipe = small();

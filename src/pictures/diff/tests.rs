@@ -28,7 +28,7 @@ fn pair<'a>(job: &'a RenderJob, paths: [&'a PathRecord; 2], tolerance: f64) -> P
 }
 
 #[test]
-fn the_first_difference_is_found_and_told() {
+fn first_difference_is_found_and_described() {
     type Change = fn(&mut PathRecord);
     let cases: [(usize, Quantity, Change, &str); 7] = [
         (0, Quantity::Direction, |p| p.rays[0].direction[0] = 1e-3, "ray 1: the directions differ by 1.0e-3"),
@@ -189,7 +189,7 @@ fn near_miss_is_reported() {
 }
 
 #[test]
-fn rays_that_only_one_path_has_are_shown() {
+fn unpaired_rays_are_shown() {
     let job = job();
     let path = |rays: &[RecordedRay]| PathRecord { rays: rays.to_vec(), radiance: [0.5; 3] };
     let [first, second] = [1.0, 2.0].map(|z| ray([0.0, 0.0, z], [0.0, 0.0, -1.0], None));

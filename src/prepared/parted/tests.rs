@@ -54,7 +54,7 @@ fn nested_runs_are_crowded() {
 }
 
 #[test]
-fn spheres_that_pair_one_by_one_are_a_crowd() {
+fn slow_pairing_is_crowded() {
     let over_decades = |decades: f64, share: f64, count: u32| -> Vec<Sphere> {
         let share_of = |index: u32| f64::from(index) / f64::from(count) - 0.5;
         let along = (0..count).map(|index| 10_f64.powf(decades * share_of(index)));
@@ -74,7 +74,7 @@ fn spheres_that_pair_one_by_one_are_a_crowd() {
 }
 
 #[test]
-fn spheres_that_pair_at_once_are_no_crowd() {
+fn fast_pairing_is_not_crowded() {
     assert!(!crowded(&strewn(20_000).collect::<Vec<_>>()));
     let lattice = |i: u32| Sphere {
         center: DVec3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256)),
@@ -148,7 +148,7 @@ fn split_minimises_area_times_spheres() {
 }
 
 #[test]
-fn a_half_is_taken_along_the_widest_key() {
+fn halving_uses_widest_key() {
     let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
     let spheres: Vec<Sphere> =
         (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();

@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_field_has_its_count_and_few_materials() {
+    fn field_has_count_and_few_materials() {
         for count in [1, 2, 3, 17, 1000, 100_000] {
             let (scene, camera) = field(count);
             assert_eq!(scene.spheres.len() as u64, count + 1);

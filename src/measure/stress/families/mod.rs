@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_are_unique_and_say_the_family() {
+    fn ids_are_unique_with_family_prefix() {
         let ids: HashSet<&str> = cases().iter().map(|case| case.id.as_str()).collect();
         assert_eq!(ids.len(), cases().len());
         for case in cases() {

@@ -27,7 +27,7 @@ fn test(width: u32, values: &[[f64; 3]], noise: Noise) -> BlockTest {
 }
 
 #[test]
-fn noise_passes_as_often_as_it_should() {
+fn noise_passes_at_expected_rate() {
     let (mut failed_by_halves, mut failed_by_spread) = (0, 0);
     for seed in 0..200 {
         let (values, variances) = noise(96, 64, seed);
@@ -74,7 +74,7 @@ fn steps_and_tolerance_excuse_differences() {
 }
 
 #[test]
-fn what_is_known_counts_as_endless_freedom() {
+fn known_variance_has_infinite_freedom() {
     // One pixel has all the noise, with one degree of freedom, and half the variance is known: 4 degrees by Welch
     // and Satterthwaite. Student's two-sided quantile at 5 % is then 2.7764; that of a normal number is 1.960.
     let share = 8.0 * 8.0;
