@@ -169,8 +169,8 @@ fn omitted_samples_are_traced_again() {
         let options = GpuOptions { injection, samples_per_dispatch: Some(2), ..GpuOptions::default() };
         let mut short = gpu(options.clone()).unwrap();
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
-        let said = short.take_messages().join("; ");
-        assert!(said.contains("traced again") && said.contains("the device added only 0 of"), "{said}");
+        let joined = short.take_messages().join("; ");
+        assert!(joined.contains("traced again") && joined.contains("the device added only 0 of"), "{joined}");
         // The same over several passes, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();

@@ -29,11 +29,11 @@ fn failing(fault: Fault, point: InjectionPoint, after: u64) -> Option<BackendCho
 
 fn check(progressive: Progressive, status: &Status, case: &str) {
     assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}: {status:?}");
-    let said = status.messages.join("; ");
-    println!("{case}: {said}");
-    assert!(said.contains("gpu failed") && said.contains("the CPU continues"), "{case}: {said}");
+    let joined = status.messages.join("; ");
+    println!("{case}: {joined}");
+    assert!(joined.contains("gpu failed") && joined.contains("the CPU continues"), "{case}: {joined}");
     if case.contains("Hang") {
-        assert!(said.contains("has not responded"), "{case}: {said}");
+        assert!(joined.contains("has not responded"), "{case}: {joined}");
     }
     let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
     assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");

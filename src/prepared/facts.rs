@@ -17,7 +17,7 @@ const LAYER_UNITS: f64 = 16.0;
 const DISTANCE_UNITS: f64 = 8.0;
 
 /// Where a layer's surfaces touch or cross, it is too thin somewhere, however thick elsewhere. It is reported only if
-/// its greatest thickness is at most this many times the required one: otherwise, hitting the wrong surface first
+/// its greatest thickness is at most this many times the required one: beyond that, hitting the wrong surface first
 /// hardly changes a path's length.
 const CLOSING_RATIO: f64 = 100.0;
 

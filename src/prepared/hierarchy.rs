@@ -204,7 +204,7 @@ impl<R> Hierarchy<R> {
             for axis in 0..3 {
                 let (low, high): (f64, f64) = (node.low[axis].into(), node.high[axis].into());
                 let [a, b] = [low, high].map(|side| (side - origin[axis]) * inverse[axis]);
-                // A ray in the plane of a side may count as a miss, because boxes are wider than their spheres.
+                // A ray in the plane of a side counts as a miss: boxes are wider than their spheres.
                 enters = enters.max(a.min(b));
                 leaves = leaves.min(a.max(b));
             }

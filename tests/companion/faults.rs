@@ -67,8 +67,11 @@ fn chapter_errors_name_line() {
         ("```cobol\nx\n```", "\"cobol\" has no colours"),
         ("<b>x</b>", "HTML and pictures are not allowed"),
     ] {
-        let said = refused(&texts, CHAPTER, &|text| format!("{text}\n{added}\n"));
-        assert!(said.contains(&format!("{CHAPTER}:{line}: ")) && said.contains(message), "{added}: {said}");
+        let stderr = refused(&texts, CHAPTER, &|text| format!("{text}\n{added}\n"));
+        assert!(
+            stderr.contains(&format!("{CHAPTER}:{line}: ")) && stderr.contains(message),
+            "{added}: {stderr}"
+        );
     }
 }
 
@@ -94,11 +97,11 @@ fn other_errors_name_file() {
         ),
     ] {
         let path = format!("docs/companion/{file}");
-        let said = refused(&texts, &path, &|text| format!("{text}\n[extra]\n{added}\n"));
-        assert!(said.contains(&path) && said.contains(message), "{added}: {said}");
+        let stderr = refused(&texts, &path, &|text| format!("{text}\n[extra]\n{added}\n"));
+        assert!(stderr.contains(&path) && stderr.contains(message), "{added}: {stderr}");
     }
-    let said = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
-    assert!(said.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{said}");
-    let said = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
-    assert!(said.contains(&format!("{CHAPTER}:2: ")) && said.contains("titel"), "{said}");
+    let stderr = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
+    assert!(stderr.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{stderr}");
+    let stderr = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
+    assert!(stderr.contains(&format!("{CHAPTER}:2: ")) && stderr.contains("titel"), "{stderr}");
 }

@@ -131,7 +131,7 @@ pub struct GainRow {
     pub general_runs: Vec<Run>,
     pub own_paths_per_second: Option<Spread>,
     pub general_paths_per_second: Option<Spread>,
-    /// Time of the general kernel over that of its own, by pair of runs.
+    /// Time of the general kernel relative to its own, by pair of runs.
     pub gain: Option<Spread>,
     /// Whether both films are equal bit for bit.
     pub same_bits: Option<bool>,

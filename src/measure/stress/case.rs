@@ -91,7 +91,7 @@ impl PartialEq for Case {
 
 impl Eq for Case {}
 
-/// With this many spheres, every backend builds a hierarchy anyway, so adding distant ones changes nothing.
+/// From this many spheres on, every backend builds a hierarchy anyway, so distant ones change nothing.
 const HIERARCHY_SPHERES: usize = 24;
 
 /// Whether to add distant spheres, which switch the hierarchy on.
