@@ -30,8 +30,8 @@ pub const SKY_LIMIT: f64 = 100.0;
 
 /// A vertical gradient around the scene, its only light source. (Book 1, section 4.2.)
 ///
-/// A ray that leaves the scene in the unit direction `d` receives the radiance `(1 - a) bottom + a top` with `a = (d.y
-/// + 1) / 2`.
+/// A ray that leaves the scene in the unit direction `d` receives the radiance `(1 - a) bottom + a top`, where
+/// `a = (d.y + 1) / 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sky {

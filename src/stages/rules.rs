@@ -14,8 +14,8 @@ pub struct Rules {
     pub diffuse: Diffuse,
     pub dielectric: DielectricLaws,
     pub surface: SurfaceRule,
-    /// Whether every material's reflectance is that of its picture strip: five vertical strips of 10, 30, 50, 70 and 90
-    /// %. (Section 9.5.)
+    /// Whether every material's reflectance is that of its picture strip: five vertical strips of 10 %
+    /// to 90 % in steps of 20 %. (Section 9.5.)
     pub reflectance_strips: bool,
     /// Whether samples are spread over the pixel; otherwise all pass through its centre. (Section 8.)
     pub antialiasing: bool,

@@ -36,15 +36,10 @@ impl ChartFormat {
 #[derive(Debug, thiserror::Error)]
 pub enum ChartError {
     #[error("cannot tell the format of {}; let the name of a chart end in .png or .svg", path.display())]
-    UnknownEnding {
-        path: PathBuf,
-    },
+    UnknownEnding { path: PathBuf },
     /// plotters, the font or the encoder failed.
     #[error("cannot draw {}: {reason}; the figures are also in the text and the JSON", path.display())]
-    Draw {
-        path: PathBuf,
-        reason: String,
-    },
+    Draw { path: PathBuf, reason: String },
     #[error(transparent)]
     Write(#[from] WriteError),
 }

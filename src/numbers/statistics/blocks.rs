@@ -1,8 +1,8 @@
 //! Tests whether two pictures differ by more than their noise.
 //!
 //! The picture is divided into blocks of about 8 x 8 pixels. A block's `z` is its mean difference over the deviation of
-//! that mean; with noise alone, it is a standard normal number. Over `m` blocks the sum of `z^2` then lies within `m +-
-//! 4 sqrt(2 m)`, and the largest `z` within a limit that 99 of 100 pairs of equal pictures keep. The channels are
+//! that mean; with noise alone, it is a standard normal number. Over `m` blocks the sum of `z^2` then lies within
+//! `m +- 4 sqrt(2 m)`, and the largest `z` within a limit that 99 of 100 pairs of equal pictures keep. The channels are
 //! tested separately, because their noise is correlated.
 
 use super::normal::{from_student, largest_of};
