@@ -72,7 +72,7 @@ fn rows_have_sane_figures() {
             }
             assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");
             if row["lanes"] == 1 {
-                // A path that is absorbed costs its lane one more iteration.
+                // An absorbed path costs its lane one more iteration.
                 assert!(number(row, "lanes_in_use") > 0.9, "{row}");
             }
             assert!(number(row, "efficiency") > 0.0);
@@ -86,7 +86,7 @@ fn rows_have_sane_figures() {
 }
 
 #[test]
-fn without_a_compiler_the_baseline_is_left_out() {
+fn baseline_is_skipped_without_compiler() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     command.env("CC", "no-such-compiler").arg("bench").args(TINY).args(["--scene", "metals"]);
@@ -94,7 +94,7 @@ fn without_a_compiler_the_baseline_is_left_out() {
     assert!(output.status.success());
     let table = text(&output.stdout);
     assert!(table.contains("skipped") && table.contains("no-such-compiler"), "{table}");
-    // An empty name is none.
+    // An empty name counts as none.
     command.env("CC", " ");
     let table = text(&command.output().unwrap().stdout);
     assert!(table.contains("C89, cc -O2"), "{table}");
@@ -125,7 +125,7 @@ fn features(directory: &Path, arguments: &[&str]) -> Value {
 }
 
 #[test]
-fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
+fn specialised_and_general_kernels_agree() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--scene", "three-spheres", "--scene", "book"]);
     let device = &report["features"][0];
@@ -145,16 +145,17 @@ fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
         }
     }
     let level = report["machine"]["levels"].as_array().unwrap().last().unwrap();
-    let words = |row: &Value| (row["kernel"].as_str().unwrap().to_owned(), row["left_out"].to_string());
-    let (kernel, left_out) = words(&rows[0]);
+    let kernel_parts =
+        |row: &Value| (row["kernel"].as_str().unwrap().to_owned(), row["left_out"].to_string());
+    let (kernel, left_out) = kernel_parts(&rows[0]);
     assert_eq!(kernel, "glass", "{level}");
     assert!(left_out.contains("lens"), "{left_out}");
-    let (kernel, left_out) = words(&rows[1]);
+    let (kernel, left_out) = kernel_parts(&rows[1]);
     assert!(kernel.contains("lens") && !left_out.contains("lens"), "{kernel}; {left_out}");
 }
 
 #[test]
-fn all_stages_and_scenes_are_measured_unless_some_are_named() {
+fn measures_everything_by_default() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--samples", "2"]);
     let rows = report["features"][0]["rows"].as_array().unwrap();
@@ -163,7 +164,7 @@ fn all_stages_and_scenes_are_measured_unless_some_are_named() {
         group.map(|row| row["name"].as_str().unwrap()).collect()
     };
     assert_eq!(names(true), Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>());
-    // Every other built-in scene is the picture of a stage.
+    // Every other built-in scene is a stage's picture.
     assert_eq!(names(false), ["field"]);
     for row in rows {
         assert_eq!(row["same_bits"], true, "{row}");
@@ -171,7 +172,7 @@ fn all_stages_and_scenes_are_measured_unless_some_are_named() {
 }
 
 #[test]
-fn bad_flags_are_refused_before_anything_is_measured() {
+fn bad_flags_fail_early() {
     let cases: [(&[&str], &str); 10] = [
         (&["--features", "--scale", "10..20"], "--scale"),
         (&["--features", "--plot", "chart.svg"], "--plot"),

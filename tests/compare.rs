@@ -18,7 +18,6 @@ fn compare(arguments: &[&str], directory: &Path) -> (i32, String, String) {
     weekender(&[&["compare"], arguments].concat(), directory)
 }
 
-/// Renders `out` with `flags`.
 fn render(directory: &Path, out: &str, flags: &[&str]) {
     let usual = ["--batch", "--device", "cpu", "--progress", "off", "--out", out];
     let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "160x90"] };
@@ -32,7 +31,7 @@ fn json(arguments: &[&str], directory: &Path) -> (i32, serde_json::Value) {
 }
 
 #[test]
-fn films_that_differ_in_noise_are_equal_but_not_with_a_larger_sphere() {
+fn noise_is_equal_but_larger_sphere_differs() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "a.exr", &["--samples", "64"]);
@@ -63,7 +62,7 @@ fn films_that_differ_in_noise_are_equal_but_not_with_a_larger_sphere() {
 }
 
 #[test]
-fn integer_and_float_pictures_are_compared_with_films() {
+fn pictures_compare_with_films() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "film.exr", &["--samples", "256"]);
@@ -75,7 +74,7 @@ fn integer_and_float_pictures_are_compared_with_films() {
         let (code, text, _) = compare(&[name, "cpu"], at);
         assert!(code == 0 && text.contains("cpu"), "{text}");
     }
-    // A picture without a description counts as one of another program, so its scene has to be given.
+    // A picture without a description counts as another program's, so its scene must be given.
     let plain = image::open(at.join("a.png")).unwrap().to_rgb8();
     plain.save(at.join("plain.png")).unwrap();
     let scene = ["--scene", "three-spheres"];
@@ -93,16 +92,16 @@ fn integer_and_float_pictures_are_compared_with_films() {
     fs::write(at.join("turned.pfm"), &pfm).unwrap();
     let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
     assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
-    // In a float picture, quantisation is not known, so only blocks in the smooth sky may show a difference.
+    // A float picture's quantisation is unknown, so only blocks in the smooth sky may show a difference.
     let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
     assert!(text.contains("floats") && text.contains("verdict"), "{text}");
 }
 
 #[test]
-fn a_picture_is_decoded_as_its_recipe_says() {
+fn picture_is_decoded_by_its_recipe() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // Linear integers, and ones of which only the upper half is linear: the recipe decides, whatever --encoding says.
+    // Linear integers, entirely or only in the upper half: the recipe overrides --encoding.
     for stage in ["diffuse", "gamut"] {
         render(at, "film.exr", &["--stage", stage, "--samples", "64"]);
         render(at, "picture.png", &["--stage", stage, "--samples", "64"]);
@@ -115,7 +114,7 @@ fn a_picture_is_decoded_as_its_recipe_says() {
 }
 
 #[test]
-fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
+fn backend_repeats_samples_without_estimate() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "one-half.png", &["--samples", "16", "--estimate-error", "off"]);
@@ -126,7 +125,7 @@ fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
 }
 
 #[test]
-fn a_clipped_picture_differs_from_a_dark_one_is_equal_to_itself_and_is_not_judged_next_to_another() {
+fn clipped_picture_verdicts() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, dark) in [("white.png", 0), ("half.png", 32)] {
@@ -151,11 +150,11 @@ fn a_clipped_picture_differs_from_a_dark_one_is_equal_to_itself_and_is_not_judge
 }
 
 #[test]
-fn nan_or_infinity_in_only_one_picture_is_a_difference() {
+fn non_finite_in_one_picture_differs() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, value) in [("number.pfm", 0.5), ("nan.pfm", f32::NAN), ("minus.pfm", -f32::INFINITY)] {
-        // A PFM begins with the lowest row: row 5 of the file is row 10 of 16 from above.
+        // A PFM starts with the lowest row: row 5 of the file is row 10 of 16 from above.
         let pixels = (0..64 * 16).flat_map(|i| [if i == 5 * 64 + 30 { value } else { 0.5 }; 3]);
         let header = b"PF\n64 16\n-1\n".iter().copied();
         fs::write(at.join(name), header.chain(pixels.flat_map(f32::to_le_bytes)).collect::<Vec<u8>>())
@@ -164,8 +163,8 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
     for (first, second) in [("number.pfm", "nan.pfm"), ("nan.pfm", "minus.pfm"), ("minus.pfm", "number.pfm")]
     {
         let (code, text, _) = compare(&[first, second, "--heat-map", "map.png"], at);
-        let told = "3 channels of 1 pixels are NaN or infinite in only one picture, the first at 30,10:";
-        assert!(code == 1 && text.contains(told), "{text}");
+        let note = "3 channels of 1 pixels are NaN or infinite in only one picture, the first at 30,10:";
+        assert!(code == 1 && text.contains(note), "{text}");
         let (_, found) = json(&[first, second], at);
         assert_eq!(found["non_finite"]["first"], serde_json::json!([30, 10]), "{found}");
         let map = image::open(at.join("map.png")).unwrap().to_rgb8();
@@ -176,7 +175,7 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
 }
 
 #[test]
-fn the_worst_block_is_named_by_its_column_and_row() {
+fn worst_block_has_column_and_row() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, by) in [("a.png", 0), ("b.png", 20)] {
@@ -209,7 +208,7 @@ fn backends_agree_on_the_same_samples() {
     }
     let (code, text, _) = compare(&["cpu", "cpu", "--samples", "4", "--size", "96x54"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
-    // A backend compared with a film renders the film's scene, size and samples.
+    // A backend compared with a film renders its scene, size and samples.
     render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
     let (code, text, errors) = compare(&["film.exr", "portable"], at);
     assert!(
@@ -219,7 +218,7 @@ fn backends_agree_on_the_same_samples() {
 }
 
 #[test]
-fn what_cannot_be_compared_exits_with_2() {
+fn incomparable_pictures_exit_with_2() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "a.exr", &["--samples", "2"]);

@@ -37,7 +37,7 @@ fn compare(job: &RenderJob, paths: [&PathRecord; 2], tolerance: f64) -> PathComp
 }
 
 #[test]
-fn records_of_all_samples_add_up_to_the_film() {
+fn records_sum_to_film() {
     let job = small("three-spheres", 16, 9);
     let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
     let (film, stats) = rendered(&mut renderer, &job, 0..13);
@@ -56,7 +56,7 @@ fn records_of_all_samples_add_up_to_the_film() {
 }
 
 #[test]
-fn the_cpu_and_the_reference_agree_on_most_paths() {
+fn cpu_matches_reference_on_most_paths() {
     let job = small("three-spheres", 32, 18);
     let best = Isa::available().last().copied();
     let mut parted = 0;
@@ -72,7 +72,7 @@ fn the_cpu_and_the_reference_agree_on_most_paths() {
 }
 
 #[test]
-fn the_gpu_records_what_it_renders_to_the_bit() {
+fn gpu_records_match_film() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let halves = job_of(&scene, camera, [12, 7], 24, SamplerKind::Sobol, true);
@@ -97,7 +97,7 @@ fn the_gpu_records_what_it_renders_to_the_bit() {
 }
 
 #[test]
-fn the_gpu_and_the_cpu_record_the_same_paths() {
+fn gpu_and_cpu_record_same_paths() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(16, 9) {
         if job.rules().surface != SurfaceRule::Exact {
@@ -123,7 +123,7 @@ fn diff(arguments: &[&str]) -> (i32, String, String) {
 }
 
 #[test]
-fn a_difference_is_found_marked_and_told() {
+fn difference_is_found_and_marked() {
     let sides = ["--scene", "book", "--sides", "portable,reference"];
     let (code, found, errors) = diff(&[&sides[..], &["--find", "2"]].concat());
     assert_eq!(code, 1, "{errors}");
@@ -131,7 +131,7 @@ fn a_difference_is_found_marked_and_told() {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
-    // The difference is the second less the first.
+    // The difference is the second minus the first.
     let numbers = |label: &str| -> Vec<f64> {
         let line = found.lines().rfind(|line| line.starts_with(label)).unwrap();
         line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
@@ -162,7 +162,7 @@ fn equal_sides_agree_to_the_bit() {
 }
 
 #[test]
-fn the_cpu_and_the_reference_agree_within_the_tolerance() {
+fn cpu_matches_reference_within_tolerance() {
     let (code, text, errors) = diff(&["--sides", "cpu,reference", "--pixel", "400,220"]);
     assert_eq!(code, 0, "{text}{errors}");
     assert!(text.contains("the paths agree: the largest difference is") && text.contains('≈'), "{text}");
@@ -193,7 +193,7 @@ fn json_has_both_paths() {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn incomparable_sides_are_refused() {
     let cases: [(&[&str], &[&str]); 9] = [
         (&[], &["--pixel"]),
         (&["--pixel", "800,0", "--sides", "cpu,reference"], &["800,0", "799,449"]),
@@ -217,9 +217,9 @@ fn what_cannot_be_compared_is_refused() {
     }
 }
 
-/// The page shows the end of what a command prints. Both of its sides are the same on every processor.
+/// The companion shows the end of a command's output. Both sides are the same on every processor.
 #[test]
-fn the_page_shows_what_the_program_prints() {
+fn companion_output_is_current() {
     let page = include_str!("../docs/compare.md");
     let command = page.lines().find_map(|line| line.strip_prefix("weekender diff --seed")).unwrap();
     let words = command.split('#').next().unwrap().split_whitespace();

@@ -1,4 +1,4 @@
-//! `weekender gallery`: what is rendered again, what an interruption and a full disk leave, and the page.
+//! `weekender gallery`: which stills are rendered again, the state after an interruption or a full disk, and the page.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -30,7 +30,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Runs a gallery that must succeed, and returns the stages that were rendered.
+/// Runs a gallery that must succeed, and returns the rendered stages.
 fn rendered(at: &Path, arguments: &[&str]) -> Vec<String> {
     let output = run(at, &[&["--out", "g"], arguments].concat());
     let printed = text(&output.stdout);
@@ -50,7 +50,7 @@ fn pictures(at: &Path) -> Vec<Value> {
 const SMALL: [&str; 3] = ["--quick", "--only", "sky,red-sphere,antialiasing"];
 
 #[test]
-fn only_what_is_missing_damaged_or_changed_is_rendered() {
+fn renders_only_outdated_stills() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let all = ["sky", "red-sphere", "aliased", "antialiased"];
@@ -60,7 +60,7 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
     assert!(rendered(at, &SMALL).is_empty());
     assert_eq!(std::fs::read(file("index.html")).unwrap(), page);
 
-    // A damaged byte and a file that is gone; a younger file alone is no change.
+    // A damaged byte and a deleted file; a newer file alone is no change.
     let mut bytes = std::fs::read(file("red-sphere.png")).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
@@ -77,7 +77,7 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
     std::fs::write(file("gallery.json"), json.replace(&fingerprint, "0123456789abcdef")).unwrap();
     assert_eq!(rendered(at, &SMALL), ["aliased"]);
 
-    // A description that cannot be read is no loss of pictures, only of time.
+    // An unreadable description only costs time, not pictures.
     std::fs::write(file("gallery.json"), "{").unwrap();
     let output = run(at, &[&["--out", "g"], &SMALL[..]].concat());
     assert!(text(&output.stderr).contains("gallery.json"), "{}", text(&output.stderr));
@@ -85,14 +85,14 @@ fn only_what_is_missing_damaged_or_changed_is_rendered() {
 }
 
 #[test]
-fn a_full_picture_is_also_good_enough_for_quick_ones() {
+fn full_still_satisfies_quick_order() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let only = ["--only", "sky,antialiased"];
     let quick = [&["--quick"][..], &only].concat();
     assert_eq!(rendered(at, &quick), ["sky", "antialiased"]);
     assert_eq!(pictures(at)[0]["width"], 480);
-    // One sample more or less would not be the figure, so its full picture is the quick one.
+    // One sample more or less would change the figure, so its full picture is also the quick one.
     assert_eq!(rendered(at, &only), ["sky"]);
     let sky = &pictures(at)[0];
     assert_eq!(
@@ -117,9 +117,9 @@ fn ctrl_c_keeps_finished_pictures() {
     let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(signalled.success());
     let output = child.wait_with_output().unwrap();
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{told}");
-    assert!(told.contains("1 picture missing") && told.contains("the same command again"), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("1 picture missing") && message.contains("the same command again"), "{message}");
     let stages: Vec<Value> = pictures(at).iter().map(|still| still["stage"].clone()).collect();
     assert_eq!(stages, ["sky"]);
     let page = std::fs::read_to_string(at.join("g/index.html")).unwrap();
@@ -130,7 +130,7 @@ fn ctrl_c_keeps_finished_pictures() {
 
 #[cfg(unix)]
 #[test]
-fn a_full_disk_ends_it_with_a_remedy_and_keeps_what_was_written() {
+fn full_disk_keeps_finished_stills() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // Blocks of 512 bytes: the first picture and its description fit, the second does not.
@@ -139,10 +139,10 @@ fn a_full_disk_ends_it_with_a_remedy_and_keeps_what_was_written() {
         env!("CARGO_BIN_EXE_weekender")
     );
     let output = Command::new("sh").current_dir(at).args(["-c", &limited]).output().unwrap();
-    let told = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{told}");
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{message}");
     for part in ["sky.png", "1 picture", "ulimit -f"] {
-        assert!(told.contains(part), "{told} should say {part}");
+        assert!(message.contains(part), "{message} should say {part}");
     }
     let names: HashSet<String> = std::fs::read_dir(at.join("g"))
         .unwrap()
@@ -169,39 +169,39 @@ fn bad_input_is_refused_with_a_remedy() {
             .args(arguments)
             .output()
             .unwrap();
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
         for part in parts {
-            assert!(told.contains(part), "{arguments:?} should say {part:?}: {told}");
+            assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
         }
     }
     assert_eq!(std::fs::read(at.join("file")).unwrap(), b"");
 }
 
-/// What `attribute` holds everywhere on the page.
+/// Every value of `attribute` on the page.
 fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
     let begin = format!(" {attribute}=\"");
     page.split(&begin).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
 #[test]
-fn a_page_of_another_origin_is_not_replaced() {
+fn foreign_page_is_not_replaced() {
     let at = TempDir::new().unwrap();
     let page = at.path().join("index.html");
     std::fs::write(&page, "<title>Me</title>").unwrap();
-    for words in ["gallery --quick", "companion --quick", "stress --filter tiny"] {
+    for invocation in ["gallery --quick", "companion --quick", "stress --filter tiny"] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-        command.current_dir(at.path()).args(words.split(' ')).args(["--out", "."]);
+        command.current_dir(at.path()).args(invocation.split(' ')).args(["--out", "."]);
         let output = command.output().unwrap();
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        assert!(told.contains("there is a page that Weekender did not write; move it away"), "{told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("there is a page that Weekender did not write; move it away"), "{message}");
         assert_eq!(std::fs::read_to_string(&page).unwrap(), "<title>Me</title>");
     }
 }
 
 #[test]
-fn the_page_is_complete_and_needs_no_network() {
+fn page_is_complete_and_offline() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     rendered(at, &SMALL);

@@ -1,4 +1,4 @@
-//! All requested samples are added: with long paths, many samples, loops that a driver ends early, and a device that
+//! All requested samples are added, despite long paths, many samples, loops that a driver cuts short, and a device that
 //! leaves samples out.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -20,9 +20,9 @@ fn picture_mean(film: &Film) -> f64 {
     means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
 }
 
-/// Each thread would need far more loop iterations than llvmpipe allows.
+/// Each thread needs far more loop iterations than llvmpipe allows.
 #[test]
-fn few_pixels_with_many_samples_are_whole() {
+fn few_pixels_with_many_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
@@ -32,7 +32,7 @@ fn few_pixels_with_many_samples_are_whole() {
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
 }
 
-/// The eye in a closed white ball: no path ends before its last ray, and none brings light.
+/// The eye in a closed white ball: every path runs to its last ray, and none brings light.
 fn closed(max_depth: u32) -> RenderJob {
     let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
     let white = scene.add_material("white", Material::Lambertian { albedo: DVec3::ONE });
@@ -41,18 +41,18 @@ fn closed(max_depth: u32) -> RenderJob {
 }
 
 #[test]
-fn every_ray_of_the_longest_paths_is_traced() {
+fn longest_paths_are_complete() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = closed(10_000);
     let mut film = job.new_film();
     let stats = gpu.accumulate(&job, 0..8, &mut film, &go_on()).unwrap();
     assert_eq!((stats.paths, stats.rays), (15 * 8, 15 * 8 * 10_000));
     assert_eq!((film.rejected(), picture_mean(&film)), (0, 0.0));
-    // The recorded paths are just as long.
+    // Recorded paths are just as long.
     assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
 }
 
-/// Three spheres with glass in which the angle of incidence is stored from ray to ray.
+/// Three spheres with glass that stores the angle of incidence from ray to ray.
 fn steep_glass() -> (Scene, Camera) {
     let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
     for named in &mut scene.materials {
@@ -65,7 +65,7 @@ fn steep_glass() -> (Scene, Camera) {
 
 /// Putting paths aside does not change the film.
 #[test]
-fn paths_that_are_put_aside_give_the_same_film() {
+fn putting_paths_aside_keeps_film() {
     let scenes: [(Scene, Camera); 3] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA), steep_glass()];
     for hierarchy in [HierarchyKind::Whole, HierarchyKind::Compressed] {
         let options = GpuOptions { hierarchy: Some(hierarchy), ..GpuOptions::default() };
@@ -82,15 +82,15 @@ fn paths_that_are_put_aside_give_the_same_film() {
     }
 }
 
-/// The next picture does not take up the paths that an abandoned picture has put aside.
+/// A new picture does not resume the paths that an abandoned one put aside.
 #[test]
-fn what_an_abandoned_picture_put_aside_is_lost() {
+fn abandoned_paths_are_not_resumed() {
     let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
     let Some(mut used) = gpu(options.clone()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
     let long = closed(200);
-    // Ends while dispatches are under way, however long the device takes to begin.
+    // Cancel while dispatches are under way, however long the device takes to start.
     let mut time = Duration::from_millis(10);
     while used.report().dispatches < 3 {
         let cancel = go_on();
@@ -105,13 +105,13 @@ fn what_an_abandoned_picture_put_aside_is_lost() {
         time *= 2;
     }
     assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
-    let told = used.take_messages();
-    assert!(!told.iter().any(|message| message.contains("traced again")), "{told:?}");
+    let messages = used.take_messages();
+    assert!(!messages.iter().any(|message| message.contains("traced again")), "{messages:?}");
 }
 
-/// What a film has already got stays in it; what is still on the device is traced again, and does not count twice.
+/// A film keeps the samples it has; those still on the device are traced again and do not count twice.
 #[test]
-fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
+fn cancelled_samples_on_device_are_lost() {
     let Some(mut other) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
@@ -131,10 +131,10 @@ fn what_a_cancelled_pass_leaves_on_the_device_is_lost() {
     }
 }
 
-/// If a ray needs more iterations for a list than a dispatch allows, the picture is traced ray by ray. A list that no
+/// If a list needs more iterations per ray than a dispatch allows, the picture is traced ray by ray. A list that no
 /// loop can handle is refused.
 #[test]
-fn long_lists_are_whole_or_refused() {
+fn long_lists_are_complete_or_refused() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let list = |count: u32| {
         let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
@@ -159,7 +159,7 @@ fn long_lists_are_whole_or_refused() {
 }
 
 #[test]
-fn samples_that_a_device_leaves_out_are_traced_again() {
+fn omitted_samples_are_traced_again() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [50, 43], 12, SamplerKind::Sobol, true);
     let Some(mut good) = gpu(GpuOptions::default()) else { return };
@@ -169,9 +169,9 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
         let options = GpuOptions { injection, samples_per_dispatch: Some(2), ..GpuOptions::default() };
         let mut short = gpu(options.clone()).unwrap();
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
-        let said = short.take_messages().join("; ");
-        assert!(said.contains("traced again") && said.contains("the device added only 0 of"), "{said}");
-        // The same with several passes, whenever it is noticed.
+        let joined = short.take_messages().join("; ");
+        assert!(joined.contains("traced again") && joined.contains("the device added only 0 of"), "{joined}");
+        // The same over several passes, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();
         for start in [0, 8, 16, 24] {
@@ -184,7 +184,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
 }
 
 #[test]
-fn a_device_that_always_leaves_samples_out_fails() {
+fn device_that_always_omits_samples_fails() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
     let injection =
@@ -202,7 +202,7 @@ fn a_device_that_always_leaves_samples_out_fails() {
 }
 
 #[test]
-fn samples_that_a_film_has_already_are_refused_and_the_device_goes_on() {
+fn duplicate_samples_are_refused() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -217,7 +217,7 @@ fn samples_that_a_film_has_already_are_refused_and_the_device_goes_on() {
 }
 
 #[test]
-fn samples_that_are_found_missing_at_the_end_are_traced_again_and_no_others() {
+fn only_missing_samples_are_traced_again() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
     let Some(mut good) = gpu(GpuOptions::default()) else { return };

@@ -1,5 +1,5 @@
-//! The graphics driver stays loaded once an adapter has been looked for: threads that have used it may end later.
-//! A test binary of its own, because a renderer of another test would keep the driver loaded.
+//! The graphics driver stays loaded after the search for adapters, because threads that used it may end later. A test
+//! binary of its own, because another test's renderer would keep the driver loaded.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -8,7 +8,7 @@ mod gpu_common;
 use std::collections::BTreeSet;
 use weekender::render_gpu::GpuOptions;
 
-/// The shared libraries that are mapped into this process.
+/// The shared libraries mapped into this process.
 fn libraries() -> BTreeSet<String> {
     let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
     let files = maps.lines().filter_map(|line| line.split_whitespace().nth(5));
@@ -16,7 +16,7 @@ fn libraries() -> BTreeSet<String> {
 }
 
 #[test]
-fn the_driver_stays_loaded_after_the_last_renderer() {
+fn driver_stays_loaded() {
     let before = libraries();
     let Some(gpu) = gpu_common::gpu(GpuOptions::default()) else { return };
     let while_open = libraries();

@@ -1,4 +1,4 @@
-//! Device faults in each phase of a render: the picture is complete in the end, and the user is told.
+//! Device faults in each phase of a render: the picture still becomes complete, and the user gets a message.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -29,11 +29,11 @@ fn failing(fault: Fault, point: InjectionPoint, after: u64) -> Option<BackendCho
 
 fn check(progressive: Progressive, status: &Status, case: &str) {
     assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}: {status:?}");
-    let said = status.messages.join("; ");
-    println!("{case}: {said}");
-    assert!(said.contains("gpu failed") && said.contains("the CPU continues"), "{case}: {said}");
+    let joined = status.messages.join("; ");
+    println!("{case}: {joined}");
+    assert!(joined.contains("gpu failed") && joined.contains("the CPU continues"), "{case}: {joined}");
     if case.contains("Hang") {
-        assert!(said.contains("has not responded"), "{case}: {said}");
+        assert!(joined.contains("has not responded"), "{case}: {joined}");
     }
     let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
     assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
@@ -41,7 +41,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
 }
 
 #[test]
-fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
+fn fault_in_any_phase_completes_picture() {
     // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
         let points = [
@@ -62,7 +62,7 @@ fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
 }
 
 #[test]
-fn a_fault_during_a_pause_is_survived() {
+fn fault_during_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
         let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
@@ -78,9 +78,9 @@ fn a_fault_during_a_pause_is_survived() {
     }
 }
 
-/// As when the window is resized while the device does not answer.
+/// As when the window is resized while the device hangs.
 #[test]
-fn a_new_job_is_begun_while_the_device_hangs() {
+fn new_job_starts_while_device_hangs() {
     let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
     let mut progressive = Progressive::spawn().unwrap();
     for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {

@@ -1,5 +1,5 @@
-//! Compares the GPU with the CPU sample by sample: the same random numbers, so the same paths except for rounding.
-//! (Case 13 of docs/numerics.md.)
+//! Compares the GPU with the CPU sample by sample: equal random numbers give equal paths, except for rounding. (Case 13
+//! of docs/numerics.md.)
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -14,18 +14,18 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Material, Scene};
 use weekender::stages::SurfaceRule;
 
-/// Samples that differ by more have taken different paths.
+/// Samples that differ by more took different paths.
 const DIVERGED: f64 = 1e-3;
 
-/// Allowed fraction of paths that part. If rounding alone, compared between the CPU's two ways of rounding, parts
-/// more paths of a scene, twice that fraction is allowed.
+/// Allowed share of diverging paths. If rounding alone, compared between the CPU's two ways of rounding, diverts more
+/// of a scene's paths, twice that share is allowed.
 const DIVERGED_SHARE: f64 = 1e-4;
 
 /// The difference between the samples of two renderers.
 #[derive(Debug, Default)]
 struct Difference {
     samples: usize,
-    /// Number of samples with a difference above [`DIVERGED`].
+    /// Samples that differ by more than [`DIVERGED`].
     diverged: usize,
     sum: f64,
     square_sum: f64,
@@ -66,7 +66,7 @@ fn unfused() -> CpuRenderer {
     CpuRenderer::new(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() }).unwrap()
 }
 
-/// The fraction of samples that part between two renderers.
+/// Share of samples that diverge between two renderers.
 fn parted_share(a: &mut dyn Renderer, b: &mut dyn Renderer, job: &RenderJob) -> f64 {
     let mut difference = Difference::default();
     for index in INDICES {
@@ -78,7 +78,7 @@ fn parted_share(a: &mut dyn Renderer, b: &mut dyn Renderer, job: &RenderJob) -> 
 const INDICES: [u64; 4] = [0, 5, 50, 499];
 
 #[test]
-fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
+fn every_job_matches_cpu_by_sample() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let mut failures = Vec::new();
@@ -123,17 +123,17 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// Side of a block in pixels.
+/// Side of a block, pixels.
 const SIDE: usize = 8;
 
-/// Number of independent pictures per side; their spread gives the deviation of the mean.
+/// Independent pictures per side; their spread gives the deviation of the mean.
 const PICTURES: usize = 8;
 
 /// Samples per pixel of each picture.
 const SAMPLES: u64 = 32;
 
-/// Limit that the largest of all blocks keeps in 99 of 100 cases, by Student's distribution with 14 degrees of
-/// freedom and 1200 independent blocks.
+/// Limit that the largest block keeps in 99 of 100 cases, by Student's distribution with 14 degrees of freedom and 1200
+/// independent blocks.
 const LARGEST_BLOCK: f64 = 6.8;
 
 /// Mean radiance of each block and channel.
@@ -170,8 +170,8 @@ fn with_seed(job: &RenderJob, seed: u32) -> RenderJob {
     RenderJob::new(job.scene().clone(), *job.camera(), settings, *job.rules()).unwrap()
 }
 
-/// Difference of each block in deviations. The pictures of the two sides have different random numbers. With so few
-/// pictures, the differences have Student's distribution with `2 PICTURES - 2` degrees of freedom.
+/// Each block's difference in deviations. The two sides' pictures have different random numbers. With so few pictures,
+/// the differences follow Student's distribution with `2 PICTURES - 2` degrees of freedom.
 fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
     let mut seed = 100;
     let sides = sides.map(|(renderer, job)| {
@@ -194,7 +194,7 @@ fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
     z
 }
 
-/// The sum of the squares of the differences of blocks, its bound for equal pictures, and the largest difference.
+/// Sum of the blocks' squared differences, its bound for equal pictures, and the largest difference.
 fn differences_of_blocks(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> [f64; 3] {
     let z = block_differences(sides);
     let degrees = (2 * PICTURES - 2) as f64;
@@ -204,7 +204,7 @@ fn differences_of_blocks(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]
     let count = z.len() as f64;
     let square_sum: f64 = z.iter().map(|z| z * z).sum();
     let largest = z.iter().fold(0.0_f64, |a, z| a.max(z.abs()));
-    // The channels of a block are correlated, so only a third of the numbers are independent.
+    // A block's channels are correlated, so only a third of the numbers are independent.
     let bound = count * mean + 4.0 * (3.0 * variance * count).sqrt();
     println!("{name:24} {count} blocks: squares {square_sum:.1} of {bound:.1}, largest {largest:.2}");
     [square_sum, bound, largest]
@@ -217,7 +217,7 @@ fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool
 }
 
 #[test]
-fn blocks_of_other_samples_agree() {
+fn independent_samples_agree_by_block() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let mut unfused = unfused();
@@ -227,8 +227,8 @@ fn blocks_of_other_samples_agree() {
         if squares <= bound && largest <= LARGEST_BLOCK {
             return false;
         }
-        // Stages such as shadow-acne show rounding itself. A device may round in one of the CPU's two ways, or fuse some
-        // operations of its choice; then it differs from the CPU about as much as those two do from each other.
+        // Stages such as shadow-acne show rounding itself. A device may round in either of the CPU's two ways, or fuse
+        // operations of its choice, and then differs from the CPU about as much as those two from each other.
         let [by_rounding, _, largest_by_rounding] =
             differences_of_blocks(name, [(&mut unfused, job), (&mut cpu, job)]);
         job.rules().surface == SurfaceRule::Exact
@@ -240,7 +240,7 @@ fn blocks_of_other_samples_agree() {
 }
 
 #[test]
-fn blocks_of_other_pictures_do_not() {
+fn different_pictures_disagree_by_block() {
     let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = |scene: &Scene| job_of(scene, camera, [48, 32], 20, SamplerKind::Sobol, false);
     let right = job(&scene);
@@ -265,7 +265,7 @@ fn both_samplers_and_two_halves_are_paired() {
                 difference.add(&one(&mut gpu, &job, index), &one(&mut cpu, &job, index));
             }
             assert!(difference.mean().abs() < 2e-6 && difference.rms() < 5e-5, "{difference:?}");
-            // Four deviations more than the mean of a Poisson distribution.
+            // Four deviations above the mean of a Poisson distribution.
             let expected = DIVERGED_SHARE * difference.samples as f64;
             assert!(difference.diverged as f64 <= expected + 4.0 * expected.sqrt(), "{difference:?}");
         }

@@ -1,4 +1,4 @@
-//! The program with a GPU, as a user runs it: the device is lost, or the CPU and the GPU share a film.
+//! The program with a GPU, as users run it: the device is lost, or CPU and GPU share a film.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -8,13 +8,13 @@ use tempfile::TempDir;
 use weekender::film::checkpoint;
 use weekender::render_gpu::GpuOptions;
 
-/// Runs the program on the adapter of these tests; `None` without an adapter.
+/// Runs the program on the tests' adapter; `None` without one.
 fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
     let gpu = gpu_common::gpu(GpuOptions::default())?;
     let adapter = gpu.adapter();
     let program = env!("CARGO_BIN_EXE_weekender");
     let mut command = if cfg!(unix) && adapter.is_software && arguments.contains(&OUT_OF_MEMORY) {
-        // A software adapter never runs out of memory by itself, so the system limits it to 8 GiB.
+        // A software adapter never runs out of memory by itself, so limit it to 8 GiB.
         let mut shell = Command::new("sh");
         shell.args(["-c", "ulimit -v 8388608 && exec \"$0\" \"$@\"", program]);
         shell
@@ -34,14 +34,14 @@ fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
 const OUT_OF_MEMORY: &str = "--simulate-out-of-memory";
 
 #[test]
-fn a_fault_leaves_a_whole_picture_and_a_warning() {
+fn fault_completes_picture_with_warning() {
     let directory = tempfile::tempdir().unwrap();
     let faults = [
         ("--simulate-device-lost", "lost"),
         (OUT_OF_MEMORY, "Memory"),
         ("--simulate-invalid-call", "alidation"),
     ];
-    // Next to the CPU, a slow device may get only its first piece.
+    // Beside the CPU, a slow device may only get its first piece.
     for (device, after) in [("gpu", "3"), ("cpu,gpu", "0")] {
         for (flag, word) in faults {
             // The CPU may trace a few samples before the device takes its first piece.
@@ -84,9 +84,9 @@ fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
     report["backends"].as_array().unwrap().iter().map(part).collect()
 }
 
-/// The samples from the device are those of the GPU to the bit, and the others are those of the CPU.
+/// The device's samples equal the GPU's bit for bit, and the others the CPU's.
 #[test]
-fn a_film_after_a_fault_holds_what_the_counts_say() {
+fn film_after_fault_matches_counts() {
     let directory = tempfile::tempdir().unwrap();
     let lost =
         ["--samples", "256", "--simulate-invalid-call", "5", "--out", "both.exr", "--json", "both.json"];
@@ -114,7 +114,7 @@ fn a_film_after_a_fault_holds_what_the_counts_say() {
 }
 
 #[test]
-fn cpu_and_gpu_share_a_film_and_say_who_did_what() {
+fn cpu_and_gpu_share_film() {
     let directory = tempfile::tempdir().unwrap();
     let arguments = ["--device", "cpu,gpu", "--samples", "256", "--out", "both.exr", "--json", "both.json"];
     if run(&directory, &arguments).is_none() {

@@ -1,4 +1,4 @@
-//! The whole GPU renderer: known radiance, odd sizes, films that another backend continues, failures.
+//! The whole GPU renderer: known radiance, odd sizes, films continued by another backend, failures.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -30,7 +30,7 @@ fn adapters_are_listed() {
 }
 
 #[test]
-fn software_is_taken_only_when_allowed() {
+fn software_adapter_needs_permission() {
     let Some(software) = adapters().into_iter().find(|a| a.is_software) else { return };
     let options = GpuOptions { adapter: Some(software.name.clone()), ..GpuOptions::default() };
     assert!(matches!(GpuRenderer::new(options), Err(GpuError::Software { .. })));
@@ -83,9 +83,9 @@ fn odd_sizes() {
     }
 }
 
-/// The gradient ends in the last column and row, of which a picture of one column or row has none.
+/// The gradient ends in the last column and row, which a picture of one column or row does not have.
 #[test]
-fn a_gradient_of_one_column_or_row_is_a_number() {
+fn single_column_gradient_is_finite() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut recipe = Stage::find("ppm-gradient").unwrap().recipe();
     for size in [[1, 5], [5, 1], [1, 1]] {
@@ -97,7 +97,7 @@ fn a_gradient_of_one_column_or_row_is_a_number() {
 }
 
 #[test]
-fn dispatches_and_slabs_do_not_show() {
+fn dispatches_and_slabs_are_invisible() {
     let Some(mut whole) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([50, 43], 12, true);
     let expected = rendered(&mut whole, &job, 37);
@@ -140,7 +140,7 @@ fn specialised_is_general() {
 
 /// Only the fuzz of metals uses the random direction here.
 #[test]
-fn fuzzy_metal_alone_is_the_cpus() {
+fn lone_fuzzy_metal_matches_cpu() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = |fuzz: f64| {
         let mut scene = Scene::default();
@@ -198,7 +198,7 @@ fn hierarchies_agree() {
 }
 
 #[test]
-fn film_goes_on_from_cpu_to_gpu_and_back() {
+fn film_moves_between_cpu_and_gpu() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = cpu();
     let job = three_spheres([80, 45], 24, true);
@@ -219,7 +219,7 @@ fn film_goes_on_from_cpu_to_gpu_and_back() {
         / (80.0 * 45.0);
     assert!(difference.abs() < 1e-5, "{difference}");
 
-    // Adding the same samples twice is refused, and nothing is added.
+    // Adding samples twice is refused, and the film is unchanged.
     let before = film.clone();
     assert!(matches!(gpu.accumulate(&job, 120..130, &mut film, &go_on()), Err(RenderError::Film(_))));
     assert!(film == before);
@@ -238,14 +238,14 @@ fn cancelled_between_dispatches() {
 }
 
 #[test]
-fn samples_stay_on_the_device_until_they_are_fetched() {
+fn samples_stay_on_device_until_fetched() {
     let new = || gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() });
     let (Some(mut other), Some(mut gpu)) = (new(), new()) else { return };
     let job = three_spheres([50, 43], 12, true);
     let expected = rendered(&mut other, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
-    // The first pass fetches the film by itself, because the cost of fetching is not yet known.
+    // The first pass fetches the film by itself, because the cost of fetching is still unknown.
     let mut rays = gpu.advance(&job, 0..4, &mut film, &go_on()).unwrap().rays;
     assert_eq!((film.sample_count(), rays), (0, 0));
     let second = gpu.advance(&job, 4..8, &mut film, &go_on()).unwrap();
@@ -266,7 +266,7 @@ fn samples_stay_on_the_device_until_they_are_fetched() {
 }
 
 #[test]
-fn a_new_film_does_not_get_the_old_ones_samples() {
+fn new_film_gets_no_old_samples() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 36], 8, false);
     let expected = rendered(&mut gpu, &job, 4);
@@ -286,7 +286,7 @@ fn a_new_film_does_not_get_the_old_ones_samples() {
 }
 
 #[test]
-fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
+fn unwanted_kernel_does_not_block() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 36], 8, false);
     let outcome = gpu.prepare(&job, &AtomicBool::new(true));
@@ -295,7 +295,7 @@ fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
 }
 
 #[test]
-fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
+fn cpu_takes_over_after_fault() {
     // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid] {
         let options = GpuOptions {
@@ -328,7 +328,7 @@ fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
 }
 
 #[test]
-fn resolves_to_the_films_picture() {
+fn resolve_matches_film() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = three_spheres([64, 37], 8, true);
     let film = rendered(&mut gpu, &job, 8);
@@ -371,7 +371,7 @@ fn many_spheres_and_large_radiance() {
 }
 
 #[test]
-fn a_camera_that_moves_keeps_the_scene_on_the_device() {
+fn moving_camera_keeps_scene_on_device() {
     let Some(mut moved) = gpu(GpuOptions::default()) else { return };
     let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
     rendered(&mut moved, &job, 2);

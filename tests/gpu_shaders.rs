@@ -1,4 +1,4 @@
-//! The text of the shaders: valid for naga (and for tint, if it is installed), with the memory layout of the host.
+//! The shaders' text: valid for naga (and for tint, if installed), with the host's memory layout.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -19,7 +19,7 @@ fn parsed(entry_point: EntryPoint) -> naga::Module {
     }
 }
 
-/// The values of all overrides: general kernels with a list and with each hierarchy, and one with every stage rule.
+/// The overrides of general kernels with a list and with each hierarchy, and of one with every stage rule.
 fn variants() -> [Vec<(String, f64)>; 4] {
     let general = Features::default();
     let variants = [
@@ -56,36 +56,36 @@ fn every_shader_is_valid() {
         let entry = Some((naga::ShaderStage::Compute, entry_point.name()));
         for values in variants() {
             let values = values.into_iter().collect();
-            // The result is validated again.
+            // Validate the result, too.
             process_overrides(&module, &info, entry, &values).unwrap();
         }
     }
 }
 
-/// tint is the compiler of another browser. No package system that we know of has it, so the test looks for it and
-/// reports its absence; with `WEEKENDER_REQUIRE_TINT=1` absence is a failure.
+/// tint is another browser's compiler. No package system that we know of has it, so its absence is only reported unless
+/// `WEEKENDER_REQUIRE_TINT=1`.
 #[test]
-fn every_shader_is_valid_to_tint() {
+fn tint_accepts_every_shader() {
     if let Err(error) = std::process::Command::new("tint").arg("--version").output() {
         let is_required = std::env::var("WEEKENDER_REQUIRE_TINT").as_deref() == Ok("1");
         assert!(!is_required, "tint cannot be run: {error}");
         say_loudly("tint is not installed: no shader was shown to it");
         return;
     }
-    // An invalid shader is refused, which shows that tint really checks the others.
-    assert!(!told_by_tint("fn broken( {", &[]).status.success());
+    // An invalid shader fails, so tint really checks the others.
+    assert!(!run_tint("fn broken( {", &[]).status.success());
     for entry_point in EntryPoint::ALL {
         for values in variants() {
             let values: Vec<String> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
-            let output = told_by_tint(&source(entry_point), &values);
-            let told = String::from_utf8_lossy(&output.stderr);
-            assert!(output.status.success(), "{}: {told}", entry_point.name());
+            let output = run_tint(&source(entry_point), &values);
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{}: {message}", entry_point.name());
         }
     }
 }
 
-/// Output of tint for a shader with values of overrides.
-fn told_by_tint(text: &str, overrides: &[String]) -> std::process::Output {
+/// tint's output for a shader with overrides.
+fn run_tint(text: &str, overrides: &[String]) -> std::process::Output {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("shader.wgsl");
     std::fs::write(&file, text).unwrap();
@@ -124,7 +124,7 @@ fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, String, usize)>
     (members.collect(), *span as usize)
 }
 
-/// The shaders read the names, types, offsets and sizes that the host writes.
+/// Shaders read the names, types, offsets and sizes that the host writes.
 #[test]
 fn layouts_agree() {
     let module = parsed(EntryPoint::PathTrace);
@@ -136,9 +136,9 @@ fn layouts_agree() {
     }
 }
 
-/// A record as the host writes it has the length that the shaders expect, and the order of its fields.
+/// A record as the host writes it has the length and field order that the shaders expect.
 #[test]
-fn words_are_those_of_the_fields() {
+fn words_match_fields() {
     let vectors = ShadingRecord {
         reference: [1.0, 2.0, 3.0],
         albedo: [5.0, 6.0, 7.0],

@@ -1,4 +1,4 @@
-//! `weekender report`: what it writes, how it continues after an interruption, and what it refuses.
+//! `weekender report`: its files, how it resumes after an interruption, and what it refuses.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::fs;
@@ -39,7 +39,7 @@ fn data(at: &Path) -> serde_json::Value {
 }
 
 #[test]
-fn a_report_has_its_files_and_figures_that_make_sense() {
+fn report_has_files_and_plausible_figures() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, text, errors) =
@@ -54,7 +54,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
         let samples: Vec<u64> = points.iter().map(|p| p["samples"].as_u64().unwrap()).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16, 32]);
         let of = |point: usize, key: &str| points[point][key].as_f64().unwrap();
-        // With 16 times as many samples, the true and the estimated error are at least 3 times smaller.
+        // With 16 times as many samples, true and estimated errors are at least 3 times smaller.
         for key in ["mse", "mse_estimate", "rel_mse"] {
             assert!(of(5, key) < of(1, key) / 9.0, "{key}: {} to {}", of(1, key), of(5, key));
         }
@@ -91,7 +91,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
 }
 
 #[test]
-fn the_baseline_is_a_curve_of_its_own() {
+fn baseline_has_own_curve() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, _, errors) =
@@ -124,7 +124,7 @@ fn the_baseline_is_a_curve_of_its_own() {
 }
 
 #[test]
-fn calibration_holds_estimates_against_true_errors() {
+fn calibration_compares_estimates_with_errors() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let small =
@@ -150,20 +150,20 @@ fn calibration_holds_estimates_against_true_errors() {
     }
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
     assert!(table.contains("4 of 4 ratios are within 1 ± 0.05"), "{table}");
-    // With only one half, there is no estimate to check.
+    // A single half gives no estimate to check.
     let (code, _, message) = report(&[&small[..], &["--estimate-error", "off"]].concat(), at);
     assert_eq!(code, 2, "{message}");
     assert!(message.contains("--estimate-error") && message.contains("--calibration"), "{message}");
 }
 
 #[test]
-fn a_report_goes_on_with_what_is_there() {
+fn report_resumes() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let sobol = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol"]].concat();
     assert_eq!(report(&sobol, at).0, 0);
     let first = data(at);
-    // More curves with the same settings: existing ones stay the same to the bit, even their times.
+    // More curves with the same settings: existing ones stay the same bit for bit, even their times.
     let both = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol,independent"]].concat();
     assert_eq!(report(&both, at).0, 0);
     let second = data(at);
@@ -193,7 +193,7 @@ fn a_report_goes_on_with_what_is_there() {
 }
 
 #[test]
-fn a_scene_that_became_another_is_measured_again() {
+fn changed_scene_is_measured_again() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let scene = |radius: &str| {
@@ -239,17 +239,17 @@ mod interrupted {
         flags.split(' ').collect()
     }
 
-    /// Starts a report and presses Ctrl-C while its reference is rendered. Returns the film that was saved.
+    /// Starts a report and presses Ctrl-C while its reference is rendered. Returns the saved film.
     fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
-        // If the key is pressed before the first pass or after the last one, try again.
+        // Try again if the key was pressed before the first pass or after the last.
         for _ in 0..30 {
             let mut command = command(&[&["--progress", "on"], long().as_slice()].concat(), directory);
             let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
-            // It prints its first line when the reference starts.
+            // The first line appears when the reference starts.
             let mut stderr = BufReader::new(child.stderr.take().unwrap());
-            let mut words = String::new();
-            stderr.read_line(&mut words).unwrap();
-            assert!(words.contains("reference of three-spheres"), "{words}");
+            let mut line = String::new();
+            stderr.read_line(&mut line).unwrap();
+            assert!(line.contains("reference of three-spheres"), "{line}");
             Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
             let mut rest = String::new();
             stderr.read_to_string(&mut rest).unwrap();
@@ -267,7 +267,7 @@ mod interrupted {
     }
 
     #[test]
-    fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
+    fn interrupted_reference_resumes() {
         let at = TempDir::new().unwrap();
         let at = at.path();
         let path = at.join("found/reference-three-spheres.exr");
@@ -281,7 +281,7 @@ mod interrupted {
         renderer.accumulate(&job, 0..16_384, &mut uninterrupted, &AtomicBool::new(false)).unwrap();
         assert!(whole.film == uninterrupted, "{} and {}", kept.film.samples(), whole.film.samples());
 
-        // With the saved samples set to zero, the result contains only the missing ones.
+        // With the saved samples zeroed, the result only contains the missing ones.
         let mut black = kept.film.clone();
         black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
         checkpoint::save(&path, &black, &kept.description).unwrap();
@@ -300,7 +300,7 @@ mod interrupted {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused_before_anything_is_rendered() {
+fn bad_requests_fail_before_rendering() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::write(at.join("file"), "").unwrap();

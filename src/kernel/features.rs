@@ -1,30 +1,29 @@
-//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, which part of the CPU's
-//! kernels implements it, its pipeline override on the GPU, and its name in summaries.
+//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of the CPU's
+//! kernels that implements it, its pipeline override on the GPU, and its name in summaries.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule};
 
-/// Parts of the CPU's kernels that are compiled in or left out, as bits of their constant parameter. Every combination
-/// must be compiled, so there are fewer parts than features.
+/// Parts of the CPU's kernels that are compiled in or left out: bits of a const parameter. Every combination must be
+/// compiled, so there are fewer parts than features.
 pub mod parts {
     /// Spheres with both roots, and refraction.
     pub const GLASS: u32 = 1;
     /// A lens of nonzero radius.
     pub const LENS: u32 = 2;
-    /// What few scenes need: anchored spheres, specks and steep glass.
+    /// For few scenes: anchored spheres, specks and steep glass.
     pub const EXTREMES: u32 = 4;
     /// Traversal of the hierarchy.
     pub const HIERARCHY: u32 = 8;
     /// The rules of the stages.
     pub const RULES: u32 = 16;
-    /// All parts.
     pub const ALL: u32 = 31;
-    /// No part: every kernel has the code, or the CPU tracer checks the job at run time.
+    /// Every kernel has the code, or the CPU tracer checks the job at run time.
     pub const NONE: u32 = 0;
 
-    const WORDS: [(u32, &str); 5] = [
+    const LABELS: [(u32, &str); 5] = [
         (GLASS, "glass"),
         (LENS, "lens"),
         (EXTREMES, "extremes"),
@@ -34,53 +33,50 @@ pub mod parts {
 
     pub(super) const STAGE_RULES: &str = "stage rules";
 
-    /// Describes in words what a kernel with these parts supports.
+    /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
-        let present = words_of(parts);
+        let present = labels_of(parts);
         if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
     }
 
-    /// The words for the parts that a kernel with these parts leaves out.
+    /// Names the parts that a kernel with these parts leaves out.
     pub fn left_out(parts: u32) -> Vec<&'static str> {
-        words_of(!parts)
+        labels_of(!parts)
     }
 
-    fn words_of(parts: u32) -> Vec<&'static str> {
-        WORDS.iter().filter(|(part, _)| parts & part != 0).map(|(_, word)| *word).collect()
+    fn labels_of(parts: u32) -> Vec<&'static str> {
+        LABELS.iter().filter(|(part, _)| parts & part != 0).map(|(_, label)| *label).collect()
     }
 }
 
 /// How a job's spheres are sorted, as the features need to know it.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Number of spheres of which only the nearer root counts.
+    /// Spheres whose nearer root alone counts.
     pub opaque_count: usize,
-    /// Number of spheres of which both roots count.
+    /// Spheres whose roots both count.
     pub two_root_count: usize,
     /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
     /// Whether a hierarchy holds the spheres of one and two roots.
     pub has_hierarchy: bool,
-    /// Whether a sphere is so small relative to its distance that a hit's depth hardly determines where on it the hit
-    /// is.
+    /// Whether a sphere is so small for its distance that a hit's depth hardly determines where on it the hit is.
     pub has_specks: bool,
 }
 
-/// Between these refraction indices, the refracted direction computed from the cosine of incidence is accurate to
-/// rounding. Beyond them, rounding of the cosine loses the critical angle.
+/// Between these indices, the refracted direction computed from the cosine of incidence is accurate to rounding. Beyond
+/// them, rounding of the cosine loses the critical angle.
 const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
 
 /// For paths of up to this many rays inside glass, each ray may change the angle of incidence by a rounding error, and
 /// the critical angle is still accurate to 1e-6.
 const GENTLE_DEPTH: u32 = 64;
 
-/// A type that a feature can have, as a pipeline override.
+/// A feature's type, as a pipeline override.
 pub trait Override: Copy + Eq {
-    /// The type's name in WGSL.
     const TYPE: &'static str;
-    /// The value as the device takes it; a truth value becomes 0 or 1.
+    /// The value on the device; booleans become 0 or 1.
     fn number(self) -> u32;
-    /// The value as a WGSL literal.
     fn literal(self) -> String;
 }
 
@@ -124,9 +120,9 @@ macro_rules! last {
     };
 }
 
-/// Declares [`Features`]. Each feature has a type and, in brackets: the value for which a kernel needs no code (`off`);
-/// the value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
-/// kernels that implements it (`cpu`); and the words for its values from 1 on (`says`). An expression then computes the
+/// Declares [`Features`]. Each feature has a type and, in brackets: the value that needs no kernel code (`off`); the
+/// value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
+/// kernels that implements it (`cpu`); and the labels of its values from 1 on (`says`). An expression then computes the
 /// value from the job and its spheres. A feature's override in WGSL is its name in capitals.
 macro_rules! features {
     (
@@ -137,7 +133,7 @@ macro_rules! features {
                 off $off:expr
                 $(, general $general:expr)?
                 $(, cpu $part:ident)?
-                $(, says $($words:literal)+)?
+                $(, says $($labels:literal)+)?
             ] = $answer:expr;
         )*
     ) => {
@@ -183,29 +179,29 @@ macro_rules! features {
                 )),*].concat()
             }
 
-            /// For each feature that is off: the part of the CPU's kernels that implements it, and the words for its
+            /// For each feature that is off: the part of the CPU's kernels that implements it, and the label of its
             /// value 1.
-            fn words_off(&self) -> Vec<(u32, &'static str)> {
+            fn labels_off(&self) -> Vec<(u32, &'static str)> {
                 let switches = [$((
                     last!(parts::NONE $(, parts::$part)?),
                     self.$name == $off,
-                    word(true, &[$($($words),+)?]),
+                    label(true, &[$($($labels),+)?]),
                 )),*];
                 let off = switches.into_iter().filter(|(_, is_off, _)| *is_off);
-                off.map(|(part, _, words)| (part, words)).collect()
+                off.map(|(part, _, label)| (part, label)).collect()
             }
 
-            /// For each feature, its name and the words for its value.
-            fn words(&self) -> Vec<(&'static str, &'static str)> {
-                vec![$((stringify!($name), word(self.$name, &[$($($words),+)?]))),*]
+            /// For each feature, its name and the label of its value.
+            fn labels(&self) -> Vec<(&'static str, &'static str)> {
+                vec![$((stringify!($name), label(self.$name, &[$($($labels),+)?]))),*]
             }
         }
     };
 }
 
-fn word(value: impl Override, words: &[&'static str]) -> &'static str {
+fn label(value: impl Override, labels: &[&'static str]) -> &'static str {
     let index = (value.number() as usize).checked_sub(1);
-    index.and_then(|index| words.get(index)).copied().unwrap_or("")
+    index.and_then(|index| labels.get(index)).copied().unwrap_or("")
 }
 
 features! {
@@ -277,20 +273,20 @@ features! {
 impl Features {
     /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
-        let is_told =
-            |(name, words): &(&str, &str)| !(words.is_empty() || self.cwbvh && *name == "hierarchy");
-        let words = self.words().into_iter().filter(is_told).map(|(_, words)| words.to_owned());
+        let is_listed =
+            |(name, label): &(&str, &str)| !(label.is_empty() || self.cwbvh && *name == "hierarchy");
+        let labels = self.labels().into_iter().filter(is_listed).map(|(_, label)| label.to_owned());
         let count = self.opaque_count + self.two_root_count;
         let few = self.few_spheres.then(|| format!("{count} spheres in constants"));
-        words.chain(few).collect::<Vec<_>>().join(", ")
+        labels.chain(few).collect::<Vec<_>>().join(", ")
     }
 
-    /// The words for what a kernel with exactly these features leaves out. The rules of the stages count as one.
+    /// Names what a kernel with exactly these features leaves out. The rules of the stages count as one.
     pub fn left_out(&self) -> Vec<&'static str> {
-        let is_told = |(part, words): &(u32, &'static str)| {
-            !words.is_empty() && *part != parts::RULES && *words != "compressed hierarchy"
+        let is_listed = |(part, label): &(u32, &'static str)| {
+            !label.is_empty() && *part != parts::RULES && *label != "compressed hierarchy"
         };
-        let off = self.words_off().into_iter().filter(is_told).map(|(_, words)| words);
+        let off = self.labels_off().into_iter().filter(is_listed).map(|(_, label)| label);
         let rules = (self.parts() & parts::RULES == 0).then_some(parts::STAGE_RULES);
         off.chain(rules).collect()
     }
@@ -346,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_is_what_is_off() {
+    fn left_out_lists_disabled_features() {
         let features = Features { lens: false, cavity: false, ..Features::default() };
         assert_eq!(
             features.left_out(),
@@ -357,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_general_kernel_keeps_what_affects_the_samples() {
+    fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
         let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
         assert_eq!(special.generalised(), own);

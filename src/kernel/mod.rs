@@ -1,4 +1,4 @@
-//! What the tracers of CPU and GPU share, each thing declared once.
+//! What the CPU and GPU tracers share, each thing declared once.
 //!
 //! - [`records`]: the structs that a prepared scene holds and shaders read. One declaration generates the Rust
 //!   types for `f32` and `f64`, the named loads of the CPU's packets and the WGSL structs.

@@ -1,6 +1,6 @@
-//! The records that shaders read and write in an array of words. Their fields follow each other without alignment, so a
-//! shader has no struct for them but a constant per field: its first word. `ASIDE_STATE` is that of `state` in
-//! [`GpuAside`], and `ASIDE_WORDS` is the number of words.
+//! Records that shaders read and write in an array of words. Fields are packed without alignment, so a shader has no
+//! struct for them but a constant per field with its first word: `ASIDE_STATE` for `state` in [`GpuAside`].
+//! `ASIDE_WORDS` is the number of words.
 
 use super::record::{Field, Record, Shared, named, record};
 use bytemuck::{Pod, Zeroable};
@@ -63,12 +63,11 @@ record! {
     }
 }
 
-/// The number of words of a record.
+/// Words in a record.
 pub const fn word_count<T: Pod>() -> usize {
     size_of::<T>() / size_of::<u32>()
 }
 
-/// The constants for all of these records in WGSL.
 pub(super) fn wgsl() -> String {
     constants::<GpuAside>() + &constants::<GpuRecordHead>() + &constants::<GpuRecordedRay>()
 }

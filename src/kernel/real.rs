@@ -2,11 +2,10 @@
 
 /// A number in a record: `f32`, or `f64` for the reference.
 pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
-    /// Rounds to the nearest number of this precision.
+    /// Rounds to nearest.
     fn from_f64(x: f64) -> Self;
-    /// Converts to `f64` without loss.
+    /// Lossless.
     fn to_f64(self) -> f64;
-    /// The number with its sign flipped.
     fn negated(self) -> Self;
 }
 

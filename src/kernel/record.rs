@@ -1,10 +1,10 @@
-//! A macro that declares a record once: it generates the Rust struct, its fields as data, and its WGSL text.
+//! A macro that declares a record once and generates the Rust struct, its fields as data, and its WGSL text.
 
 use super::Real;
 
 /// A type that host and shaders share.
 pub trait Shared: Copy {
-    /// The type's name in WGSL, such as `vec3f`.
+    /// Name in WGSL, such as `vec3f`.
     fn wgsl() -> String;
     /// Appends the value as the words that shaders read.
     fn write(&self, words: &mut Vec<u32>);
@@ -12,10 +12,10 @@ pub trait Shared: Copy {
 
 /// A struct that host and shaders share, declared by `record!`.
 pub trait Record: Shared {
-    /// The record's fields, in order.
+    /// In order.
     fn fields() -> Vec<Field>;
 
-    /// The record's declaration in WGSL.
+    /// The declaration in WGSL.
     fn declaration() -> String {
         let mut text = format!("struct {} {{\n", Self::wgsl());
         for field in Self::fields() {
@@ -28,27 +28,26 @@ pub trait Record: Shared {
     }
 }
 
-/// A field of a [`Record`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// The name, the same in Rust and WGSL.
+    /// The same in Rust and WGSL.
     pub name: &'static str,
-    /// The type in WGSL.
+    /// Type in WGSL.
     pub wgsl: String,
-    /// Offset in the Rust struct, in bytes.
+    /// Offset in the Rust struct, bytes.
     pub offset: usize,
     /// Lines of the doc comment.
     pub docs: &'static [&'static str],
 }
 
-/// The words of a slice of records, laid out as a shader's array.
+/// A slice of records as the words of a shader's array.
 pub fn words_of<T: Shared>(items: &[T]) -> Vec<u32> {
     let mut words = Vec::with_capacity(size_of_val(items) / size_of::<u32>());
     items.iter().for_each(|item| item.write(&mut words));
     words
 }
 
-/// Implements [`Shared`] for types that have a name in WGSL.
+/// Implements [`Shared`] for types with a name in WGSL.
 macro_rules! shared {
     ($($type:ty = $name:literal, $self:ident => $words:expr;)*) => {
         $(impl Shared for $type {
@@ -91,25 +90,24 @@ impl<T: Record, const N: usize> Shared for [T; N] {
     }
 }
 
-/// Columns of numbers from which a packet loads the fields of records, one record per lane.
+/// Columns of numbers from which a packet loads record fields, one record per lane.
 pub trait Columns<R>: Sized {
     /// One number per lane.
     type Number;
     /// One vector per lane.
     type Vector;
-    /// Loads column `column`.
     fn number(&self, column: usize) -> Self::Number;
-    /// Loads columns `column`, `column + 1` and `column + 2` as a vector.
+    /// Loads columns `column`, `column + 1` and `column + 2`.
     fn vector(&self, column: usize) -> Self::Vector;
 }
 
 /// How packets load and store a field of this type.
 pub trait Shape<R> {
-    /// The type that the field has in a packet.
+    /// The field's type in a packet.
     type Of<C: Columns<R>>;
-    /// Loads the field, which begins at column `first`.
+    /// Loads the field that starts at column `first`.
     fn load<C: Columns<R>>(columns: &C, first: usize) -> Self::Of<C>;
-    /// Stores the field, beginning at column `first`.
+    /// Stores the field from column `first` on.
     fn store(self, columns: &mut [R], first: usize);
 }
 
@@ -135,9 +133,9 @@ impl<R: Real> Shape<R> for [R; 3] {
     }
 }
 
-/// Declares a [`Record`]: an ordinary struct with the name that it has in WGSL. A struct with a type parameter holds
-/// numbers in either precision, and shaders read the `f32` version. `as` after a field's type gives the type another
-/// name in WGSL. With `loaded by`, packets can load the fields by name.
+/// Declares a [`Record`]: an ordinary struct with its name in WGSL. A struct with a type parameter holds numbers of
+/// either precision, and shaders read the `f32` version. `as` after a field's type gives the type another name in WGSL.
+/// With `loaded by`, packets can load the fields by name.
 macro_rules! record {
     (
         $(#[$meta:meta])*
@@ -198,7 +196,7 @@ macro_rules! named {
     };
 }
 
-/// Declares a trait by which packets load the fields of a record of numbers by name.
+/// Declares a trait through which packets load a record's fields by name.
 macro_rules! loads {
     (
         $name:ident<$real:ident> by $loads:ident {

@@ -5,13 +5,12 @@ use crate::job::render::SamplerKind;
 use crate::stages::{DielectricLaws, Shading, SurfaceRule, Transfer};
 use std::fmt::Write;
 
-/// An enumeration whose values are numbers in the shaders.
 pub trait Tag: Copy + Eq + 'static {
-    /// All values of the enumeration.
+    /// All values.
     const ALL: &'static [Self];
-    /// The name of the value's WGSL constant.
+    /// Name of the value's WGSL constant.
     fn constant(self) -> &'static str;
-    /// The value's number in WGSL.
+    /// Number of the value in WGSL.
     fn tag(self) -> u32;
 }
 
@@ -19,12 +18,10 @@ pub trait Tag: Copy + Eq + 'static {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Roots {
-    /// The nearer root: no ray is inside the sphere. A ray that rounding puts inside hits it where it starts.
+    /// The nearer: no ray is inside the sphere. A ray that rounding puts inside hits it where it starts.
     Nearer = 0,
-    /// Both roots.
     Both = 1,
-    /// The farther root: the sphere is opaque and encloses the eye, so every ray is inside and hits it, whatever
-    /// rounding does.
+    /// The farther: the sphere is opaque and encloses the eye, so every ray is inside and hits it despite rounding.
     Farther = 2,
 }
 
@@ -40,7 +37,7 @@ impl Roots {
     }
 }
 
-/// Implements [`Tag`] for an enumeration: gives each value its WGSL name.
+/// Implements [`Tag`] and gives each value its WGSL name.
 macro_rules! tags {
     ($type:ident { $($value:ident = $constant:literal),* $(,)? }) => {
         impl $crate::kernel::Tag for $type {
@@ -93,7 +90,6 @@ pub(crate) fn values<T: Tag>() -> String {
     })
 }
 
-/// All tags in WGSL.
 pub(super) fn wgsl() -> String {
     [
         values::<Roots>(),

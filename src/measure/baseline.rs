@@ -1,4 +1,4 @@
-//! The control: a plain C89 program that renders the same picture. It is compiled on demand.
+//! The control: a plain C89 program that renders the same picture, compiled on demand.
 
 use crate::film::{FIXED_POINT_SCALE, Film, PixelSum};
 use crate::job::output::{Encoding, read_picture};
@@ -17,28 +17,23 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// The C source, `reference/rt_weekend.c`.
 pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
 
-/// Flags for the C compiler.
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
-/// How often the program checks whether the caller wants to stop.
+/// How often to check for cancellation.
 const POLL: Duration = Duration::from_millis(20);
 
-/// The compiled program. As a renderer it draws its own independent random numbers, and its films have one half.
+/// The compiled program. As a renderer it draws its own random numbers, and its films have one half.
 pub struct Baseline {
     directory: TempDir,
     compiler: String,
-    /// The job whose scene file is written.
+    /// The job whose scene file is on disk.
     job: Option<RenderJob>,
 }
 
 impl Baseline {
-    /// Compiles the program with the C compiler that the environment variable CC names, or with `cc`.
-    ///
-    /// # Errors
-    /// If there is no compiler, or it fails.
+    /// Compiles the program with the compiler that the environment variable CC names, or `cc`.
     pub fn compile() -> Result<Self> {
         let compiler = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
         let compiler = compiler.unwrap_or_else(|| "cc".to_owned());
@@ -46,9 +41,9 @@ impl Baseline {
         let baseline = Baseline { directory, compiler, job: None };
         let source = baseline.file("rt_weekend.c");
         fs::write(&source, SOURCE).context("cannot write the C program")?;
-        let mut words = baseline.compiler.split_whitespace();
-        let output = Command::new(words.next().unwrap_or("cc"))
-            .args(words)
+        let mut command = baseline.compiler.split_whitespace();
+        let output = Command::new(command.next().unwrap_or("cc"))
+            .args(command)
             .args(FLAGS)
             .arg("-o")
             .args([baseline.program(), source])
@@ -67,7 +62,6 @@ impl Baseline {
         Ok(baseline)
     }
 
-    /// The executable file.
     pub fn program(&self) -> PathBuf {
         self.file(&format!("rt_weekend{}", std::env::consts::EXE_SUFFIX))
     }
@@ -76,10 +70,10 @@ impl Baseline {
         self.directory.path().join(name)
     }
 
-    /// Renders these samples of the prepared job to `picture.pfm`.
+    /// Renders samples of the prepared job to `picture.pfm`.
     fn run(&self, job: &RenderJob, samples: &Range<u64>, cancel: &AtomicBool) -> Result<Stats, RenderError> {
         let settings = job.settings();
-        // Each range of samples has random numbers of its own. The program takes seeds of 31 bits.
+        // Give each range of samples its own random numbers. The program takes 31-bit seeds.
         let seed = settings.seed.wrapping_add((samples.start as u32).wrapping_mul(0x9e37_79b9)) & 0x7fff_ffff;
         let numbers = [settings.width, settings.height].map(u64::from).into_iter();
         let numbers = numbers.chain([samples.end - samples.start, settings.max_depth.into(), seed.into()]);
@@ -106,12 +100,12 @@ impl Baseline {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
             if cancel.load(Ordering::Relaxed) {
-                // If it has just ended, there is nothing to kill.
+                // Fails if the process has just ended by itself.
                 let _ = child.kill();
             }
         }
         if let Some(reader) = reader {
-            // The thread only reads; a panic in it does not affect the run.
+            // The thread only reads, so its panic does not affect the run.
             let _ = reader.join();
         }
         let output = child.wait_with_output().map_err(failed)?;
@@ -151,7 +145,7 @@ impl Renderer for Baseline {
     ) -> Result<Stats, RenderError> {
         self.prepare(job, cancel)?;
         let stats = self.run(job, &range, cancel)?;
-        // The encoding applies only to integers, and a PFM has none.
+        // The encoding applies only to integers; a PFM holds floats.
         let picture = read_picture(&self.file("picture.pfm"), Encoding::Srgb).map_err(failed)?;
         let scale = (range.end - range.start) as f64 * FIXED_POINT_SCALE;
         film.record(range, 0)?;
@@ -173,10 +167,10 @@ fn figures(line: &str, wall: Duration) -> Option<Stats> {
     Some(Stats { paths: paths.parse().ok()?, rays: rays.parse().ok()?, trace: wall, ..Stats::default() })
 }
 
-/// A scene in the baseline's format.
+/// Writes a scene in the baseline's format.
 fn scene_text(scene: &Scene, camera: &Camera) -> String {
     let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
-    // vup may be almost parallel to the view; this is the same direction, to all digits.
+    // vup may be almost parallel to the view, so write the exact up direction.
     let up = camera.basis().v;
     let mut text = format!(
         "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",
@@ -192,12 +186,12 @@ fn scene_text(scene: &Scene, camera: &Camera) -> String {
     for sphere in &scene.spheres {
         let place = format!("{} {:?}", three(sphere.center), sphere.radius);
         let material = scene.material_of(sphere);
-        let words = material.parameters().into_iter().map(|(_, parameter)| match parameter {
+        let numbers = material.parameters().into_iter().map(|(_, parameter)| match parameter {
             Parameter::Number(number) => format!(" {number:?}"),
             Parameter::Colour(colour) => format!(" {}", three(colour)),
         });
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{} {place}{}", material.kind(), words.collect::<String>());
+        let _ = writeln!(text, "{} {place}{}", material.kind(), numbers.collect::<String>());
     }
     text
 }

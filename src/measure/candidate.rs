@@ -1,4 +1,4 @@
-//! A candidate: a backend of this program, or the plain C program. It survives whatever goes wrong in a picture.
+//! A candidate: a backend or the plain C program. It survives the failure of a picture.
 
 use super::baseline::Baseline;
 use crate::backends::{self, BackendChoice};
@@ -10,7 +10,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// What traces a candidate's pictures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     Backend(BackendChoice),
@@ -28,20 +27,19 @@ impl Source {
 }
 
 pub struct Candidate {
-    /// Its name in tables.
     pub name: String,
     source: Source,
-    /// `None` before the first picture, and after one that failed.
+    /// `None` before the first picture and after a failure.
     renderer: Option<Box<dyn Renderer>>,
 }
 
-/// A film and how it came about.
+/// A film and its measurements.
 pub struct Traced {
     pub film: Film,
     pub stats: Stats,
     /// Wall time to prepare and trace.
     pub seconds: f64,
-    /// What the backend warned about: parts of the scene that it cannot represent.
+    /// Parts of the scene that the backend cannot represent.
     pub warnings: Vec<String>,
 }
 
@@ -68,7 +66,7 @@ impl From<anyhow::Error> for Stop {
 }
 
 impl Candidate {
-    /// A candidate that starts when it is first used.
+    /// Starts on first use.
     pub fn new(name: impl Into<String>, source: Source) -> Self {
         Candidate { name: name.into(), source, renderer: None }
     }
@@ -81,10 +79,7 @@ impl Candidate {
         self.source == Source::C89
     }
 
-    /// Starts it unless it is running.
-    ///
-    /// # Errors
-    /// If it is not available.
+    /// Starts the backend unless it is running. Fails if it is unavailable.
     pub fn start(&mut self) -> Result<&mut dyn Renderer> {
         let renderer = self.take()?;
         Ok(self.renderer.insert(renderer).as_mut())
@@ -95,7 +90,7 @@ impl Candidate {
             return Ok(renderer);
         }
         let mut renderer = self.source.create()?;
-        // Whoever named a software adapter knows that it is one; later messages are about scenes.
+        // Whoever named a software adapter knows what it is; later messages are about scenes.
         drop(renderer.take_messages());
         Ok(renderer)
     }
@@ -105,7 +100,7 @@ impl Candidate {
         self.renderer.as_ref().map(|renderer| renderer.info())
     }
 
-    /// An empty film. That of the C program has no halves to estimate the error from.
+    /// An empty film; the C program's has a single half, so no error estimate.
     pub fn new_film(&self, job: &RenderJob) -> Film {
         if self.is_baseline() {
             Film::new(job.settings().width, job.settings().height, 1)
@@ -114,10 +109,7 @@ impl Candidate {
         }
     }
 
-    /// Adds samples to a film. After a failure, the next picture gets a new renderer.
-    ///
-    /// # Errors
-    /// [`Stop`]
+    /// Adds samples to a film. A failed renderer is replaced for the next picture.
     pub fn add(
         &mut self,
         job: &RenderJob,
@@ -132,10 +124,7 @@ impl Candidate {
         Ok(stats)
     }
 
-    /// Traces a new film with this many samples per pixel.
-    ///
-    /// # Errors
-    /// [`Stop`]
+    /// Traces a new film.
     pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced, Stop> {
         self.start()?;
         let mut film = self.new_film(job);
@@ -155,7 +144,7 @@ impl Candidate {
 
 #[cfg(test)]
 impl Candidate {
-    /// Renders with `renderer` until that fails, and then like the reference.
+    /// Renders with `renderer` until it fails, then with the reference.
     pub(super) fn of_renderer(name: &str, renderer: Box<dyn Renderer>) -> Self {
         let source = Source::Backend(BackendChoice::Reference { threads: Some(1) });
         Candidate { name: name.to_owned(), source, renderer: Some(renderer) }

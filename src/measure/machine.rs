@@ -1,11 +1,10 @@
-//! The machine that is measured, and whether it was idle.
+//! The measured machine, and whether it was idle.
 
 use super::table::counted;
 use crate::render_cpu::Isa;
 use serde::Serialize;
 use std::fs;
 
-/// The machine and the program.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
     pub version: &'static str,
@@ -19,7 +18,6 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Describes this machine now.
     pub fn look() -> Self {
         Machine {
             version: env!("CARGO_PKG_VERSION"),
@@ -39,7 +37,7 @@ impl Machine {
     }
 }
 
-/// The processor in the text of `/proc/cpuinfo`.
+/// Finds the processor's name in `/proc/cpuinfo`.
 fn processor(info: &str) -> String {
     let name = info.lines().find_map(|line| line.strip_prefix("model name")?.trim_start().strip_prefix(':'));
     name.map_or_else(
@@ -48,7 +46,7 @@ fn processor(info: &str) -> String {
     )
 }
 
-/// The load of the last minute in the text of `/proc/loadavg`.
+/// Finds the last minute's load in `/proc/loadavg`.
 fn load(averages: &str) -> Option<f64> {
     averages.split_whitespace().next()?.parse().ok()
 }
@@ -60,7 +58,7 @@ pub fn peak_memory() -> Option<u64> {
     Some(peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
 }
 
-/// Resets [`peak_memory`], if the system can; otherwise it counts from the start of the process.
+/// Resets [`peak_memory`] where the system supports it; elsewhere it counts from the start of the process.
 pub fn forget_peak_memory() {
     let _ = fs::write("/proc/self/clear_refs", "5");
 }

@@ -1,5 +1,5 @@
 //! Measurements: speed (`bench`), error against time (`report`) and extreme scenes (`stress`), with a plain C program
-//! as the control. All of them trace candidates, show one kind of progress, and write one kind of table and JSON.
+//! as the control. All trace candidates and share progress, tables and JSON.
 
 pub mod baseline;
 pub mod bench;
@@ -19,10 +19,10 @@ use machine::Machine;
 use serde::Serialize;
 use std::path::Path;
 
-/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+/// Version of the JSON, incremented when a key is removed or changes meaning.
 pub const SCHEMA: u32 = 1;
 
-/// What every measurement's JSON begins with.
+/// Common start of every measurement's JSON.
 #[derive(Serialize)]
 struct Envelope<'a, T> {
     schema: u32,
@@ -36,7 +36,6 @@ fn write_json(target: &JsonTarget, machine: &Machine, figures: &impl Serialize) 
     terminal::write_json(&Envelope { schema: SCHEMA, version: machine.version, machine, figures }, target)
 }
 
-/// Creates the directory that `--out` names.
 fn make_directory(directory: &Path) -> Result<()> {
     std::fs::create_dir_all(directory).with_context(|| {
         format!("cannot create the directory {}; choose another with --out", directory.display())

@@ -1,16 +1,16 @@
-//! The progress of a measurement, on standard error.
+//! Progress of a measurement, on standard error.
 
 use crate::cli::ProgressChoice;
 use crate::cli::terminal::Display;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
-/// Interval of progress lines about the same thing when there is no terminal.
+/// Interval between lines about the same step when there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
 const BAR_STEPS: f64 = 1000.0;
 
-/// What is measured now, the share that is done, and the remaining time.
+/// Shows the current step, the share done and the remaining time.
 pub(super) struct Progress {
     display: Display,
     begin: Instant,
@@ -20,28 +20,27 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// `total` is the expected amount of work, in any unit.
+    /// `total` is the expected work, in any unit.
     pub fn new(choice: ProgressChoice, total: f64) -> Self {
         let display = Display::new(choice, BAR_STEPS as u64, "[{bar:24}] {wide_msg}", "", LINE_INTERVAL);
         let total = total.max(f64::MIN_POSITIVE);
         Progress { display, begin: Instant::now(), done: 0.0, total, what: String::new() }
     }
 
-    /// Shows `what`, of which the amount `within` is done.
+    /// Shows the step `what`, with `within` of its work done.
     pub fn at(&mut self, what: &str, within: f64) {
         let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
         let left = time_left(share, self.begin.elapsed())
             .map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        let (position, words) = ((share * BAR_STEPS) as u64, format!("{:3.0} % {what}{left}", 100.0 * share));
+        let (position, text) = ((share * BAR_STEPS) as u64, format!("{:3.0} % {what}{left}", 100.0 * share));
         if self.what == what {
-            self.display.update(position, || words);
+            self.display.update(position, || text);
         } else {
-            self.display.announce(position, || words);
+            self.display.announce(position, || text);
             what.clone_into(&mut self.what);
         }
     }
 
-    /// Counts finished work.
     pub fn finished(&mut self, amount: f64) {
         self.done += amount;
     }
@@ -57,7 +56,7 @@ impl Progress {
     }
 }
 
-/// `None` at the beginning, when nothing can be told.
+/// `None` until there is enough progress to extrapolate.
 fn time_left(share: f64, elapsed: Duration) -> Option<Duration> {
     (share > 0.02).then(|| elapsed.mul_f64((1.0 - share) / share))
 }
@@ -67,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_time_left_follows_from_the_share_that_is_done() {
+    fn time_left_is_extrapolated() {
         let left = |share| time_left(share, Duration::from_secs(10)).map(|left| left.as_secs());
         assert_eq!([0.25, 0.5, 1.0, 0.02].map(left), [Some(30), Some(10), Some(0), None]);
     }

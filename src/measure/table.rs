@@ -1,6 +1,6 @@
-//! Rows of tables, as text and as Markdown.
+//! Table rows as text and Markdown.
 
-/// A row of text. Cells are padded to the widths; those of a negative width are aligned to the left.
+/// Pads cells to the widths; a negative width aligns left.
 pub(super) fn text_row(widths: &[i32], cells: &[impl AsRef<str>]) -> String {
     let mut row = String::new();
     for (cell, width) in cells.iter().map(AsRef::as_ref).zip(widths) {
@@ -16,7 +16,7 @@ pub(super) fn markdown_row(cells: &[impl AsRef<str>]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// A Markdown table. Columns after the first `texts` are aligned to the right.
+/// A Markdown table. Columns after the first `texts` are right-aligned.
 pub(super) fn markdown_table<H: AsRef<str>, C: AsRef<str>>(
     heads: &[H],
     texts: usize,
@@ -38,7 +38,7 @@ pub fn counted(number: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
 }
 
-/// A number with commas between its thousands: `10,000`.
+/// Digits grouped by commas: `10,000`.
 pub fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);

@@ -1,18 +1,17 @@
-//! Heat maps: colours from dark to bright for numbers, and the scale that explains them.
+//! Heat maps: dark to bright colours for numbers, and the scale that explains them.
 
-/// What the colours of a heat map mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeatScale {
-    /// What is measured, with its unit.
+    /// Quantity and unit.
     pub title: &'static str,
-    /// The values at the two ends.
+    /// Values at the two ends.
     limits: [f64; 2],
     is_logarithmic: bool,
-    /// Values with labels in a legend; if there are none, they follow from the limits.
+    /// Values labelled in a legend; if empty, they are derived from the limits.
     marks: &'static [(f64, &'static str)],
 }
 
-/// Colours from dark to bright, evenly spaced.
+/// Dark to bright, evenly spaced.
 const COLOURS: [[f64; 3]; 7] = [
     [0.0, 0.0, 4.0],
     [40.0, 11.0, 84.0],
@@ -32,7 +31,7 @@ impl HeatScale {
         marks: &[(1e-4, "0.0001"), (1e-3, "0.001"), (1e-2, "0.01"), (0.1, "0.1"), (1.0, "1")],
     };
 
-    /// Differences of two pictures without their sign, linear radiance.
+    /// Absolute differences of two pictures, linear radiance.
     pub const DIFFERENCE: HeatScale =
         HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
@@ -88,7 +87,7 @@ impl HeatScale {
     }
 }
 
-/// A number with two digits that count.
+/// Two significant digits.
 fn short(value: f64) -> String {
     let decimals = (1.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
@@ -127,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_in_stops_has_its_numbers() {
+    fn range_in_stops_has_marks() {
         let scale = HeatScale::luminance([-8.0, 4.0]);
         let names: Vec<_> = scale.marks().into_iter().map(|(_, name)| name).collect();
         assert_eq!(names, ["0.0039", "0.031", "0.25", "2", "16"]);

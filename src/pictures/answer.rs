@@ -1,4 +1,4 @@
-//! What a program about pictures answers: lines for people, JSON for other programs, and an exit code.
+//! What the programs on pictures share: text for people, JSON for programs, and an exit code.
 
 use crate::cli::JsonTarget;
 use crate::cli::terminal::{print_beside, write_json};
@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// The answer to the question whether two things are the same.
+/// The answer to "are these two the same?"
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Same,
@@ -19,7 +19,6 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// 0, 1 and 2.
     pub fn exit_code(self) -> ExitCode {
         match self {
             Verdict::Same => ExitCode::SUCCESS,
@@ -29,7 +28,7 @@ impl Verdict {
     }
 }
 
-/// Refuses files that could not be written, before the work begins.
+/// Checks that every output can be written, before any work is done.
 pub fn check_outputs<'a>(json: Option<&JsonTarget>, files: impl IntoIterator<Item = &'a Path>) -> Result<()> {
     if let Some(JsonTarget::File(path)) = json {
         check_writable(path)?;
@@ -37,7 +36,7 @@ pub fn check_outputs<'a>(json: Option<&JsonTarget>, files: impl IntoIterator<Ite
     Ok(files.into_iter().try_for_each(check_writable)?)
 }
 
-/// Lines with labels, in columns.
+/// Labelled lines in aligned columns.
 pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let lines: Vec<(&str, String)> = lines.into_iter().collect();
     let width = lines.iter().map(|(label, _)| label.len()).max().unwrap_or(0) + 1;
@@ -50,14 +49,14 @@ pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
 
 #[derive(Serialize)]
 struct Envelope<'a, T: Serialize> {
-    /// Grows when a key changes its meaning or is removed.
+    /// Incremented when a key is removed or changes meaning.
     schema: u32,
     version: &'static str,
     #[serde(flatten)]
     figures: &'a T,
 }
 
-/// Prints `text`, to standard error if JSON takes standard output, and writes `figures` as JSON.
+/// Prints `text` (to standard error if JSON takes standard output) and writes `figures` as JSON.
 pub fn deliver(json: Option<&JsonTarget>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
     print_beside(json, text)?;
     let version = env!("CARGO_PKG_VERSION");

@@ -1,5 +1,5 @@
-//! Programs on pictures: `compare` (the same but for noise?), `check` (right, or which mistake?) and `diff` (one path on
-//! two backends).
+//! Programs on pictures: `compare` (equal except for noise?), `check` (right, or which mistake?) and `diff` (one path
+//! on two backends).
 
 mod answer;
 pub mod check;

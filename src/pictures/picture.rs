@@ -1,4 +1,4 @@
-//! A picture of any kind, in linear radiance: a film, a file of any program, or what a backend has rendered.
+//! A picture in linear radiance, from a film, any program's file, or a backend.
 
 use crate::film::{Film, key};
 use crate::job::output::{Encoding, read_picture};
@@ -12,18 +12,18 @@ use std::sync::Arc;
 
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// The file's or backend's name.
+    /// Name of the file or backend.
     pub name: String,
-    /// What is known about the picture, for the reader.
+    /// Description for the reader.
     pub about: String,
     pub width: u32,
     pub height: u32,
-    /// Linear RGB, row by row from the top. With `steps`, NaN is the largest value of an integer format, which stands for
-    /// any larger one.
+    /// Linear RGB, row by row from the top. With `steps`, NaN stands for an integer format's largest value or anything
+    /// above it.
     pub pixels: Vec<[f64; 3]>,
-    /// Largest quantisation error of each channel in either direction; `None` if the format has none.
+    /// Largest quantisation error of each channel, either way; `None` if the format has none.
     pub steps: Option<Vec<[f64; 3]>>,
-    /// The value from which on a channel is NaN because the format ends there; infinite for floats.
+    /// The format's limit, at and above which a channel is NaN; infinite for floats.
     pub limit: f64,
     pub film: Option<Arc<Film>>,
     /// The film's job.
@@ -31,19 +31,16 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a file. `encoding` is that of integer pictures without a description.
-    ///
-    /// # Errors
-    /// If the file cannot be read; the message says what to do.
+    /// Reads a file. `encoding` applies to integer pictures without a description.
     pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
         let name = path.display().to_string();
         let saved = match Saved::read(path) {
             Ok(saved) => Some(saved),
-            // Most pictures have no description. The picture itself is read below, which reports its own errors.
+            // Most pictures have no description. Reading the picture below reports its own errors.
             Err(OpenError::Picture(_)) => None,
             Err(error) => return Err(error.into()),
         };
-        // Pixels can be compared even if the recipe is not valid.
+        // Pixels can be compared even if the recipe is invalid.
         let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
         let samples = saved.as_ref().and_then(|saved| saved.description.get(key::SAMPLES));
         let samples = samples.map_or_else(String::new, |samples| format!(", {samples} samples"));
@@ -77,28 +74,25 @@ impl Picture {
         Picture { name, about, width, height, pixels, steps: None, limit, film, job: None }
     }
 
-    /// The picture of a film that the program itself has rendered from `recipe`.
-    ///
-    /// # Errors
-    /// If a comparison of this size does not fit into memory.
+    /// The picture of a film rendered by this program. Fails if a comparison of this size does not fit into memory.
     pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
         check_memory(film.width(), film.height(), 0)?;
         let about = format!("film, {}", about_film(&film, Some(&recipe)));
         Ok(Picture { job: recipe.job().ok(), ..Picture::of_film(name, about, film) })
     }
 
-    /// A channel's value; `None` is the largest value of an integer format.
+    /// A channel's value; `None` if it is at or above an integer format's limit.
     pub(super) fn value(&self, pixel: usize, channel: usize) -> Option<f64> {
         let value = self.pixels[pixel][channel];
         (self.steps.is_none() || !value.is_nan()).then_some(value)
     }
 }
 
-/// Bytes per pixel during a comparison, without films: both pictures, how they relate (twice as much), their difference, the
-/// halves' differences or the steps and bounds, the noise, and the heat map.
+/// Bytes per pixel during a comparison, without films: both pictures, their relations (twice as much), the difference,
+/// the halves' differences or the steps and bounds, the noise, and the heat map.
 const BYTES_PER_PIXEL: u64 = 8 * 24 + 8;
 
-/// Refuses pictures that do not fit into memory together with `films` films of two halves.
+/// Fails unless the pictures and `films` films of two halves fit into memory.
 pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     let bytes = films * Film::bytes(width, height, 2) + pixels * BYTES_PER_PIXEL;

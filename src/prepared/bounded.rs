@@ -6,8 +6,8 @@ use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 
-/// A sphere relative to an origin. Its box is widened by the rounding error of the intersection test. The box is
-/// computed on demand: in a scene of millions of spheres, storing boxes would take most of a build's time.
+/// A sphere relative to an origin, with its box widened by the rounding error of the intersection test. The box is
+/// computed on demand, because storing millions of boxes would take most of a build's time.
 pub(super) struct Bounded<'scene, 'origin> {
     sphere: &'scene Sphere,
     origin: &'origin DVec3,
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_leaves_room_for_the_rounding_of_radius_and_place() {
+    fn boxes_allow_for_rounding() {
         for (place, radius) in [(0.0, 3.0), (5.0, 0.1), (-7.0, 7.0)] {
             let (center, origin) = (DVec3::new(0.0, place, 0.0), DVec3::ZERO);
             let sphere = Sphere { center, radius, material: 0 };

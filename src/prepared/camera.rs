@@ -6,7 +6,7 @@ use crate::scene::Camera;
 use glam::DVec3;
 
 impl<R: Real> CameraTable<R> {
-    /// The camera of a picture of `width` by `height` pixels, with coordinates relative to `origin`.
+    /// Coordinates are relative to `origin`.
     pub fn new(camera: &Camera, width: u32, height: u32, origin: DVec3) -> Self {
         let basis = camera.basis();
         let half_height = (camera.vfov_degrees.to_radians() / 2.0).tan();

@@ -1,5 +1,4 @@
-//! Properties of a scene that do not depend on the camera: spheres that others cover, and layers so thin that rounding
-//! may be visible.
+//! Camera-independent properties of a scene: covered spheres, and layers thin enough for rounding to show.
 
 use crate::job::render::RenderJob;
 use crate::kernel::HALF_EPSILON;
@@ -8,33 +7,31 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Two spheres form a layer if their surfaces are everywhere closer than this share of their radius.
+/// Two spheres form a layer if their surfaces are closer than this share of their radius everywhere.
 const LAYER_SHARE: f64 = 1e-2;
 
 /// A layer renders correctly if it is thicker than this many rounding units of its coordinates ...
 const LAYER_UNITS: f64 = 16.0;
 
-/// ... and than this many rounding units of its distance from the eye: surfaces closer than that have the same
-/// distance.
+/// ... and than this many rounding units of its distance from the eye, below which surfaces have the same distance.
 const DISTANCE_UNITS: f64 = 8.0;
 
-/// Where the surfaces of a layer touch or cross, it is too thin somewhere, however thick it is elsewhere. Such a layer
-/// is reported only if its greatest thickness is at most this many times the required one: a path that hits the wrong
-/// surface first is then hardly longer.
+/// Where a layer's surfaces touch or cross, it is too thin somewhere, however thick elsewhere. It is reported only if
+/// its greatest thickness is at most this many times the required one: beyond that, hitting the wrong surface first
+/// hardly changes a path's length.
 const CLOSING_RATIO: f64 = 100.0;
 
-/// The same limit where paths can be inside one of the spheres, which is glass or around the eye: a path that misses its
-/// way out of glass, or gets out of an opaque sphere, becomes a different path.
+/// The same limit where paths can be inside a sphere, because it is glass or surrounds the eye: a path that misses its
+/// way out of glass, or escapes an opaque sphere, changes entirely.
 const TRAPPING_CLOSING_RATIO: f64 = 1e4;
 
-/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with the two that follow
-/// it by place and size.
+/// Cells with up to this many spheres compare all pairs; in fuller cells, each sphere is only compared with the next
+/// two by place and size.
 const CELL_LIMIT: usize = 64;
 
-/// Covered spheres and thin layers of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Facts {
-    /// Indices, ascending, of spheres that are covered by an earlier sphere of the same place and size.
+    /// Indices, ascending, of spheres covered by an earlier one of equal place and size.
     covered: Vec<u32>,
     layers: Vec<ThinLayer>,
 }
@@ -72,12 +69,12 @@ impl Facts {
         facts
     }
 
-    /// Whether the sphere is never hit because an equal sphere is in its place.
+    /// Whether an equal sphere hides this one completely.
     pub fn covers(&self, index: u32) -> bool {
         self.covered.binary_search(&index).is_ok()
     }
 
-    /// What single precision cannot represent in a job whose coordinates are relative to `origin`.
+    /// Warnings about what single precision cannot represent, for coordinates relative to `origin`.
     pub fn warnings(&self, job: &RenderJob, origin: DVec3) -> Vec<String> {
         let unresolved: Vec<Unresolved> =
             self.layers.iter().filter_map(|layer| unresolved(*layer, job, origin)).collect();
@@ -106,7 +103,7 @@ impl Facts {
         thin_ones.into_iter().chain(closing_ones).collect()
     }
 
-    /// Compares spheres of similar size and place: those in the same cell, and those in the neighbouring cell if one is
+    /// Compares spheres of similar size and place: within a cell, and across a border if one is close to it.
     /// close to the border.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
         let mut cells: Vec<(u64, u32)> =
@@ -127,7 +124,7 @@ impl Facts {
                 let index = index as u32;
                 let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
                 let others = marks.flat_map(|mark| members_of(&cells, mark).take(CELL_LIMIT));
-                // Where coordinates are huge for the radius, the next cell has the same number.
+                // Coordinates far larger than the radius give the next cell the same number.
                 others.filter(move |other| *other != index).map(move |other| [index, other])
             })
             .collect();
@@ -136,11 +133,11 @@ impl Facts {
         }
     }
 
-    /// The members by place and size. Of equal spheres, only the first in the scene is left; the others are covered.
+    /// The members by place and size. Of equal spheres, only the first in the scene remains; the others are covered.
     fn uncovered(&mut self, spheres: &[Sphere], mut members: Vec<u32>) -> Vec<u32> {
         let numbers = |index: u32| {
             let Sphere { center: DVec3 { x, y, z }, radius, .. } = spheres[index as usize];
-            // Adding 0 makes -0 the same as 0.
+            // Adding 0 turns -0 into 0.
             [x, y, z, radius].map(|number| number + 0.0)
         };
         members.sort_by(|a, b| {
@@ -163,7 +160,7 @@ impl Facts {
         let spheres = [a.min(b), a.max(b)];
         let apart = first.center.distance(second.center);
         let thickness = apart + (first.radius - second.radius).abs();
-        // Where surfaces cross, they differ by no more than this either.
+        // Surfaces that cross differ by no more than this, too.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
             let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
             self.layers.push(ThinLayer { spheres, thickness, opening });
@@ -171,7 +168,7 @@ impl Facts {
     }
 }
 
-/// Returns `None` if the layer renders correctly.
+/// `None` if the layer renders correctly.
 fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
     let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
     let limits = spheres.map(|Sphere { center, radius, .. }| {
@@ -181,7 +178,7 @@ fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unreso
     });
     let limit = limits[0].max(limits[1]);
     let is_transparent = |sphere: &Sphere| job.scene().material_of(sphere).is_transparent();
-    // The margin is far above what rounding can move the eye by.
+    // The margin is far larger than the distance by which rounding can move the eye.
     let reach = |sphere: &Sphere| sphere.radius * (1.0 + 1e-5) + job.camera().lens_radius();
     let has_inside = |sphere: &Sphere| {
         is_transparent(sphere) || sphere.center.distance(job.camera().look_from) <= reach(sphere)
@@ -198,7 +195,6 @@ fn worst(all: &[Unresolved]) -> Option<Unresolved> {
     all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
 }
 
-/// The spheres of the cell with this mark.
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     let first = cells.partition_point(|cell| cell.0 < mark);
     cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
@@ -211,7 +207,7 @@ struct Occupied {
 
 impl Occupied {
     fn by(cells: &[(u64, u32)]) -> Self {
-        // Sixteen bits per sphere: the filter lets one in sixteen empty cells through to a search.
+        // Sixteen bits per sphere: one in sixteen empty cells passes the filter.
         let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
         for (mark, _) in cells {
             let (word, bit) = occupied.place(*mark);
@@ -230,14 +226,14 @@ impl Occupied {
     }
 }
 
-/// How far outside a cell, in cells, a sphere may lie and still form a layer with one inside.
+/// How far outside a cell, in cells, a sphere may be and still form a layer with one inside.
 const REACH: f64 = 2.0 * LAYER_SHARE;
 
-/// Radii are often powers of two; this shift moves them far from the borders between sizes.
+/// Moves radii, which are often powers of two, away from the borders between sizes.
 const SIZE_SHIFT: f64 = 0.37;
 
-/// The mark of the cell that contains a sphere. A cell holds spheres of similar size and place and is about as wide as
-/// their radius, so in an ordinary scene two spheres rarely share a cell.
+/// The mark of a sphere's cell. A cell holds spheres of similar size and place and is about as wide as their radius, so
+/// in an ordinary scene two spheres rarely share one.
 fn own_mark(sphere: &Sphere) -> u64 {
     let size = (sphere.radius.log2() + SIZE_SHIFT).floor();
     let [x, y, z] = (sphere.center / size.exp2()).floor().to_array();
@@ -251,7 +247,7 @@ fn mark(cell: [f64; 4]) -> u64 {
     })
 }
 
-/// The marks of the neighbouring cells that a sphere is close to.
+/// The marks of neighbouring cells that a sphere is close to.
 fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
     let mut marks = Vec::new();
     let sizes = cells_near(sphere.radius.log2() + SIZE_SHIFT);
@@ -269,7 +265,7 @@ fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
     marks
 }
 
-/// The cell that contains a number, and the neighbouring cell if the number is close to the border.
+/// The number's cell, and the next one if the number is close to the border.
 fn cells_near(number: f64) -> [Option<f64>; 2] {
     let cell = number.floor();
     let within = number - cell;
@@ -295,7 +291,7 @@ mod tests {
         scene
     }
 
-    /// Two spheres that are close are found to be close, wherever they lie and however large they are.
+    /// Close spheres are found, whatever their place and size.
     #[test]
     fn layers_are_found_across_borders() {
         let random =
@@ -315,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_that_is_tiny_for_its_place_is_no_layer_with_itself() {
+    fn tiny_distant_sphere_is_no_layer() {
         for center in [DVec3::new(4.0, 1.0, 0.0), DVec3::splat(-1e3), DVec3::X] {
             for radius in [1e-18, 1e-16, 1e-14] {
                 let facts = Facts::of(&scene([(center, radius), (DVec3::NEG_Y, 1.0)]));
@@ -325,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_of_many_copies_stays() {
+    fn first_of_copies_remains() {
         let copies = (0..10_000).map(|i| (DVec3::new(f64::from(i % 3), 0.0, -0.0), 1.0 + f64::from(i % 2)));
         let facts = Facts::of(&scene(copies));
         assert_eq!(facts.covered, (6..10_000).collect::<Vec<_>>());
@@ -333,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_layer_is_as_thick_as_its_surfaces_are_apart() {
+    fn layer_thickness_is_surface_distance() {
         let layer = |a: (f64, f64), b: (f64, f64)| {
             let facts = Facts::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
             facts.layers.first().map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))
@@ -350,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn cells_beyond_a_border_are_near_it() {
+    fn neighbouring_cells_are_found() {
         for (number, next) in [
             (5.0, Some(4.0)),
             (5.019, Some(4.0)),

@@ -1,5 +1,5 @@
-//! Decides how each sphere is intersected and which origin coordinates are relative to. All of it is computed in `f64`,
-//! before anything is rounded.
+//! Decides how to intersect each sphere and which origin coordinates are relative to, in `f64`, before anything is
+//! rounded.
 
 use super::facts::Facts;
 use crate::job::render::RenderJob;
@@ -9,36 +9,34 @@ use crate::stages::SurfaceRule;
 use glam::DVec3;
 
 /// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At this
-/// limit the distances of the perpendicular form have an error of about `1e-4` of that length.
+/// limit, distances in the perpendicular form are wrong by about `1e-4` of that length.
 const ANCHOR_SHARE: f64 = 5e-5;
 
-/// Where one of two touching spheres is glass, the smaller counts as this many times smaller than it is. A ray that
-/// leaves one sphere near the contact may start beyond the other's surface, because rounding moves it, and then miss
-/// that surface.
+/// Where one of two touching spheres is glass, the smaller counts as this many times smaller. A ray that leaves one
+/// near the contact may, by rounding, start beyond the other's surface and miss it.
 const TOUCHING_SHARE: f64 = 50.0;
 
 /// Spheres touch if they cross or are at most this many rounding units apart.
 const TOUCHING_UNITS: f64 = 16.0;
 
-/// Most spheres that are anchored because of small lengths. Every ray tests all of them, as in a list. Those with the
-/// most to gain come first.
+/// Most spheres anchored because of small lengths, since every ray tests all of them. Those that gain most come first.
 const ANCHORED_LIMIT: usize = 16;
 
-/// Most spheres that are examined for this.
+/// Most spheres examined for anchoring.
 const CANDIDATE_LIMIT: usize = 64;
 
 /// Coordinates are relative to a point near the eye if the eye's distance from the world's origin exceeds the smallest
-/// length near the eye by this factor. At that ratio, rounding reaches `8e-6` of that length.
+/// length near it by this factor. At that ratio, rounding reaches `8e-6` of that length.
 const SHIFT_RATIO: f64 = 128.0;
 
-/// Spheres count as near the eye up to this many times the distance of the nearest one.
+/// Spheres are near the eye up to this many times the distance of the nearest one.
 const NEIGHBOUR_RATIO: f64 = 4.0;
 
-/// Spacing of the grid for that point, as a multiple of the length. On a grid, the point stays fixed for small
-/// movements of the eye.
+/// Grid spacing for that point, as a multiple of the length. On a grid, small movements of the eye leave the point
+/// fixed.
 const GRID_RATIO: f64 = 256.0;
 
-/// The eye is on a surface if their distance is within the rounding of `f64`: this many units in the last place.
+/// The eye is on a surface if it is within `f64` rounding of it: this many units in the last place.
 const ON_SURFACE_UNITS: f64 = 4.0;
 
 /// A sphere described relative to a point on its surface.
@@ -46,31 +44,29 @@ const ON_SURFACE_UNITS: f64 = 4.0;
 pub(super) struct Anchored {
     /// Index of the sphere in the scene.
     pub index: u32,
-    /// Which roots count.
     pub roots: Roots,
-    /// Whether the eye is on the surface, so that camera rays start on it, on the outer side.
+    /// Whether the eye is on the outer side of the surface, so that camera rays start on it.
     pub under_eye: bool,
     /// A point that the anchor is close to.
     pub near: DVec3,
 }
 
-/// How each sphere is intersected: indices in the scene, ascending. Covered spheres are in no group.
+/// How to intersect each sphere: indices in the scene, ascending. Covered spheres are in no group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Groups {
     /// The point that coordinates are relative to.
     pub origin: DVec3,
-    /// Spheres of which only the nearer root counts.
+    /// Spheres whose nearer root alone counts.
     pub opaque: Vec<u32>,
-    /// Spheres of which both roots count.
+    /// Spheres whose roots both count.
     pub two_root: Vec<u32>,
-    /// Anchored spheres; there are few.
+    /// Few.
     pub anchored: Vec<Anchored>,
-    /// Whether a sphere is so small relative to its distance that a hit's depth hardly determines where on it the hit
-    /// is.
+    /// Whether a sphere is so small for its distance that a hit's depth hardly determines where on it the hit is.
     pub has_specks: bool,
 }
 
-/// The eye and the radius of its lens.
+/// The eye and its lens.
 struct Eye {
     position: DVec3,
     /// Rays start within this distance of the eye.
@@ -82,7 +78,7 @@ impl Eye {
         Eye { position: camera.look_from, lens_radius: camera.lens_radius() }
     }
 
-    /// Distance to the surface: negative inside, 0 if it is within rounding of 0.
+    /// Distance to the surface: negative inside, 0 within rounding.
     fn height(&self, sphere: &Sphere) -> f64 {
         let height = self.position.distance(sphere.center) - sphere.radius;
         let size = self.position.abs().max_element() + sphere.center.abs().max_element() + sphere.radius;
@@ -134,8 +130,7 @@ impl Groups {
         groups
     }
 
-    /// All spheres but the anchored ones, those with one root first. Of two hits at the same distance, the first in
-    /// this order wins.
+    /// All spheres but the anchored ones, those with one root first. At equal distance, the first in this order is hit.
     pub fn in_list_order(&self) -> Vec<u32> {
         self.opaque.iter().chain(&self.two_root).copied().collect()
     }
@@ -166,7 +161,7 @@ fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
     HALF_EPSILON * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
 }
 
-/// A grid point near the surface closest to the eye, or 0 if coordinates are already small enough.
+/// A grid point near the surface closest to the eye, or 0 if coordinates are small enough.
 fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> DVec3 {
     let by_height = spheres.clone().map(|sphere| (eye.height(sphere).abs(), sphere));
     let Some((height, nearest)) = by_height.min_by(|a, b| a.0.total_cmp(&b.0)) else { return DVec3::ZERO };
@@ -191,8 +186,8 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
     (foot / cell).round() * cell
 }
 
-/// Spheres to be anchored, by ascending index: those that all rays start in or on, and those so large relative to what
-/// is near their surface that rounding at their radius would be visible.
+/// Spheres to anchor, by ascending index: those that all rays start in or on, and those so large for what is near their
+/// surface that rounding at their radius would show.
 fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     shown: impl Fn() -> I + Copy,
     eye: &Eye,
@@ -233,7 +228,7 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
                 (true, false, false) => Roots::Nearer,
                 _ => Roots::Both,
             };
-            // An anchor far away would leave the eye itself unresolved.
+            // A distant anchor would leave the eye itself unresolved.
             let is_eye_resolved =
                 |place: DVec3| HALF_EPSILON * eye.position.distance(place) <= ANCHOR_SHARE * height;
             let near = detail
@@ -252,16 +247,16 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
 /// What rounding at a sphere's radius could affect.
 #[derive(Clone, Copy, Debug)]
 struct Detail {
-    /// The smallest length near the surface: the radius of a nearby sphere, or its distance from the surface if that is
-    /// larger.
+    /// The smallest length near the surface: the radius of a nearby sphere or, if larger, its distance from the
+    /// surface.
     length: f64,
     /// The middle of the spheres whose lengths are hardly larger.
     place: DVec3,
 }
 
 impl Detail {
-    /// Returns `None` if all lengths are so large that the sphere needs no anchor. `counted` maps a sphere and its
-    /// length to the length that counts.
+    /// `None` if all lengths are so large that the sphere needs no anchor. `counted` maps a sphere and its length to
+    /// the length that counts.
     fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         shown: impl Fn() -> I,
         sphere: &Sphere,
@@ -294,7 +289,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hierarchy_serves_only_groups_with_the_same_anchored_spheres() {
+    fn hierarchy_is_shared_with_same_anchors() {
         let groups = |indices: &[u32], roots: Roots| {
             let anchored = |&index: &u32| Anchored { index, roots, under_eye: false, near: DVec3::ZERO };
             Groups {
@@ -312,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn an_eye_within_rounding_of_a_surface_is_on_it() {
+    fn eye_within_rounding_is_on_surface() {
         for far in [1e8, -1e8] {
             let position = DVec3::splat(far);
             let eye = Eye { position, lens_radius: 0.0 };

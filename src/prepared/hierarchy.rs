@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy over many spheres.
 //!
 //! obvhs builds the tree. This module lays it out for the kernels and widens its boxes, so that rounding never hides a
-//! hit that a test of every sphere would find.
+//! hit that testing every sphere would find.
 
 use super::bounded::Bounded;
 use super::parted;
@@ -19,55 +19,52 @@ use std::time::Duration;
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
-/// The bits of [`Node::count`] from here on are twice the axis along which a node's children lie apart, plus 1 if the
-/// second child comes before the first.
+/// From this bit on, [`Node::count`] holds twice the axis that separates the children, plus 1 if the second child comes
+/// before the first.
 pub const ORDER_SHIFT: u32 = 29;
 
-/// The leaves of a tree.
 #[derive(Clone, Copy)]
 pub(super) struct Leaves {
     /// Most spheres in a leaf.
     pub most: u32,
-    /// What a packet's visit of a node costs, in tests of a sphere. Higher costs make fuller leaves.
+    /// Cost of a packet's visit to a node, in sphere tests. Higher costs make fuller leaves.
     visit_cost: f32,
 }
 
 impl Leaves {
-    /// One sphere in each leaf.
+    /// One sphere per leaf.
     pub const SINGLE: Leaves = Leaves { most: 1, visit_cost: 0.0 };
-    /// For a tree that fits the cache of a core. Between costs of 5 and 8, packets differ by less than 3 %, and one lane
+    /// For a tree that fits a core's cache. Between costs of 5 and 8, packets differ by less than 3 %, and one lane
     /// prefers 5.
     const SMALL: Leaves = Leaves { most: 12, visit_cost: 5.0 };
     /// For a tree whose nodes come from farther away.
     const FULL: Leaves = Leaves { most: 24, visit_cost: 8.0 };
 
-    /// The leaves that gave the fastest traversal of this many spheres.
+    /// The leaves that gave the fastest traversal for this many spheres.
     fn of(spheres: usize) -> Leaves {
         if spheres <= 20_000 { Leaves::SMALL } else { Leaves::FULL }
     }
 }
 
-/// Numbers of spheres for which a thorough build gives a better hierarchy than a quick one, and fits memory and time.
+/// Numbers of spheres for which a thorough build beats a quick one and fits time and memory.
 const IMPROVABLE: RangeInclusive<usize> = 20_001..=4_000_000;
 
-/// How long building a hierarchy may take.
+/// How long a build may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
     /// Up to some .1 s on one core, and 1 µs per sphere: for a picture that someone waits for.
     Quick,
-    /// As long as the best tree takes, which is up to 20 times as long.
+    /// As long as the best tree takes: up to 20 times as long.
     Thorough,
 }
 
-/// The nodes of a hierarchy, root first, and the order of its spheres.
+/// The nodes, root first, and the order of the spheres.
 #[derive(Clone, Debug)]
 pub struct Hierarchy<R> {
-    /// All nodes.
     pub nodes: Vec<Node<R>>,
     /// Largest absolute coordinate of any box, which bounds the rounding error.
     pub extent: R,
-    /// For each sphere in the order of the leaves, its place in the list. Of two hits at the same distance, the sphere
-    /// that comes first in the list wins.
+    /// Each sphere's place in the list, in leaf order. At equal distance, the first in the list is hit.
     pub ranks: Vec<u32>,
 }
 
@@ -77,7 +74,7 @@ impl<R: Real> Hierarchy<R> {
         Hierarchy::build_unless(&AtomicBool::new(false), spheres, origin, effort)
     }
 
-    /// Like [`Hierarchy::build`]. Once `cancel` is set, it hurries, and the hierarchy is a poor one.
+    /// Like [`Hierarchy::build`], but once `cancel` is set it hurries, and the hierarchy is poor.
     pub fn build_unless<'a>(
         cancel: &AtomicBool,
         spheres: impl IntoIterator<Item = &'a Sphere>,
@@ -109,9 +106,8 @@ impl<R: Real> Hierarchy<R> {
     }
 }
 
-/// Builds and lays out a tree over at least one sphere. obvhs builds it, unless that would take long for these spheres or
-/// its tree has more levels than a traversal supports. Once `cancel` is set, any tree that fits will do; obvhs itself cannot
-/// be interrupted.
+/// Builds a tree over at least one sphere: with obvhs, unless that would take long for these spheres or give more
+/// levels than a traversal supports. Once `cancel` is set, any valid tree will do; obvhs itself cannot be interrupted.
 pub(super) fn build_tree<T>(
     spheres: &[Bounded<'_, '_>],
     leaves: Leaves,
@@ -132,8 +128,7 @@ pub(super) fn build_tree<T>(
     if fits(&tree) { tree } else { top_down(true) }
 }
 
-/// The tree with its nodes and spheres in the order of a walk from node to child, so that what is visited in turn lies
-/// close together in memory.
+/// Reorders nodes and spheres depth-first, so that consecutive visits are close together in memory.
 fn in_walking_order(mut tree: Bvh2) -> Bvh2 {
     tree.reorder_in_stack_traversal_order();
     let mut ordered = Vec::with_capacity(tree.primitive_indices.len());
@@ -146,7 +141,7 @@ fn in_walking_order(mut tree: Bvh2) -> Bvh2 {
     tree
 }
 
-/// The number of nodes on the longest path from the root to a leaf.
+/// Nodes on the longest path from the root to a leaf.
 fn depth(nodes: &[Bvh2Node]) -> usize {
     levels(|index| {
         let node = &nodes[index as usize];
@@ -154,7 +149,7 @@ fn depth(nodes: &[Bvh2Node]) -> usize {
     })
 }
 
-/// The number of levels of a tree. `first_child` gives the first of a node's two children, which are adjacent.
+/// Number of levels of a tree. `first_child` gives the first of a node's two adjacent children.
 fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
     let mut deepest = 0;
     let mut open = vec![(0_u32, 1_usize)];
@@ -168,8 +163,8 @@ fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
 }
 
 impl<R> Hierarchy<R> {
-    /// Calls `each` with the place in the list of every sphere that may touch the box from `low` to `high`, which is
-    /// relative to the hierarchy's origin.
+    /// Calls `each` with the list place of every sphere that may touch the box from `low` to `high`, relative to the
+    /// hierarchy's origin.
     pub fn near(&self, low: DVec3, high: DVec3, mut each: impl FnMut(usize))
     where
         R: Into<f64> + Copy,
@@ -194,15 +189,15 @@ impl<R> Hierarchy<R> {
         }
     }
 
-    /// Calls `each` with the place in the list of every sphere that a ray may hit, the near boxes first. `each` returns the
-    /// distance of the nearest hit so far: boxes that begin beyond it are left out. `origin` is relative to the hierarchy's
-    /// origin, and `direction` has length 1.
+    /// Calls `each` with the list place of every sphere that a ray may hit, near boxes first. `each` returns the
+    /// distance of the nearest hit so far, and boxes that begin beyond it are skipped. `origin` is relative to the
+    /// hierarchy's origin, and `direction` has length 1.
     pub fn along(&self, origin: DVec3, direction: DVec3, mut each: impl FnMut(usize) -> f64)
     where
         R: Into<f64> + Copy,
     {
         let inverse = direction.recip();
-        // Where the ray enters the box of a node; infinite if it misses it.
+        // Where the ray enters a node's box; infinite for a miss.
         let entry = |index: u32| {
             let node = &self.nodes[index as usize];
             let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
@@ -238,12 +233,12 @@ impl<R> Hierarchy<R> {
         }
     }
 
-    /// Whether a thorough build of this many spheres is worth its time if they are traced for long.
+    /// Whether a thorough build is worth its time if this many spheres are traced for long.
     pub fn is_improvable(&self) -> bool {
         IMPROVABLE.contains(&self.ranks.len())
     }
 
-    /// The number of nodes on the longest path from the root to a leaf.
+    /// Nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         levels(|index| {
             let node = &self.nodes[index as usize];
@@ -252,7 +247,7 @@ impl<R> Hierarchy<R> {
     }
 }
 
-/// Build parameters of obvhs for this many spheres.
+/// obvhs's build parameters for this many spheres.
 fn params(spheres: usize, leaves: Leaves, effort: Effort) -> BvhBuildParams {
     let preset = match (spheres, effort) {
         (0..=1_000, _) => BvhBuildParams::medium_build(),
@@ -283,8 +278,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tree_that_no_other_builder_keeps_low_enough_is_halved() {
-        // Each sphere is twice as far away as the one before, so every split that pays leaves most of them together.
+    fn too_deep_tree_is_halved() {
+        // Each sphere is twice as far away as the one before, so any split that pays leaves most of them together.
         let far = |place: i32| 2_f64.powi(place);
         let sphere = |place| Sphere { center: DVec3::X * far(place), radius: 0.1 * far(place), material: 0 };
         let spheres: Vec<Sphere> = (0..64).map(sphere).collect();
@@ -301,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_and_spheres_lie_in_the_order_of_a_walk() {
+    fn layout_is_depth_first() {
         let spheres = crate::scene::builtin::field(3000).0.spheres;
         let hierarchy = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Quick);
         let is_leaf = |node: &Node<f32>| node.count & COUNT_MASK > 0;
@@ -321,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_meets_only_the_boxes_that_it_enters() {
+    fn ray_visits_only_entered_boxes() {
         // A row along x, and a ray that leaves it at once.
         let sphere = |place: i32| Sphere { center: f64::from(place) * DVec3::X, radius: 0.25, material: 0 };
         let spheres: Vec<Sphere> = (0..100).map(sphere).collect();

@@ -36,20 +36,19 @@ const HIERARCHY_MIN_SPHERES: usize = 24;
 pub struct PreparedScene<R> {
     /// Centre and squared radius of spheres that no ray is ever inside of: only the nearer root counts.
     pub opaque: Vec<[R; 4]>,
-    /// Centre and squared radius of the other spheres. With a hierarchy, these are all spheres in the order of its
-    /// leaves, and the squared radius is negative where only the nearer root counts.
+    /// Centre and squared radius of the other spheres. With a hierarchy, these are all spheres in leaf order, and the
+    /// squared radius is negative where only the nearer root counts.
     pub two_root: Vec<[R; 4]>,
-    /// Spheres described relative to a point on their surface: huge ones, and those that the eye is in or on.
+    /// Huge spheres and those that the eye is in or on, described relative to a point on their surface.
     pub anchored: Vec<AnchoredSphere<R>>,
     /// The hierarchy over `two_root`, if there are enough spheres.
     pub hierarchy: Option<Hierarchy<R>>,
     /// Wall time of building the hierarchy.
     pub hierarchy_time: Duration,
-    /// The [`ShadingRecord`] of each row.
+    /// One per row.
     pub records: Vec<RecordColumns<R>>,
-    /// The index in the scene of each row's sphere.
+    /// The scene index of each row's sphere.
     pub scene_index: Vec<u32>,
-    /// The camera in the kernel's precision.
     pub camera: CameraTable<R>,
     /// Sky radiance at the horizon times `2^24`, linear RGB.
     pub sky_middle: [R; 3],
@@ -57,7 +56,6 @@ pub struct PreparedScene<R> {
     pub sky_slope: [R; 3],
     /// Most samples whose sum in units of `2^-24` fits 32 bits: a power of two.
     pub block_limit: u32,
-    /// Size, depth, sampler, seed and number of halves.
     pub settings: RenderSettings,
     /// What the job needs from a kernel.
     pub features: Features,
@@ -74,8 +72,8 @@ impl<R: Real> PreparedScene<R> {
         PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, &AtomicBool::new(false))
     }
 
-    /// Like [`PreparedScene::new`], with the best hierarchy that can be built, which may take many times as long. Both
-    /// render the same bits.
+    /// Like [`PreparedScene::new`], with the best possible hierarchy, which may take many times as long. Both render
+    /// the same bits.
     pub fn thorough(job: &RenderJob) -> Self {
         PreparedScene::with_hierarchy_from(
             job,
@@ -148,13 +146,12 @@ impl<R: Real> PreparedScene<R> {
         prepared
     }
 
-    /// Prepares the scene of `job`. If `old` is the prepared scene of a job that differs only in camera and settings,
-    /// its hierarchy is reused.
+    /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings.
     pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
         PreparedScene::followed_or_built(old, job, &AtomicBool::new(false))
     }
 
-    /// Like [`PreparedScene::renewed`], but returns `None` soon once `cancel` is set.
+    /// Like [`PreparedScene::renewed`], but returns `None` soon after `cancel` is set.
     pub fn renewed_unless(
         cancel: &AtomicBool,
         old: Option<(Self, RenderJob)>,
@@ -195,7 +192,7 @@ impl<R: Real> PreparedScene<R> {
         true
     }
 
-    /// Sets everything that depends on the position of the eye.
+    /// Sets everything that depends on the eye's position.
     fn see(&mut self, job: &RenderJob, groups: Groups) {
         let scene = job.scene();
         let listed = self.opaque.len() + self.two_root.len();
@@ -220,7 +217,6 @@ impl<R: Real> PreparedScene<R> {
         debug_assert_eq!(self.validate(job), Ok(()));
     }
 
-    /// How the spheres are sorted, as the features need to know it.
     fn sorted(&self) -> SortedSpheres<'_, R> {
         SortedSpheres {
             opaque_count: self.opaque.len(),
@@ -231,12 +227,12 @@ impl<R: Real> PreparedScene<R> {
         }
     }
 
-    /// What single precision cannot represent in the scene, with numbers and remedies.
+    /// Warnings about what single precision cannot represent, with numbers and remedies.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Memory in bytes that grows with the number of spheres.
+    /// Memory that grows with the number of spheres.
     pub fn bytes(&self) -> usize {
         let Groups { opaque, two_root, .. } = &self.groups;
         let indices = [opaque, two_root, &self.scene_index];
@@ -251,7 +247,7 @@ impl<R: Real> PreparedScene<R> {
             + nodes
     }
 
-    /// The spheres of `two_root` as they are in the scene. `job` must be the job that this scene was prepared from.
+    /// The spheres of `two_root` as in the scene. `job` must be the one that this scene was prepared from.
     pub fn spheres_of_hierarchy<'a>(&'a self, job: &'a RenderJob) -> impl Iterator<Item = &'a Sphere> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
         indices.map(|index| &job.scene().spheres[*index as usize])
@@ -322,7 +318,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_is_the_most_samples_whose_sum_fits_32_bits() {
+    fn block_sum_fits_32_bits() {
         let limit = |units: f64| block_limit(units / FIXED_POINT_SCALE);
         for power in 1..=7 {
             // 2^power samples of this many units are 2^32 - 2^power, and one unit more makes 2^32.

@@ -1,6 +1,5 @@
 //! A top-down tree builder for spheres that bottom-up clustering would chain: nested shells, copies, straight rows, and
-//! spheres over many scales. For these, obvhs takes time quadratic in the number of spheres and builds a tree as deep as
-//! there are spheres.
+//! spheres over many scales. For these, obvhs takes quadratic time and builds a tree as deep as there are spheres.
 
 use super::bounded::Bounded;
 use glam::DVec3;
@@ -11,29 +10,29 @@ use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Levels that are split at the lowest cost. Below them nodes are halved, so that the depth of a tree is at most this
-/// plus the logarithm of the number of spheres.
+/// Levels split at the lowest cost. Below them nodes are halved, which limits a tree's depth to this plus the logarithm
+/// of the number of spheres.
 const CHOSEN_LEVELS: usize = 32;
 
-/// Bins that a node's spheres are sorted into to choose a split.
+/// Bins for choosing a node's split.
 const BINS: usize = 16;
 
 /// Up to this many spheres, clustering is fast in any arrangement.
 const FEW_SPHERES: usize = 2048;
 
-/// Number of spheres in nested runs from which on a scene counts as crowded.
+/// With this many spheres in nested runs, a scene counts as crowded.
 const CROWD: usize = 1024;
 
 /// Most clusters that [`ROUNDS`] of pairing may leave.
 const LEFT_ALONE: usize = 256;
 
-/// Rounds of pairing. Of millions of spheres that are strewn about, they leave one cluster.
+/// Rounds of pairing. Millions of scattered spheres end as one cluster.
 const ROUNDS: usize = 64;
 
 /// Shorter runs of nested spheres are hollow balls and the like.
 const NESTED_RUN: usize = 32;
 
-/// A range of spheres that is still to be split, and the node for it.
+/// A range of spheres still to be split, and its node.
 struct Open {
     node: usize,
     first: usize,
@@ -41,7 +40,7 @@ struct Open {
     depth: usize,
 }
 
-/// Whether clustering these spheres would take long: enough of them are nested in each other, or pair one by one.
+/// Whether clustering would take long: enough spheres are nested in each other, or pair one at a time.
 pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
@@ -50,7 +49,7 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     has_nested_runs(spheres, &order) || pairs_slowly(spheres, &order)
 }
 
-/// The spheres in the order of a curve on which neighbours in space are mostly neighbours.
+/// The spheres along a curve on which neighbours are mostly neighbours in space.
 fn along_a_curve(spheres: &[Bounded<'_, '_>]) -> Vec<u32> {
     let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
     let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
@@ -80,8 +79,8 @@ fn has_nested_runs(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
     nested >= CROWD
 }
 
-/// Whether many clusters are left after [`ROUNDS`] of pairing neighbours. If sizes or distances grow along a line, each
-/// sphere is nearest to the one before it, so that only one pair forms in a round.
+/// Whether many clusters remain after [`ROUNDS`] of pairing neighbours. If sizes or distances grow along a line, each
+/// sphere is nearest to the one before it, so only one pair forms per round.
 fn pairs_slowly(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
     let mut clusters: Vec<Aabb> = order.par_iter().map(|index| spheres[*index as usize].aabb()).collect();
     for _ in 0..ROUNDS {
@@ -93,7 +92,7 @@ fn pairs_slowly(spheres: &[Bounded<'_, '_>], order: &[u32]) -> bool {
     clusters.len() > LEFT_ALONE
 }
 
-/// Unites two neighbours if neither has a nearer neighbour, as obvhs does among more neighbours.
+/// Merges mutual nearest neighbours, as obvhs does among more neighbours.
 fn paired(clusters: &[Aabb]) -> Vec<Aabb> {
     let costs: Vec<f32> = clusters.par_windows(2).map(|pair| pair[0].union(&pair[1]).half_area()).collect();
     let cost = |place: usize| costs.get(place).copied().unwrap_or(f32::INFINITY);
@@ -108,7 +107,7 @@ fn paired(clusters: &[Aabb]) -> Vec<Aabb> {
     pairs
 }
 
-/// Interleaves 21 bits of each coordinate; coordinates are between 0 and 1.
+/// Interleaves 21 bits of each coordinate in 0 to 1.
 fn morton_code(place: [f64; 3]) -> u64 {
     place.iter().enumerate().fold(0, |code, (axis, x)| {
         let mut bits = (x * f64::from((1 << 21) - 1)) as u64;
@@ -125,10 +124,10 @@ fn morton_code(place: [f64; 3]) -> u64 {
     })
 }
 
-/// Builds a tree over at least one box, with at most `leaf_size` per leaf. With `halved`, every node is split in the
-/// middle, which gives the lowest tree; otherwise the split with the smallest sum of area times spheres is chosen (Wald
-/// 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies"). Once `cancel` is set, what is left is split
-/// at random, for a tree that will not be used.
+/// Builds a tree over at least one box, with at most `leaf_size` per leaf. With `halved`, splits every node in the
+/// middle for the lowest tree; otherwise minimises the sum of area times spheres (Wald 2007, "On fast Construction of
+/// SAH-based Bounding Volume Hierarchies"). Once `cancel` is set, splits the rest at random, for a tree that will not
+/// be used.
 pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool, cancel: &AtomicBool) -> Bvh2 {
     let chosen_levels = if halved { 0 } else { CHOSEN_LEVELS };
     let mut order: Vec<u32> = (0..spheres.len() as u32).collect();

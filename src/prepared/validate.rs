@@ -1,12 +1,12 @@
-//! Checks that a prepared scene has the properties that kernels rely on: lists of the right length, ties in order, boxes
-//! that enclose their contents.
+//! Checks the properties of a prepared scene that kernels rely on: lists of the right length, ties in order, boxes that
+//! enclose their contents.
 
 use super::PreparedScene;
 use super::hierarchy::Hierarchy;
 use crate::job::render::RenderJob;
 use crate::kernel::{COUNT_MASK, EYE, Features, LoadShading, Node, Real, STACK_SIZE};
 
-/// Returns from the function with a message unless a condition holds.
+/// Returns a message unless a condition holds.
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
         // A comparison with NaN counts as a failure.
@@ -18,10 +18,8 @@ macro_rules! ensure {
 }
 
 impl<R: Real> PreparedScene<R> {
-    /// Checks what kernels rely on in the prepared scene of `job`. Debug builds check every prepared scene.
-    ///
-    /// # Errors
-    /// A description of the first violation.
+    /// Checks what kernels rely on in the prepared scene of `job`. The error describes the first violation. Debug
+    /// builds check every prepared scene.
     pub fn validate(&self, job: &RenderJob) -> Result<(), String> {
         let listed = self.opaque.len() + self.two_root.len();
         let count = listed + self.anchored.len();
@@ -36,7 +34,7 @@ impl<R: Real> PreparedScene<R> {
         self.validate_rows()?;
         match &self.hierarchy {
             Some(hierarchy) => {
-                // The CPU also loops over the list of opaque spheres, while the GPU uses the hierarchy alone.
+                // The CPU would also loop over the opaque spheres, while the GPU only uses the hierarchy.
                 ensure!(self.opaque.is_empty(), "{} spheres are beside the hierarchy", self.opaque.len());
                 validate_hierarchy(hierarchy, &self.two_root, self.groups.opaque.len())
             }
@@ -49,7 +47,7 @@ impl<R: Real> PreparedScene<R> {
         }
     }
 
-    /// Checks the order of the list, which decides between two hits at the same distance.
+    /// Checks the order of the list, which decides between hits at the same distance.
     fn validate_order(&self) -> Result<(), String> {
         let groups = &self.groups;
         let anchored: Vec<u32> = groups.anchored.iter().map(|anchored| anchored.index).collect();
@@ -68,7 +66,6 @@ impl<R: Real> PreparedScene<R> {
         Ok(())
     }
 
-    /// Compares the shading records with their spheres.
     fn validate_rows(&self) -> Result<(), String> {
         let listed = self.opaque.iter().chain(&self.two_root).map(|[x, y, z, _]| ([*x, *y, *z], false));
         let anchored = self.anchored.iter().map(|sphere| (sphere.anchor, true));
@@ -171,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prepared_scene_that_follows_the_camera_is_valid() {
+    fn scene_following_camera_is_valid() {
         let before = job("field:300");
         let mut camera = *before.camera();
         camera.look_from.x += 0.25;

@@ -1,8 +1,7 @@
 //! The GPU's hierarchy, with eight children per node. Its boxes are compressed to 8 bits per bound (CWBVH, 80 bytes per
 //! node) or whole (256 bytes).
-//!
 //! Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs". obvhs
-//! builds the tree and lays out its nodes. This module recomputes the boxes, so that rounding never makes a box smaller
+//! builds the tree and lays out its nodes. This module recomputes the boxes, so that rounding never makes one smaller
 //! than its contents.
 
 use super::bounded::Bounded;
@@ -23,20 +22,19 @@ const LEAF_SPHERES: u32 = 3;
 /// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = CWBVH_STACK_SIZE;
 
-/// Largest value of a compressed bound.
 const BOUND_MAX: f64 = 255.0;
 
 /// Rows of four words in a node with whole boxes. Twin: `WHOLE_ROWS` in shaders/bvh.wgsl.
 const WHOLE_ROWS: usize = 16;
 
-/// The nodes of a wide hierarchy, root first.
+/// A wide hierarchy, root first.
 #[derive(Clone, Debug)]
 pub struct WideBvh {
-    /// All nodes, with compressed boxes; children come after their parents.
+    /// With compressed boxes; children come after their parents.
     pub nodes: Vec<CwBvhNode>,
-    /// The whole boxes of each node's children.
+    /// The uncompressed boxes of each node's children.
     boxes: Vec<[Aabb; 8]>,
-    /// For each place in the order of the leaves, the index of the sphere.
+    /// The sphere index at each place in leaf order.
     pub order: Vec<u32>,
 }
 
@@ -129,7 +127,7 @@ impl WideBvh {
         }
     }
 
-    /// Computes all boxes from the spheres' boxes, given in the order of the leaves.
+    /// Computes all boxes from those of the spheres, given in leaf order.
     fn set_boxes(&mut self, spheres: &[Aabb]) {
         let mut boxes = vec![Aabb::empty(); self.nodes.len()];
         self.boxes = vec![[Aabb::empty(); 8]; self.nodes.len()];
@@ -151,7 +149,7 @@ impl WideBvh {
         }
     }
 
-    /// The number of nodes on the longest path from the root to a leaf.
+    /// Nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         let mut depths = vec![1; self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate() {
@@ -224,9 +222,9 @@ mod tests {
         check(&[field(1).0.spheres[0]; 40]);
     }
 
-    /// The bounds, marks and links of whole nodes, read back, are those of the compressed nodes or within them.
+    /// Decoded bounds, marks and links of whole nodes match the compressed nodes or lie within them.
     #[test]
-    fn whole_boxes_lie_within_compressed_ones_and_hold_their_spheres() {
+    fn whole_boxes_nest_between_spheres_and_compressed() {
         let spheres = field(3000).0.spheres;
         let built = WideBvh::build(&spheres, DVec3::ZERO);
         let rows = built.whole_nodes();
@@ -263,7 +261,7 @@ mod tests {
         assert_eq!(held, spheres.len());
     }
 
-    /// How a test damages a tree, and part of the error that the check must report.
+    /// A way to damage a tree, and part of the error that the check must report.
     type Damage = (&'static str, fn(&mut WideBvh));
 
     #[test]

@@ -8,45 +8,44 @@ use std::ops::RangeInclusive;
 /// Limits on the vertical field of view, degrees.
 pub const VFOV_LIMITS_DEGREES: [f64; 2] = [0.01, 179.0];
 
-/// Upper limit on the defocus angle, exclusive, in degrees; the lower limit is 0.
+/// Exclusive upper limit on the defocus angle, degrees; the lower limit is 0.
 pub const DEFOCUS_LIMIT_DEGREES: f64 = 179.0;
 
-/// Limits on the focus distance, scene units. The upper limit covers the distance between any two valid positions.
+/// Limits on the focus distance, scene units. The upper one covers the distance between any two valid positions.
 pub const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
 
 /// A thin-lens camera in the user's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Position of the eye, scene units.
+    /// Scene units.
     pub look_from: DVec3,
-    /// The point that the camera looks at, in the middle of the picture; scene units.
+    /// The point in the middle of the picture, scene units.
     pub look_at: DVec3,
-    /// The up direction, of any length greater than 0, not parallel to the view.
+    /// Any vector longer than 0 and not parallel to the view.
     pub vup: DVec3,
-    /// Angle from the lower to the upper edge of the picture, degrees, within [`VFOV_LIMITS_DEGREES`].
+    /// Angle from the lower to the upper edge of the picture, within [`VFOV_LIMITS_DEGREES`].
     pub vfov_degrees: f64,
-    /// Apex angle of the cone from the focus point to the lens, degrees, `0..179`; 0 means a pinhole.
+    /// Apex angle of the cone from the focus point to the lens, `0..179`; 0 means a pinhole.
     pub defocus_angle_degrees: f64,
-    /// Distance from the eye to the plane in focus, scene units, greater than 0. `None` means the distance from
-    /// `look_from` to `look_at`.
+    /// Distance to the plane in focus, scene units, greater than 0. `None` means the distance from `look_from` to
+    /// `look_at`.
     pub focus_distance: Option<f64>,
 }
 
 impl Default for Camera {
-    /// [`Camera::BOOK`].
     fn default() -> Self {
         Camera::BOOK
     }
 }
 
-/// An orthonormal frame: `u` points right, `v` up and `w` backwards.
+/// An orthonormal frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBasis {
-    /// Points right in the picture.
+    /// Right in the picture.
     pub u: DVec3,
-    /// Points up in the picture.
+    /// Up in the picture.
     pub v: DVec3,
-    /// Points backwards, against the viewing direction.
+    /// Backwards, against the view.
     pub w: DVec3,
 }
 
@@ -61,10 +60,8 @@ impl Camera {
         focus_distance: None,
     };
 
-    /// Checks every number against its limits.
-    ///
-    /// # Errors
-    /// The first invalid value, with its limit and a remedy.
+    /// Checks every number against its limits. The error describes the first invalid value, with its limit and a
+    /// remedy.
     pub fn validate(&self) -> Result<(), SceneError> {
         position(|| "look_from".to_owned(), self.look_from)?;
         position(|| "look_at".to_owned(), self.look_at)?;
@@ -133,8 +130,8 @@ impl Camera {
         self.effective_focus_distance() * self.defocus_tangent()
     }
 
-    /// The camera's frame, orthonormal to the precision of `f64` for every valid camera. For an up vector that is not
-    /// valid, the axis least aligned with the view replaces it.
+    /// The camera's frame, orthonormal to `f64` precision for every valid camera. An invalid up vector is replaced by
+    /// the axis least aligned with the view.
     pub fn basis(&self) -> CameraBasis {
         let w = unit(self.look_from - self.look_at);
         let u = right(self.vup, w).unwrap_or_else(|| unit(least_aligned(w).cross(w)));
@@ -142,7 +139,7 @@ impl Camera {
     }
 }
 
-/// The unit vector at right angles to `vup` and to the unit vector `w`; `None` if they are parallel.
+/// The unit vector perpendicular to `vup` and to the unit vector `w`; `None` if they are parallel.
 fn right(vup: DVec3, w: DVec3) -> Option<DVec3> {
     /// Below this sine of the angle between up and view, rounding would determine the roll.
     const PARALLEL_SINE: f64 = 1e-9;
@@ -150,7 +147,7 @@ fn right(vup: DVec3, w: DVec3) -> Option<DVec3> {
     (right.length() >= PARALLEL_SINE).then(|| unit(right))
 }
 
-/// The axis least aligned with `w`; of several, y before z before x.
+/// The axis least aligned with `w`; ties go to y, then z.
 fn least_aligned(w: DVec3) -> DVec3 {
     let aligned = |axis: &DVec3| axis.dot(w).abs();
     [DVec3::Y, DVec3::Z, DVec3::X]
@@ -199,7 +196,7 @@ mod tests {
                 assert_orthonormal(&camera);
             }
         }
-        // Almost along the view is enough.
+        // Almost parallel to the view is enough.
         for sine in [1e-3, 1e-6, 1e-8] {
             let camera = Camera { vup: DVec3::new(0.0, sine, -1.0), ..Camera::BOOK };
             camera.validate().expect("valid");
@@ -219,7 +216,7 @@ mod tests {
 
     /// Case 31.
     #[test]
-    fn a_camera_without_direction_is_refused() {
+    fn camera_without_direction_is_refused() {
         let refused = message(Camera { look_at: DVec3::ZERO, ..Camera::BOOK });
         assert!(refused.contains("look_from and look_at are both [0, 0, 0]"), "{refused}");
         assert!(refused.contains("move one"), "{refused}");
@@ -257,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lens_has_the_radius_of_its_cone_at_the_plane_in_focus() {
+    fn lens_radius_follows_defocus_angle() {
         // Half of 90 degrees has the tangent 1, and half of 120 that of 60 degrees.
         for (angle, distance, radius) in
             [(90.0, 3.0, 3.0), (120.0, 2.0, 2.0 * 3.0_f64.sqrt()), (0.0, 5.0, 0.0)]

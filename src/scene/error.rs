@@ -5,27 +5,23 @@ use glam::DVec3;
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// A scene or camera that cannot be rendered.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
-    /// A value is NaN or infinite.
     #[error("{what} is {value}, but must be a finite number")]
     NotFinite { what: String, value: f64 },
-    /// A number is outside its range.
     #[error("{what} is {}, but must be {limit}; {remedy}", Number(*value))]
     OutOfRange {
         what: String,
         value: f64,
-        /// The range, in words.
+        /// The range, spelled out.
         limit: Cow<'static, str>,
         /// What the user should change.
         remedy: &'static str,
     },
-    /// A colour has a component outside its range.
     #[error("{what} is {}, but each component must be within 0 and {limit}", Numbers(value.to_array()))]
     Colour {
         what: String,
-        /// The colour, linear RGB.
+        /// Linear RGB.
         value: DVec3,
         limit: f64,
     },
@@ -36,24 +32,21 @@ pub enum SceneError {
         toml_key(material)
     )]
     MissingMaterial {
-        /// Index of the sphere.
         sphere: usize,
-        /// The material name that it gives.
+        /// The name that the sphere gives.
         material: String,
     },
-    /// Two materials have the same name.
     #[error("two materials are called {name:?}; rename one")]
     DuplicateMaterial { name: String },
-    /// The camera's position equals the point that it looks at.
     #[error(
         "look_from and look_at are both {}, so there is no direction to look in; move one of them",
         Numbers(at.to_array())
     )]
     NoDirection {
-        /// That point, scene units.
+        /// Scene units.
         at: DVec3,
     },
-    /// The up vector has no direction, or that of the view.
+    /// The up vector has no direction, or the view's.
     #[error(
         "vup is {}, {}; use another, such as {}",
         Numbers(vup.to_array()),
@@ -62,7 +55,7 @@ pub enum SceneError {
     )]
     NoUp {
         vup: DVec3,
-        /// An up vector for this view.
+        /// A valid up vector for this view.
         remedy: DVec3,
     },
 }
@@ -78,13 +71,13 @@ impl SceneError {
     }
 }
 
-/// A name as a key of a scene file, quoted if it must be.
+/// A name as a scene file's key, quoted if necessary.
 pub(crate) fn toml_key(name: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { toml_string(name) }
 }
 
-/// A text as a scene file has it: quoted, and with escapes for what a reader would not see.
+/// A quoted string for a scene file, with invisible characters escaped.
 pub(crate) fn toml_string(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
@@ -100,10 +93,10 @@ pub(crate) fn toml_string(text: &str) -> String {
     quoted
 }
 
-/// Largest absolute coordinate or radius. Squares of it, and sums of three squares, must be finite in `f32`.
+/// Largest absolute coordinate or radius. Its square, and the sum of three, must be finite in `f32`.
 pub const LENGTH_LIMIT: f64 = 1e18;
 
-// These checks run on millions of values, so the text of a location is built only for an error.
+// These checks run on millions of values, so the location's text is only built for an error.
 
 pub(super) fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), SceneError> {
     if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what(), value }) }

@@ -7,48 +7,47 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// Limits on the refraction index.
 pub const REFRACTION_INDEX_LIMITS: RangeInclusive<f64> = 1e-9..=1e9;
 
-/// The behaviour of a surface.
+/// How a surface scatters light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields, expecting = "a table of a material")]
 pub enum Material {
-    /// Scatters with a density proportional to the cosine to the normal. (Section 9.4.)
+    /// Scatters with a density proportional to the cosine of the angle to the normal. (Section 9.4.)
     Lambertian {
         /// Reflectance, linear RGB, each component in `0..=1`.
         albedo: DVec3,
     },
-    /// Reflects as a mirror, blurred by `fuzz`. (Section 10.)
+    /// A mirror, blurred by `fuzz`. (Section 10.)
     Metal {
         /// Reflectance, linear RGB, each component in `0..=1`.
         albedo: DVec3,
-        /// Radius of the sphere from which an offset to the reflected unit direction is drawn; 0 is a mirror. Not
+        /// Radius of the sphere that the offset to the reflected unit direction is drawn from; 0 is a mirror. Not
         /// negative. Values above 1 act as 1, as in the book.
         #[serde(default)]
         fuzz: f64,
     },
     /// Refracts or reflects light and absorbs none. (Section 11.)
     Dielectric {
-        /// Refraction index relative to the surroundings, greater than 0 and at most `1e9`.
+        /// Relative to the surroundings; greater than 0 and at most `1e9`.
         refraction_index: f64,
     },
 }
 
-/// Which of the book's ways to scatter a material follows, or comes closest to. Explanations, drawings and comparisons of
-/// paths, and the plain tracer of `check`, know materials only by this.
+/// Which of the book's ways of scattering a material follows, or comes closest to. Explanations, drawings, path
+/// comparisons and the plain tracer of `check` distinguish materials only by this.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
-    /// Light leaves in all directions. (Section 9.)
+    /// Scatters in all directions. (Section 9.)
     Matte,
-    /// Light is reflected. (Section 10.)
+    /// Reflects. (Section 10.)
     Mirror {
-        /// The fuzz in effect, `0..=1`.
+        /// In effect, `0..=1`.
         fuzz: f64,
     },
-    /// Light is refracted or reflected. (Section 11.)
+    /// Refracts or reflects. (Section 11.)
     Glass {
-        /// Refraction index relative to the surroundings.
+        /// Relative to the surroundings.
         refraction_index: f64,
     },
 }
@@ -68,10 +67,10 @@ pub enum Parameter {
 }
 
 impl Material {
-    /// The names of all kinds, as in the book.
+    /// The book's names of all kinds.
     pub const KINDS: [&'static str; 3] = ["lambertian", "metal", "dielectric"];
 
-    /// The parameters with their names in scene files, in the order in which they are written.
+    /// The parameters with their names in scene files, in writing order.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         use Parameter::{Colour, Number};
         match *self {
@@ -89,7 +88,7 @@ impl Material {
         }
     }
 
-    /// The reflectance, linear RGB; `None` for glass.
+    /// Linear RGB; `None` for glass.
     pub fn albedo(&self) -> Option<DVec3> {
         match *self {
             Material::Lambertian { albedo } | Material::Metal { albedo, .. } => Some(albedo),
@@ -113,7 +112,7 @@ impl Material {
         }
     }
 
-    /// The book's name for this kind of material.
+    /// The book's name.
     pub fn kind(&self) -> &'static str {
         match self {
             Material::Lambertian { .. } => Material::KINDS[0],
@@ -164,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn materials_reflect_no_more_than_they_get() {
+    fn materials_gain_no_energy() {
         for albedo in [DVec3::new(0.0, 1.1, 0.0), DVec3::new(0.0, 0.0, -0.1)] {
             assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
             assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));

@@ -1,8 +1,8 @@
 //! A scene as plain data: spheres, materials, a sky and a camera.
 //!
-//! This module does not depend on how pictures are made. Lengths are in scene units, angles in degrees (the renderers
-//! work in radians), and colours are linear RGB. All numbers are `f64`, so a scene that is written to a file and read
-//! back is the same to the bit. The renderers round once, when they prepare the scene.
+//! Nothing here depends on how pictures are made. Lengths are in scene units, angles in degrees (the renderers use
+//! radians), and colours are linear RGB. All numbers are `f64`, so a scene survives a round trip through a file bit for
+//! bit. The renderers round once, when they prepare the scene.
 
 pub mod animation;
 
@@ -25,13 +25,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
 /// Upper limit on a component of a sky colour. The film's fixed point holds radiance below 128 per sample
-/// ([`crate::film::RADIANCE_LIMIT`]). Paths never gain energy, so a sky within this limit never saturates.
+/// ([`crate::film::RADIANCE_LIMIT`]), and paths never gain energy, so a sky within this limit never saturates.
 pub const SKY_LIMIT: f64 = 100.0;
 
-/// A vertical gradient that surrounds the scene and is its only light source. (Book 1, section 4.2.)
+/// A vertical gradient around the scene, its only light source. (Book 1, section 4.2.)
 ///
-/// A ray that leaves the scene in the unit direction `d` receives the radiance
-/// `(1 - a) bottom + a top` with `a = (d.y + 1) / 2`.
+/// A ray that leaves the scene in the unit direction `d` receives the radiance `(1 - a) bottom + a top`, where
+/// `a = (d.y + 1) / 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sky {
@@ -54,14 +54,13 @@ impl Sky {
     }
 }
 
-/// A scene: spheres under a sky.
+/// Spheres under a sky.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
-    /// The materials; spheres refer to them by index.
+    /// Spheres refer to them by index.
     pub materials: Vec<NamedMaterial>,
-    /// The spheres, in the order of the file. May be empty.
+    /// In file order. May be empty.
     pub spheres: Vec<Sphere>,
-    /// The sky, which is the only light.
     pub sky: Sky,
 }
 
@@ -71,23 +70,18 @@ impl Scene {
         self.materials.len() - 1
     }
 
-    /// Adds a sphere; centre and radius are in scene units.
+    /// Adds a sphere, in scene units.
     pub fn add_sphere(&mut self, center: DVec3, radius: f64, material: usize) {
         self.spheres.push(Sphere { center, radius, material });
     }
 
-    /// Returns the material of a sphere.
-    ///
-    /// # Panics
-    /// If the sphere's material index is out of range, which [`Scene::validate`] excludes.
+    /// Panics if the sphere's material index is out of range, which [`Scene::validate`] excludes.
     pub fn material_of(&self, sphere: &Sphere) -> &Material {
         &self.materials[sphere.material].material
     }
 
-    /// Checks every number against its limits.
-    ///
-    /// # Errors
-    /// The first invalid value, with its limit and a remedy.
+    /// Checks every number against its limits. The error describes the first invalid value, with its limit and a
+    /// remedy.
     pub fn validate(&self) -> Result<(), SceneError> {
         let mut names = HashSet::with_capacity(self.materials.len());
         for named in &self.materials {
@@ -108,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn skies_are_bright_but_not_too_bright() {
+    fn sky_brightness_is_limited() {
         let under = |sky| Scene { sky, ..Scene::default() }.validate();
         under(Sky { bottom: DVec3::ZERO, top: DVec3::splat(SKY_LIMIT) }).expect("within the limits");
         let bright = under(Sky { top: DVec3::splat(101.0), ..Sky::default() }).expect_err("refused");

@@ -1,4 +1,4 @@
-//! Finds what is under a point of the picture, with one exact `f64` ray through the middle of the lens.
+//! Finds the sphere at a point of the picture, with one exact `f64` ray through the middle of the lens.
 
 use super::{Camera, Scene, Sphere};
 use glam::DVec3;
@@ -6,17 +6,17 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
     pub sphere: usize,
-    /// Distance from the eye along the ray, scene units.
+    /// Along the ray, scene units.
     pub distance: f64,
-    /// The hit point, scene units.
+    /// Hit point, scene units.
     pub point: DVec3,
-    /// Unit normal on the side that the ray comes from.
+    /// Unit normal on the ray's side.
     pub normal: DVec3,
 }
 
 impl Camera {
-    /// Unit direction from the eye through the point `at` of the picture, where `[0, 0]` is the upper left corner and
-    /// `[1, 1]` the lower right. `aspect` is width over height.
+    /// Unit direction from the eye through the point `at` of the picture, from `[0, 0]` at the upper left to `[1, 1]`
+    /// at the lower right. `aspect` is width over height.
     pub fn direction_through(&self, at: [f64; 2], aspect: f64) -> DVec3 {
         let basis = self.basis();
         let half_height = (self.vfov_degrees.to_radians() / 2.0).tan();
@@ -25,7 +25,7 @@ impl Camera {
         (right * basis.u + up * basis.v - basis.w).normalize()
     }
 
-    /// Distance from the eye to `point` along the viewing direction: the focus distance at which `point` is sharp.
+    /// Distance from the eye to `point` along the view: the focus distance that makes `point` sharp.
     pub fn depth_of(&self, point: DVec3) -> f64 {
         (self.look_from - point).dot(self.basis().w)
     }
@@ -47,14 +47,14 @@ impl Camera {
 }
 
 impl Scene {
-    /// Finds the first sphere that a ray hits. `direction` must have length 1.
+    /// Finds the first sphere hit. `direction` must have length 1.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
         let mut nearest = NearestHit::default();
         (0..self.spheres.len()).for_each(|sphere| nearest.take(self, sphere, origin, direction));
         self.picked(nearest, origin, direction)
     }
 
-    /// The hit of a ray after all spheres that it may hit have been taken.
+    /// The hit, once every sphere the ray may hit has been taken.
     pub fn picked(&self, nearest: NearestHit, origin: DVec3, direction: DVec3) -> Option<Pick> {
         let (sphere, distance) = nearest.0?;
         let point = origin + distance * direction;
@@ -64,12 +64,12 @@ impl Scene {
     }
 }
 
-/// The nearest hit of a ray among the spheres taken so far, in any order: the index of the sphere, and the distance.
+/// A ray's nearest hit among the spheres taken so far, in any order: sphere index and distance.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NearestHit(Option<(usize, f64)>);
 
 impl NearestHit {
-    /// Takes a sphere. Of two hits at the same distance, the sphere that comes first in the scene wins.
+    /// Takes a sphere. At equal distance, the sphere that comes first in the scene wins.
     pub fn take(&mut self, scene: &Scene, sphere: usize, origin: DVec3, direction: DVec3) {
         let Sphere { center, radius, .. } = scene.spheres[sphere];
         let Some(distance) = root(center - origin, radius, direction) else { return };
@@ -79,17 +79,17 @@ impl NearestHit {
         }
     }
 
-    /// The distance of the hit, scene units; infinite if nothing has been hit.
+    /// Distance of the hit, scene units; infinite without one.
     pub fn distance(&self) -> f64 {
         self.0.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 }
 
-/// The nearest root in front of the eye. If the eye is on the surface, that surface is not visible.
+/// The nearest root in front of the eye. A surface that the eye is on is invisible.
 fn root(to_center: DVec3, radius: f64, direction: DVec3) -> Option<f64> {
     const ON_SURFACE: f64 = 1e-9;
     let along = to_center.dot(direction);
-    // Distance from the centre to the ray, computed without the cancellation in the book's discriminant.
+    // Distance from the centre to the ray, without the cancellation in the book's discriminant.
     let beside = to_center - along * direction;
     let squared = radius * radius - beside.length_squared();
     if squared < 0.0 {
@@ -120,12 +120,12 @@ mod tests {
     }
 
     #[test]
-    fn from_inside_the_far_side_is_seen() {
+    fn inside_eye_sees_far_side() {
         let pick = two().pick(DVec3::NEG_Z, DVec3::NEG_Z).unwrap();
         assert_eq!((pick.sphere, pick.distance, pick.normal), (1, 0.5, DVec3::Z));
         let on_surface = two().pick(DVec3::new(0.0, 0.0, -0.5), DVec3::Z);
         assert_eq!(on_surface, None);
-        // Rounding may put the eye on a large sphere a little below its surface.
+        // Rounding may put the eye slightly below the surface of a large sphere.
         let mut earth = Scene::default();
         let ground = earth.add_material("ground", Material::Lambertian { albedo: DVec3::splat(0.5) });
         earth.add_sphere(DVec3::ZERO, 1e9, ground);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn places_and_directions_are_each_others_inverse() {
+    fn place_inverts_direction() {
         let camera = Camera { look_from: DVec3::new(3.0, 2.0, 1.0), ..Camera::BOOK };
         for at in [[0.0, 0.0], [0.5, 0.5], [1.0, 0.25]] {
             let point = camera.look_from + 7.0 * camera.direction_through(at, 1.5);
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn of_two_hits_at_the_same_distance_the_first_of_the_scene_is_seen() {
+    fn first_sphere_wins_tie() {
         let mut scene = two();
         scene.spheres.push(scene.spheres[1]);
         for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {

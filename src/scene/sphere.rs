@@ -7,16 +7,16 @@ use std::ops::RangeInclusive;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Centre, scene units.
+    /// Scene units.
     pub center: DVec3,
-    /// Radius, scene units, greater than 0. The book's early editions made hollow spheres with a negative radius; since
-    /// version 4 a hollow sphere contains a sphere of the inverse refraction index.
+    /// Scene units, greater than 0. The book's early editions made hollow spheres with a negative radius; since version
+    /// 4 a hollow sphere contains one of the inverse refraction index.
     pub radius: f64,
     /// Index into [`super::Scene::materials`].
     pub material: usize,
 }
 
-/// Limits on the radius, scene units. The square of the smallest must be a normal number in `f32`.
+/// Limits on the radius, scene units. The smallest square must be a normal `f32`.
 pub const RADIUS_LIMITS: RangeInclusive<f64> = 1e-18..=LENGTH_LIMIT;
 
 impl Sphere {
@@ -55,7 +55,7 @@ mod tests {
 
     /// Case 37.
     #[test]
-    fn radii_are_positive_and_of_a_size_that_f32_holds() {
+    fn radii_are_positive_and_fit_f32() {
         for radius in [0.0, -0.0, -1.0, 1e-30, 1e30] {
             let refused = refusal(DVec3::ZERO, radius, 0);
             assert!(

@@ -1,7 +1,7 @@
-//! The book's chapters as data: what each adds, what to look for, and the picture that shows it.
+//! The book's chapters as data: what each adds, what to look for, and its picture.
 //!
-//! A stage is not a second tracer. It is a scene, a camera and the [`Rules`] in effect at that point of the book. The
-//! window, the command line, the gallery and the tests find all stages in [`Stage::ALL`].
+//! A stage is not a second tracer, but a scene, a camera and the [`Rules`] in effect at that point of the book. Window,
+//! command line, gallery and tests find all stages in [`Stage::ALL`].
 
 mod rules;
 mod sight;
@@ -15,15 +15,14 @@ use crate::system::suggest::{or_nearest, similar_names};
 use std::fmt;
 use thiserror::Error;
 
-/// The web address of the book.
+/// Web address of the book.
 pub const BOOK_URL: &str = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
 
-/// One step of the book.
 #[derive(Clone, Copy)]
 pub struct Stage {
-    /// The identifier on the command line, in the window and in files. It never changes.
+    /// Identifier on the command line, in the window and in files. It never changes.
     pub id: &'static str,
-    /// Number of the book's section, such as "11.4".
+    /// Section of the book, such as "11.4".
     pub section: &'static str,
     pub section_title: &'static str,
     pub chapter_title: &'static str,
@@ -31,30 +30,29 @@ pub struct Stage {
     pub title: &'static str,
     /// What the tracer can do from this stage on.
     pub what_is_new: &'static str,
-    /// Why this is needed, or why it is correct.
+    /// Why it is needed, or why it is correct.
     pub why: &'static str,
     /// Where to look in the picture, and what to see there.
     pub look_for: &'static str,
-    /// How the thing to look for is shown.
+    /// How the window shows it.
     pub sight: Sight,
-    /// The picture in words, for those who cannot see it.
+    /// Description for those who cannot see the picture.
     pub alt: &'static str,
-    /// The stage that the wipe compares with this one by default.
+    /// The stage that the wipe compares with by default.
     pub pair: Option<&'static str>,
     pub setup: Setup,
 }
 
-/// A stage's scene with its render settings.
 #[derive(Clone, Copy)]
 pub struct Setup {
-    /// Creates the scene; the result is always the same.
+    /// Always gives the same scene.
     pub scene: fn() -> Scene,
     pub camera: Camera,
     pub rules: Rules,
     pub width: u32,
     pub height: u32,
     pub samples_per_pixel: u64,
-    /// Most rays per path, including the camera ray.
+    /// Rays per path, including the camera ray.
     pub max_depth: u32,
 }
 
@@ -62,10 +60,7 @@ impl Stage {
     /// All stages in the book's order. The last has every rule on.
     pub const ALL: &'static [Stage] = table::STAGES;
 
-    /// Finds the stage with this id.
-    ///
-    /// # Errors
-    /// [`UnknownStage`], with similar ids.
+    /// Finds a stage by id. The error suggests similar ids.
     pub fn find(id: &str) -> Result<&'static Stage, UnknownStage> {
         Self::ALL.iter().find(|stage| stage.id == id).ok_or_else(|| UnknownStage {
             id: id.to_owned(),
@@ -81,7 +76,7 @@ impl Stage {
         Self::ALL.get(self.index().checked_sub(1)?)
     }
 
-    /// Index of the stage in [`Stage::ALL`].
+    /// Index in [`Stage::ALL`].
     pub fn index(&self) -> usize {
         Self::ALL.iter().position(|stage| stage.id == self.id).unwrap_or(Self::ALL.len())
     }
@@ -90,20 +85,20 @@ impl Stage {
         self.section.split('.').next().unwrap_or(self.section)
     }
 
-    /// The width of the book's pictures from its first rays on, pixels: 400, and 1200 in its last chapter.
+    /// Width of the book's pictures since its first rays, pixels: 400, and 1200 in its last chapter.
     pub fn book_width(&self) -> u32 {
         if self.next().is_none() { 1200 } else { 400 }
     }
 
-    /// The web address of the stage's section in the book.
+    /// Web address of the stage's section.
     pub fn url(&self) -> String {
         book_url(self.chapter_title, Some(self.section_title))
     }
 }
 
-/// The web address of a chapter of the book, or of a section in it, by their headings.
+/// Web address of a chapter or section, by heading.
 pub fn book_url(chapter: &str, section: Option<&str>) -> String {
-    // Anchors in the book are the headings in lower case without spaces.
+    // The book's anchors are headings in lower case without spaces.
     let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
     let section = section.map_or_else(String::new, |section| format!("/{}", anchor(section)));
     format!("{BOOK_URL}#{}{section}", anchor(chapter))
@@ -135,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_books_pictures_are_400_pixels_wide_and_1200_in_its_last_chapter() {
+    fn book_widths() {
         for stage in Stage::ALL {
             let expected = if stage.chapter() == "14" { 1200 } else { 400 };
             assert_eq!(stage.book_width(), expected, "{}", stage.id);

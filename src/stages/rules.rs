@@ -1,29 +1,24 @@
-//! The tracer's rules that a stage can switch. [`Rules::default`] is the finished renderer.
+//! Rules of the tracer that stages switch. [`Rules::default`] is the finished renderer.
 
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Which of the book's rules are in effect.
 ///
-/// The rules are switches within one kernel, not separate tracers. A job with the finished rules carries no code for
-/// the others.
+/// They are switches within one kernel, not separate tracers. A job with the finished rules carries no code for the
+/// others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rules {
-    /// What a ray contributes.
     pub shading: Shading,
-    /// Direction of a bounce off a Lambertian surface.
     pub diffuse: Diffuse,
-    /// The laws that glass obeys.
     pub dielectric: DielectricLaws,
-    /// How rays leave the surface that they start on.
     pub surface: SurfaceRule,
-    /// Whether the reflectance of every material is replaced by that of the picture strip: five vertical strips of 10,
-    /// 30, 50, 70 and 90 %. (Section 9.5.)
+    /// Whether every material's reflectance is that of its picture strip: five vertical strips of 10 %
+    /// to 90 % in steps of 20 %. (Section 9.5.)
     pub reflectance_strips: bool,
     /// Whether samples are spread over the pixel; otherwise all pass through its centre. (Section 8.)
     pub antialiasing: bool,
-    /// How linear values are converted to bytes of the picture.
     pub transfer: Transfer,
 }
 
@@ -34,7 +29,6 @@ impl Default for Rules {
 }
 
 impl Rules {
-    /// The rules of the finished renderer.
     pub const FINISHED: Rules = Rules {
         shading: Shading::Path,
         diffuse: Diffuse::Lambertian,
@@ -45,26 +39,26 @@ impl Rules {
         transfer: Transfer::Gamma2,
     };
 
-    /// Whether the tracer needs only the code of the finished renderer. (To the kernel, antialiasing is just a number,
-    /// and the transfer happens after it.)
+    /// Whether the tracer needs only the finished renderer's code. (To the kernel, antialiasing is just a number, and
+    /// the transfer comes after it.)
     pub fn are_finished(&self) -> bool {
         Rules { antialiasing: true, transfer: Transfer::Gamma2, ..*self } == Rules::FINISHED
     }
 
-    /// Whether any rays are traced. Without rays, neither the scene nor the camera shows.
+    /// Without rays, neither the scene nor the camera shows.
     pub fn has_rays(&self) -> bool {
         self.shading != Shading::ImageGradient
     }
 
-    /// Whether paths go on after their first hit.
+    /// Whether paths continue after their first hit.
     pub fn has_bounces(&self) -> bool {
         self.shading == Shading::Path
     }
 
-    /// The largest radiance that a sample of the scene can have, linear. It is 0 if the scene has no light.
+    /// The largest radiance of any sample, linear; 0 if the scene has no light.
     pub fn brightest(&self, scene: &Scene) -> f64 {
         let sky = scene.sky.bottom.max(scene.sky.top).max_element();
-        // Other stages than those with light show colours up to 1.
+        // Stages without light show colours up to 1.
         if self.has_bounces() { sky } else { sky.max(1.0) }
     }
 }
@@ -97,8 +91,8 @@ pub enum Diffuse {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DielectricLaws {
-    /// Always refracts. Where Snell's law has no solution, the book's formula gives a wrong direction, which is kept.
-    /// (Section 11.2.)
+    /// Always refracts. Where Snell's law has no solution, keeps the wrong direction of the book's formula. (Section
+    /// 11.2.)
     RefractOnly,
     /// Reflects where Snell's law has no solution. (Section 11.3.)
     TotalReflection,
@@ -110,21 +104,19 @@ pub enum DielectricLaws {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SurfaceRule {
-    /// The ray knows its surface: there is no threshold, and no acne at any scale.
+    /// The ray knows its surface: no threshold, and no acne at any scale.
     Exact,
-    /// The book's quadratic with 0 as the smallest distance, which rounding makes find the same surface again. (Section
-    /// 9.3.)
+    /// The book's quadratic with a minimum distance of 0, so rounding finds the same surface again. (Section 9.3.)
     Acne,
-    /// The book's final arithmetic: the quadratic with [`BOOK_T_MIN`] as the smallest distance. (Section 9.3.)
+    /// The book's final arithmetic: the quadratic with a minimum distance of [`BOOK_T_MIN`]. (Section 9.3.)
     Book,
 }
 
-/// The distance below which the book ignores hits, scene units. (Section 9.3.)
+/// The book ignores hits closer than this, scene units. (Section 9.3.)
 pub const BOOK_T_MIN: f64 = 0.001;
 
 impl SurfaceRule {
-    /// The distance below which the book's arithmetic ignores hits, scene units; `None` for [`SurfaceRule::Exact`],
-    /// which needs no threshold.
+    /// Hits closer than this are ignored, scene units; `None` for [`SurfaceRule::Exact`], which needs no threshold.
     pub fn smallest_distance(self) -> Option<f64> {
         match self {
             SurfaceRule::Exact => None,
@@ -134,7 +126,7 @@ impl SurfaceRule {
     }
 }
 
-/// How linear values are converted to bytes of the picture.
+/// How linear values become bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transfer {
@@ -142,12 +134,12 @@ pub enum Transfer {
     Linear,
     /// Square root. (Section 9.5.)
     Gamma2,
-    /// The upper half linear, the lower half with the square root, for comparison. (Section 9.5.)
+    /// Linear in the upper half, square root in the lower, for comparison. (Section 9.5.)
     LinearAboveGamma2,
 }
 
 impl Transfer {
-    /// Whether `row` of a picture `height` rows high takes the square root.
+    /// Whether `row` of a picture of this height takes the square root.
     pub fn is_gamma(self, row: usize, height: usize) -> bool {
         match self {
             Transfer::Linear => false,
@@ -164,7 +156,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_sample_is_at_most_as_bright_as_the_sky_or_the_colours_of_the_stage() {
+    fn brightest_sample_is_sky_or_stage_colour() {
         let sky = Sky { bottom: DVec3::new(0.0, 2e-8, 0.0), top: DVec3::new(1e-8, 0.0, 0.0) };
         let scene = Scene { sky, ..Scene::default() };
         assert_eq!(Rules::FINISHED.brightest(&scene), 2e-8);

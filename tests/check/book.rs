@@ -1,5 +1,5 @@
 //! The book's program as a reader writes it, with its own vectors, scenes and random numbers: objects, recursion, one
-//! thread. It shares no code with Weekender. A mistake is named by its id in `weekender check --json`.
+//! thread. It shares no code with Weekender. Mistakes are named by their ids in `weekender check --json`.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -203,7 +203,7 @@ impl Sphere {
     }
 }
 
-/// The program of one section, with a mistake or none.
+/// The program of one section, with at most one mistake.
 pub struct Book {
     stage: &'static str,
     mistake: &'static str,
@@ -216,7 +216,7 @@ pub struct Book {
     max_depth: u32,
 }
 
-/// The sections that this program knows.
+/// The sections that this program covers.
 pub const STAGES: [&str; 8] = [
     "sky",
     "normals-world",
@@ -304,7 +304,7 @@ impl Book {
         Vec3(1.0, 1.0, 1.0) * (1.0 - a) + Vec3(0.5, 0.7, 1.0) * a
     }
 
-    /// Renders the picture: RGB, row by row from the top.
+    /// RGB, row by row from the top.
     pub fn render(&self, width: u32, height: u32, samples: u32, seed: u64) -> Vec<[u8; 3]> {
         let mut rng = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
         let theta =

@@ -1,4 +1,4 @@
-//! `weekender check`: right pictures are right, planted mistakes are named, damaged files are understood.
+//! `weekender check`: right pictures pass, planted mistakes are named, damaged files are understood.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod book;
@@ -17,7 +17,7 @@ fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> 
     Mine { width, height, bytes, format: "P3", damages: Vec::new() }
 }
 
-/// The id of the mistake that is found, or "right".
+/// The id of the mistake found, or "right".
 fn found(mine: &Mine, stage: Option<&str>) -> &'static str {
     let stage = stage.map(|id| Stage::find(id).unwrap());
     let finding = judge(mine, stage).unwrap();
@@ -62,9 +62,9 @@ fn planted_mistakes_are_named() {
     }
 }
 
-/// Some mistake is always a little nearer than none, but no mistake turns one scene into another.
+/// Some mistake always fits slightly better than none, but no mistake turns one scene into another.
 #[test]
-fn another_scene_is_blamed_on_no_mistake() {
+fn other_scene_matches_no_mistake() {
     for (shown, stage) in [("lambertian-gamma", "hollow-glass"), ("metal-fuzzy", "lambertian-gamma")] {
         assert_eq!(found(&mine(shown, "", 30, 7), Some(stage)), "unknown", "{shown} as {stage}");
     }
@@ -83,7 +83,7 @@ fn the_stage_is_found() {
 const P3: &str = "P3\n# tiny\n2 1\n255\n0 1 2\n253 254 255\n";
 
 #[test]
-fn every_form_of_a_picture_is_read() {
+fn every_format_is_read() {
     let bytes = vec![[0, 1, 2], [253, 254, 255]];
     let read = |file: &[u8]| Mine::decode(file).unwrap_or_else(|reason| panic!("{reason}"));
     for file in [
@@ -98,7 +98,7 @@ fn every_form_of_a_picture_is_read() {
         assert_eq!((mine.width, mine.height, &mine.bytes), (2, 1, &bytes), "{}", text(file));
         assert!(mine.damages.is_empty(), "{:?}", mine.damages);
     }
-    // White space after the header is one byte; more of it belongs to the pixels.
+    // Only one byte of white space follows the header; more of it belongs to the pixels.
     assert_eq!(read(b"P6 1 1 255\n\n\r\n").bytes, [*b"\n\r\n"]);
     // Values are scaled by the largest one.
     assert_eq!(read(b"P3 1 1 1 0 1 1").bytes, [[0, 255, 255]]);
@@ -118,7 +118,7 @@ fn every_form_of_a_picture_is_read() {
 }
 
 #[test]
-fn damages_are_repaired_and_told() {
+fn damage_is_repaired_and_reported() {
     let utf_16: Vec<u8> = [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     let utf_16_be: Vec<u8> =
         [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_be_bytes).collect();
@@ -162,7 +162,7 @@ fn damages_are_repaired_and_told() {
 }
 
 #[test]
-fn damages_are_counted_and_repaired_together() {
+fn multiple_damages_are_repaired() {
     let file = "hello\nP3\n2 1\n255\nScanlines: 2\n1 2.5 nan\nDone.\n\n300 -1 1e3 8 9";
     let mine = Mine::decode(file.as_bytes()).unwrap();
     let titles: Vec<&str> = mine.damages.iter().map(|damage| damage.title.as_str()).collect();
@@ -193,7 +193,7 @@ fn text(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn exit_codes_files_and_json_tell_the_finding() {
+fn finding_sets_exit_code_files_and_json() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, mistake) in [("right.ppm", ""), ("wrong.ppm", "gamma-twice")] {
@@ -218,7 +218,7 @@ fn exit_codes_files_and_json_tell_the_finding() {
         let read = Mine::read(&at.join("d").join(name)).unwrap();
         assert_eq!((read.width, read.height), (200, 112), "{name}");
     }
-    // Our own picture of the same place is right.
+    // Our own picture in the same place is right.
     let output = check(at, &[&["d/ours.png"], &stage[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
 
@@ -231,15 +231,15 @@ fn exit_codes_files_and_json_tell_the_finding() {
         (&["d/mine.png", "--out", "d"], "would replace"),
     ] {
         let output = check(at, arguments);
-        let told = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
-        assert!(told.contains(part), "{arguments:?} should say {part}: {told}");
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(part), "{arguments:?} should say {part}: {message}");
         assert_eq!(text(&output.stdout), "", "{arguments:?}");
     }
 }
 
 #[test]
-fn a_picture_that_shows_too_little_is_refused() {
+fn blank_or_tiny_picture_is_refused() {
     let directory = TempDir::new().unwrap();
     let path = directory.path().join("tiny.ppm");
     let read = |width: usize, height: usize, pixels: String| {

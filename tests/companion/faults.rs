@@ -1,4 +1,4 @@
-//! Faults of the texts end the command, with file and line.
+//! Errors in the texts end the command and name file and line.
 
 use super::{checkout, companion, text};
 use std::fs;
@@ -17,7 +17,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// A checkout with what the page is made of.
+/// A checkout with the page's files.
 fn texts() -> TempDir {
     let directory = TempDir::new().unwrap();
     for folder in ["docs/companion", "src", "shaders", "reference"] {
@@ -28,7 +28,7 @@ fn texts() -> TempDir {
 
 const CHAPTER: &str = "docs/companion/05-sphere.md";
 
-/// Builds the page after a change of one file and returns what was said.
+/// Builds the page after changing one file, and returns the messages.
 fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> String {
     let path = texts.path().join(file);
     let original = fs::read_to_string(&path).unwrap();
@@ -42,7 +42,7 @@ fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> Stri
 }
 
 #[test]
-fn faults_of_a_chapter_name_its_line() {
+fn chapter_errors_name_line() {
     let texts = texts();
     let lines = fs::read_to_string(texts.path().join(CHAPTER)).unwrap().lines().count();
     let line = lines + 2;
@@ -67,13 +67,16 @@ fn faults_of_a_chapter_name_its_line() {
         ("```cobol\nx\n```", "\"cobol\" has no colours"),
         ("<b>x</b>", "HTML and pictures are not allowed"),
     ] {
-        let said = refused(&texts, CHAPTER, &|text| format!("{text}\n{added}\n"));
-        assert!(said.contains(&format!("{CHAPTER}:{line}: ")) && said.contains(message), "{added}: {said}");
+        let stderr = refused(&texts, CHAPTER, &|text| format!("{text}\n{added}\n"));
+        assert!(
+            stderr.contains(&format!("{CHAPTER}:{line}: ")) && stderr.contains(message),
+            "{added}: {stderr}"
+        );
     }
 }
 
 #[test]
-fn faults_of_other_files_name_them() {
+fn other_errors_name_file() {
     let texts = texts();
     for (file, added, message) in [
         (
@@ -94,11 +97,11 @@ fn faults_of_other_files_name_them() {
         ),
     ] {
         let path = format!("docs/companion/{file}");
-        let said = refused(&texts, &path, &|text| format!("{text}\n[extra]\n{added}\n"));
-        assert!(said.contains(&path) && said.contains(message), "{added}: {said}");
+        let stderr = refused(&texts, &path, &|text| format!("{text}\n[extra]\n{added}\n"));
+        assert!(stderr.contains(&path) && stderr.contains(message), "{added}: {stderr}");
     }
-    let said = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
-    assert!(said.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{said}");
-    let said = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
-    assert!(said.contains(&format!("{CHAPTER}:2: ")) && said.contains("titel"), "{said}");
+    let stderr = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
+    assert!(stderr.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{stderr}");
+    let stderr = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
+    assert!(stderr.contains(&format!("{CHAPTER}:2: ")) && stderr.contains("titel"), "{stderr}");
 }

@@ -1,6 +1,5 @@
-//! Looks attributes up in HTML that the program wrote.
+//! Looks up attributes in the program's HTML.
 
-/// A page.
 pub struct Html<'a> {
     /// The tags, without their brackets and without the content of scripts.
     tags: Vec<&'a str>,
@@ -25,7 +24,6 @@ impl<'a> Html<'a> {
         Html { tags }
     }
 
-    /// All values of an attribute.
     pub fn values(&self, name: &str) -> Vec<&'a str> {
         let key = format!(" {name}=\"");
         let value = |tag: &&'a str| {

@@ -1,4 +1,4 @@
-//! `weekender companion` as a program: the page, its links, its HTML, and what it says about faulty texts.
+//! `weekender companion` as a program: the page, its links and HTML, and its messages about faulty texts.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod faults;
@@ -48,7 +48,7 @@ fn checkout() -> PathBuf {
 }
 
 #[test]
-fn the_page_is_valid_small_and_rendered_once() {
+fn page_is_valid_small_and_rendered_once() {
     let directory = PAGE.directory.path();
     assert_valid(&directory.join("index.html"));
     let stills = std::fs::read_dir(directory.join("figures")).unwrap();
@@ -86,7 +86,7 @@ fn every_link_leads_somewhere() {
 }
 
 #[test]
-fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
+fn page_is_complete_and_self_contained() {
     let ids = Html::new(&PAGE.html).ids();
     for id in ["content", "contents", "figure-normals", "normals", "glossary", "term-lane", "live-data"] {
         assert!(ids.contains(&id), "{id}");
@@ -94,7 +94,7 @@ fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
     let count = |part: &str| PAGE.html.matches(part).count();
     assert!(count("<figure class=\"code\"") > 30 && count("<math") > 30 && count("data-stage=") > 25);
     let body = PAGE.html.split("<main").nth(1).unwrap().split("<script").next().unwrap();
-    // Nothing of the texts' own notation is left.
+    // None of the texts' own notation remains.
     for part in ["{{", "}}", "[@", "](glossary:", "](book:", "](page:"] {
         assert!(!body.contains(part), "{part}");
     }
@@ -104,14 +104,14 @@ fn the_page_has_its_parts_and_loads_nothing_from_elsewhere() {
 }
 
 #[test]
-fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
+fn bench_flag_replaces_stored_benchmark() {
     let directory = TempDir::new().unwrap();
     let kept = checkout().join("docs/companion/measured/speed.json");
     let own =
         std::fs::read_to_string(kept).unwrap().replace("\"processor\": \"", "\"processor\": \"Reader's ");
     let file = directory.path().join("own.json");
     std::fs::write(&file, own).unwrap();
-    // The stills of the other page are used again.
+    // Reuses the stills of the other page.
     let output = companion(PAGE.directory.path(), &["--bench", file.to_str().unwrap()]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let html = std::fs::read_to_string(PAGE.directory.path().join("index.html")).unwrap();
@@ -126,14 +126,14 @@ fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_leaves_the_page_and_says_how_to_go_on() {
+fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     let directory = TempDir::new().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     command.arg("companion").arg("--out").arg(directory.path()).args(["--progress", "on"]);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let mut said = BufReader::new(child.stderr.take().unwrap());
-    // The first line of progress: a figure is being rendered.
+    // The first line of progress means that a figure is being rendered.
     let mut line = String::new();
     said.read_line(&mut line).unwrap();
     let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();

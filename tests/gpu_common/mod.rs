@@ -15,12 +15,12 @@ use weekender::scene::{Camera, Scene};
 use weekender::stages::{Rules, Stage};
 
 thread_local! {
-    /// Held by the thread of a test until it ends.
+    /// Held by a test's thread until it ends.
     static TURN: RefCell<Option<MutexGuard<'static, ()>>> = const { RefCell::new(None) };
 }
 
-/// Waits until no other test of this binary uses the adapter. NVIDIA's driver crashed or hung when many tests opened and
-/// closed devices at once.
+/// Waits until no other test of this binary uses the adapter: NVIDIA's driver crashed or hung when many tests opened
+/// and closed devices at once.
 fn take_turn() {
     static DEVICE: Mutex<()> = Mutex::new(());
     TURN.with_borrow_mut(|turn| {
@@ -28,8 +28,8 @@ fn take_turn() {
     });
 }
 
-/// A renderer on any adapter, including software, or on the one that `WEEKENDER_TEST_ADAPTER` names. Without an
-/// adapter, a message is printed and the test passes, unless `WEEKENDER_REQUIRE_GPU=1`.
+/// A renderer on any adapter, even a software one, or on the one that `WEEKENDER_TEST_ADAPTER` names. Without an
+/// adapter, prints a message and lets the test pass, unless `WEEKENDER_REQUIRE_GPU=1`.
 pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     take_turn();
     let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
@@ -43,7 +43,7 @@ pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     }
 }
 
-/// Prints that something was not tested. The test harness hides the output of passing tests, so this bypasses it.
+/// Prints that something was not tested, bypassing the test harness, which hides the output of passing tests.
 pub fn say_loudly(text: &str) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     let line = format!("\nNOT TESTED: {test}: {text}\n");
@@ -55,7 +55,7 @@ pub fn go_on() -> AtomicBool {
     AtomicBool::new(false)
 }
 
-/// The film of so many samples, none of them rejected.
+/// A film of this many samples, none of them rejected.
 pub fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
     let mut film = job.new_film();
     let stats = renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();

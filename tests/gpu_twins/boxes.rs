@@ -11,7 +11,7 @@ use weekender::render_gpu::GpuOptions;
 use weekender::render_gpu::shader_source::Probe;
 use weekender::stages::DielectricLaws;
 
-/// A ray, a box that it hits in about half of the cases, the length of the ray, and the largest coordinate.
+/// A ray, a box that it hits in about half the cases, the length of the ray, and the largest coordinate.
 fn ray_and_box(i: u32) -> Words {
     let [x, y, z, size] = uniform(i, 70);
     let low = [x, y, z].map(|x| 4.0 * x - 2.0);
@@ -21,7 +21,7 @@ fn ray_and_box(i: u32) -> Words {
     let [u, v, w, limit] = uniform(i, 73);
     let target = [0, 1, 2].map(|k| low[k] + (1.8 * [u, v, w][k] - 0.4) * (high[k] - low[k]));
     let mut d = DVec3::from_array([0, 1, 2].map(|k| f64::from(target[k] - origin[k])));
-    // Sometimes along an axis, where one component's inverse is not finite.
+    // Sometimes along an axis, where a component's inverse is not finite.
     match i % 8 {
         0 => d.x = 0.0,
         1 => (d.y, d.z) = (0.0, -0.0),
@@ -80,7 +80,7 @@ fn boxes_are_met_alike() {
         let on_gpu = output[0] != 0;
         let rays = rays(&input);
         let [enter, leave] = slab(list(rays.origin), list(rays.direction), low, high, limit);
-        // Boxes are enlarged slightly, which matters most along an axis along which the ray hardly moves.
+        // Boxes are enlarged slightly, which matters most along an axis on which the ray hardly moves.
         let slowest = list(rays.direction).into_iter().filter(|d| *d != 0.0).fold(1.0, |a, b| b.abs().min(a));
         let margin = 2e-5 / f64::from(slowest);
         if leave - enter > 0.0 {
@@ -94,7 +94,7 @@ fn boxes_are_met_alike() {
     assert!(met > 500 && missed > 500, "{met} met, {missed} missed");
 }
 
-/// The shader's function in scalar code with the same rounding.
+/// The shader's function in scalar code with equal rounding.
 fn four_hits(words: &Words) -> u32 {
     let [step, near, far] = [0, 3, 6].map(|i| list(vector(words, i)));
     let (marks, octant, limit) = (words[15].to_le_bytes(), words[16], float(words, 17));
@@ -118,7 +118,7 @@ fn four_hits(words: &Words) -> u32 {
 }
 
 #[test]
-fn compressed_boxes_are_met_as_they_should() {
+fn compressed_box_hits() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (mut parted, mut met, mut ordered) = (0, 0, 0);
     let inputs = |i: u32| {
@@ -141,7 +141,7 @@ fn compressed_boxes_are_met_as_they_should() {
         for axis in 0..3 {
             let near = bytes[axis] & 0x7F7F_7F7F;
             words[9 + 2 * axis] = near;
-            // No byte carries over.
+            // No carry between bytes.
             words[10 + 2 * axis] = near + (more[axis] & 0x7F7F_7F7F);
         }
         // Marks of nodes, at bit 24 and above, and of up to three spheres, below.
@@ -160,7 +160,7 @@ fn compressed_boxes_are_met_as_they_should() {
         met += u32::from(expected & 0xFF_FFFF != 0);
         ordered += u32::from(expected >> 24 != 0 && input[16] != 0);
     }
-    // Edges within the rounding of a driver that does not fuse.
+    // Allows edges within the rounding of a driver that does not fuse.
     assert!(parted <= 2, "{parted} of 4096 parted");
     assert!(met > 300 && ordered > 300, "{met} spheres, {ordered} nodes");
 }

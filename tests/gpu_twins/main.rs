@@ -1,4 +1,4 @@
-//! Compares each small function of the shaders with its twin: integers to the bit, floats in units in the last place.
+//! Compares each small function of the shaders with its twin: integers exactly, floats in units in the last place.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod boxes;
@@ -28,7 +28,7 @@ use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
 
-/// The CPU's arithmetic with one lane, fused.
+/// One lane of the CPU's arithmetic, fused.
 type L = Scalar<true>;
 const L: L = Scalar::<true>;
 type F = Single<true>;
@@ -158,7 +158,7 @@ fn rays(words: &Words) -> Rays<L> {
     }
 }
 
-/// Compares distances; if one side has no hit, the other must have none either.
+/// Compares distances; if one side misses, the other must, too.
 fn compare_keys(ulps: &mut Ulps, got: u32, expected: i32, what: &Words) {
     // The CPU's keys are those of negated distances.
     let expected = (-f32::from_bits(expected as u32)).to_bits();
@@ -248,7 +248,7 @@ fn anchored_spheres() {
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Anchored, |i| {
         let [x, height, z, code] = uniform(i, 30);
         let [a, b, ..] = uniform(i, 31);
-        // Downwards, not grazing, on a large ground.
+        // Downwards, not grazing, onto a large ground.
         let d = DVec3::new(f64::from(a) - 0.5, -0.3 - f64::from(b), f64::from(b) - 0.5).normalize();
         let origin = [4.0 * x, 0.1 + height, 4.0 * z];
         let curvature = 10.0_f32.powi(-((i % 6) as i32) - 2);
@@ -322,7 +322,7 @@ fn scattering() {
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
             ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0).0], 1.0);
             let sine2 = incidence_of(L, cosine).sine2;
-            // One lane computes the ratio for glass alone.
+            // One lane only computes the ratio for glass.
             if refraction_index.0 > 0.0 {
                 ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
             }
@@ -357,7 +357,7 @@ fn camera_rays() {
     ulps.within("camera rays", 4.0);
 }
 
-/// The lane's own constants are used, so that a change of precision is noticed.
+/// Uses the lane's own constants, to notice a change of precision.
 #[test]
 fn oracle_is_single_precision() {
     assert_eq!(L.constant(0.1).0, 0.1_f32);

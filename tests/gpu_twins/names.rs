@@ -1,9 +1,9 @@
-//! Compares the functions of each shader file with those of its twin: same names, same order.
+//! Compares the functions of each shader file with its twin's: same names, same order.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A shader file and the files of `src/render_cpu` that are its twin, in order.
+/// A shader file and its twin in `src/render_cpu`, as one or more files in order.
 struct Pair {
     shader: &'static str,
     twins: &'static [&'static str],
@@ -122,7 +122,7 @@ fn faults(pair: &Pair, shader: &[String], twin: &[String]) -> Vec<String> {
 }
 
 #[test]
-fn twins_have_the_same_functions_in_the_same_order() {
+fn twins_have_same_functions_in_order() {
     for pair in PAIRS {
         let shader = functions(&read(&format!("shaders/{}", pair.shader)));
         let twin: Vec<String> =
@@ -133,8 +133,8 @@ fn twins_have_the_same_functions_in_the_same_order() {
     }
 }
 
-/// Every function of the shaders' arithmetic has a twin of the same name on the CPU, where the rest of the arithmetic
-/// is in [`weekender::render_cpu::lanes::Lanes`].
+/// Every arithmetic function of the shaders has a CPU twin of the same name; the rest of the arithmetic is in
+/// [`weekender::render_cpu::lanes::Lanes`].
 #[test]
 fn arithmetic_has_twins() {
     let shader = functions(&read("shaders/lanes.wgsl"));
@@ -142,7 +142,7 @@ fn arithmetic_has_twins() {
         .iter()
         .flat_map(|file| functions(&read(&format!("src/render_cpu/lanes/{file}.rs"))))
         .collect();
-    // WGSL has a `dot` of its own, and packets normalise their directions when the rays are sent.
+    // WGSL has its own `dot`, and packets normalise their directions when the rays are sent.
     let other_names =
         [("dot3", "dot"), ("mul_add3", "mul_add"), ("neg_mul_add3", "neg_mul_add"), ("normalized", "sqrt")];
     for name in shader {
@@ -154,7 +154,7 @@ fn arithmetic_has_twins() {
 
 /// The check itself finds differences.
 #[test]
-fn a_function_of_one_side_is_found() {
+fn missing_twin_is_found() {
     let pair = Pair { shader: "a", twins: &["b"], shader_alone: &[("x", "")], twin_alone: &[] };
     let names = |list: &str| list.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     assert!(faults(&pair, &names("f x g"), &names("f g")).is_empty());

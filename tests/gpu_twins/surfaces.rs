@@ -1,4 +1,4 @@
-//! Angles of incidence, and the rules with which stages replace the book's final ones.
+//! Angles of incidence, and the stages' rules that replace the book's final ones.
 
 use super::gpu_common::gpu;
 use super::{L, Ulps, float, job, list, run, uniform, unit_vector, vector, words};
@@ -8,7 +8,7 @@ use weekender::render_gpu::GpuOptions;
 use weekender::render_gpu::shader_source::Probe;
 use weekender::stages::DielectricLaws;
 
-/// Cosines of rays from either side, including some that rounding puts beyond 1.
+/// Cosines of rays from either side, some of which rounding puts beyond 1.
 #[test]
 fn incidence_and_stage_rules() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };

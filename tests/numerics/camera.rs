@@ -1,6 +1,6 @@
 //! The camera: cases 31 to 34. (Book 1, sections 12 and 13.)
 //!
-//! tests/scene_files and tests/cli test that scene files and flags with invalid cameras are refused.
+//! tests/scene_files and tests/cli check that invalid cameras in scene files and flags are refused.
 
 use crate::common::*;
 use glam::{DMat3, DVec3};
@@ -10,7 +10,7 @@ use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, Scene, SceneError, Sky};
 
-/// A sky whose three channels show how steeply a ray goes up.
+/// A sky whose three channels show how steeply a ray rises.
 const SKY: Sky = Sky { bottom: DVec3::new(0.0, 1.0, 0.5), top: DVec3::new(1.0, 0.0, 0.5) };
 
 /// The picture of an empty scene, each pixel the mean over a fine grid.
@@ -30,7 +30,6 @@ fn expected_sky(camera: &Camera, width: u32, height: u32) -> Vec<[f64; 3]> {
     pixels.map(of_pixel).collect()
 }
 
-/// Whether an empty scene shows the sky that `camera` looks at.
 fn assert_sees_the_sky(camera: Camera, [width, height]: [u32; 2]) {
     let scene = Scene { sky: SKY, ..Scene::default() };
     for mut renderer in [widest(), portable()] {
@@ -117,7 +116,7 @@ fn case_33_lenses() {
     }
 }
 
-/// Where in the picture a direction points, in pixels.
+/// Where a direction points in the picture, in pixels.
 fn pixel_of(camera: &Camera, width: u32, height: u32, d: DVec3) -> [f64; 2] {
     let basis = camera.basis();
     let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
@@ -149,7 +148,7 @@ fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
             (pinhole_ray(l, &table, corner, in_pixel), [0.0; 2])
         };
         let found = pixel_of(camera, width, height, vector::<L>(rays.direction));
-        // The lens moves the origin by `F tau xi`, so the direction points as far back at the focus distance.
+        // The lens moves the origin by `F tau xi`, so the direction points back as far at the focus distance.
         let expected = [x + jitter[0] - shift[0], y + jitter[1] + shift[1]];
         largest = largest.max((found[0] - expected[0]).abs()).max((found[1] - expected[1]).abs());
     }
@@ -180,7 +179,7 @@ fn case_34_camera_at_a_million() {
 
 /// Rays from all over the lens meet where the ray from its middle is in focus.
 #[test]
-fn rays_of_a_lens_meet_in_the_plane_of_focus() {
+fn lens_rays_meet_in_focus_plane() {
     let camera = Camera {
         look_from: DVec3::new(3.0, 1.0, -2.0),
         look_at: DVec3::new(0.5, 0.2, -1.0),

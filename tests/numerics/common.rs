@@ -12,7 +12,7 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
 use weekender::stages::Rules;
 
-/// Random numbers for a test, the same in every run (SplitMix64).
+/// Random numbers, the same in every run (SplitMix64).
 pub struct Random(u64);
 
 impl Random {
@@ -69,7 +69,7 @@ pub fn v3<L: Lanes>(l: L, v: DVec3) -> V3<L::F> {
     splat3(l, v.to_array().map(L::Real::from_f64))
 }
 
-/// `v` scaled to length 1 by the same division as in the path loop.
+/// `v` normalised by the same division as in the path loop.
 pub fn normalised<L: Lanes>(l: L, d: V3<L::F>) -> V3<L::F> {
     d.scale(l.constant(1.0) / d.dot(d).sqrt())
 }
@@ -89,7 +89,7 @@ pub fn packed<L: Lanes>(center: DVec3, radius: f64) -> [L::Real; 4] {
     [center.x, center.y, center.z, radius * radius].map(L::Real::from_f64)
 }
 
-/// The distance that a key stands for; `None` for a miss.
+/// The distance of a key; `None` for a miss.
 pub fn distance<L: Lanes>(key: L::Key) -> Option<f64> {
     let t = -first::<L>(L::from_key(key));
     (t.is_finite() && t.is_sign_positive()).then_some(t)
@@ -122,7 +122,7 @@ pub fn glass(refraction_index: f64) -> Material {
     Material::Dielectric { refraction_index }
 }
 
-/// A scene of spheres, each with its own material.
+/// Each sphere has its own material.
 pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     let mut scene = Scene::default();
     for (index, (center, radius, material)) in spheres.iter().enumerate() {
@@ -132,7 +132,7 @@ pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     scene
 }
 
-/// Settings of a picture of this size, one half, 50 rays per path.
+/// Settings of a picture of this size, with one half and 50 rays per path.
 pub fn size(width: u32, height: u32) -> RenderSettings {
     RenderSettings { width, height, max_depth: 50, estimate_error: false, ..RenderSettings::default() }
 }
@@ -143,14 +143,14 @@ pub fn job(scene: &Scene, camera: Camera, settings: RenderSettings) -> RenderJob
     RenderJob::new(scene.clone(), camera, settings, Rules::FINISHED).unwrap()
 }
 
-/// Like [`job`], with all samples through the centre of their pixel.
+/// Like [`job`], with all samples through the centres of their pixels.
 pub fn sharp_job(scene: &Scene, camera: Camera, settings: RenderSettings) -> RenderJob {
     RenderJob::new(scene.clone(), camera, settings, NO_ANTIALIASING).unwrap()
 }
 
 const THREADS: Option<usize> = Some(2);
 
-/// The fastest renderer that this processor can run.
+/// The fastest renderer for this processor.
 pub fn widest() -> CpuRenderer {
     CpuRenderer::new(CpuOptions { threads: THREADS, ..CpuOptions::default() }).unwrap()
 }
@@ -171,7 +171,7 @@ pub fn reference() -> CpuRenderer {
     CpuRenderer::reference(THREADS).unwrap()
 }
 
-/// A film of samples `range`, none of which was rejected.
+/// A film of samples `range`, none of them rejected.
 pub fn render_with_stats(renderer: &mut CpuRenderer, job: &RenderJob, range: Range<u64>) -> (Film, Stats) {
     let mut film = job.new_film();
     let stats = renderer.accumulate(job, range, &mut film, &AtomicBool::new(false)).unwrap();
@@ -189,12 +189,12 @@ pub fn mean(film: &Film) -> f64 {
     (0..pixels).flat_map(|pixel| film.mean(pixel)).sum::<f64>() / (3 * pixels) as f64
 }
 
-/// The ray through the centre of a pixel, in `f64`: origin and unit direction.
+/// The ray through a pixel's centre, in `f64`: origin and unit direction.
 pub fn centre_ray(camera: &Camera, width: u32, height: u32, x: u32, y: u32) -> (DVec3, DVec3) {
     view_ray(camera, width, height, f64::from(x) + 0.5, f64::from(y) + 0.5)
 }
 
-/// The ray of a pinhole camera through a point of the picture, in pixels from the upper left corner.
+/// A pinhole camera's ray through a point of the picture, in pixels from the upper left corner.
 pub fn view_ray(camera: &Camera, width: u32, height: u32, x: f64, y: f64) -> (DVec3, DVec3) {
     let basis = camera.basis();
     let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
@@ -208,9 +208,9 @@ pub struct Paired {
     pub bias: f64,
     #[expect(dead_code, reason = "printed")]
     pub rms: f64,
-    /// Share of the samples with a channel that is off by more than 1e-3.
+    /// Share of samples with a channel off by more than 1e-3.
     pub outliers: f64,
-    /// Root mean square of the samples that are not outliers.
+    /// Root mean square of the other samples.
     pub inlier_rms: f64,
     /// Root mean square of the pixels' means.
     #[expect(dead_code, reason = "printed")]

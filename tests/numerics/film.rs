@@ -1,4 +1,4 @@
-//! The exact sum: cases 23 to 25, through the tracer. (The film by itself: tests/film.)
+//! The exact sum: cases 23 to 25, through the tracer. (For the film by itself, see tests/film.)
 
 use crate::common::*;
 use glam::DVec3;
@@ -70,7 +70,7 @@ fn case_24_another_order() {
     assert_eq!(in_parts, at_once);
 }
 
-/// A lone ball, or its sky, has a colour that is NaN: exactly the paths that see it are counted and left out.
+/// A lone ball, or its sky, has a NaN colour: exactly the paths that see it are counted and left out.
 #[test]
 fn case_25_not_a_number() {
     const SAMPLES: u64 = 4;
@@ -109,7 +109,7 @@ fn case_25_not_a_number() {
         assert!(film.means().iter().flatten().all(|x| x.is_finite()));
     }
 
-    // Geometry that is NaN is never hit; a sky that is NaN spoils every sample.
+    // NaN geometry is never hit; a NaN sky spoils every sample.
     let mut prepared = clean.clone();
     prepared.opaque[0] = [f32::NAN; 4];
     let mut film = job.new_film();
@@ -125,9 +125,9 @@ fn case_25_not_a_number() {
     }
 }
 
-/// Each pixel of a part is that of the whole picture, with the transfer of its own row.
+/// Each pixel of a part equals the whole picture's, with the transfer of its own row.
 #[test]
-fn a_part_of_a_picture_is_cut_out_of_it() {
+fn crop_matches_whole_picture() {
     let (scene, camera) = (three_spheres(LeftSphere::HollowGlass), Camera::BOOK);
     let film = render(&mut widest(), &job(&scene, camera, size(7, 5)), 0..2);
     for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {

@@ -1,4 +1,4 @@
-//! The hierarchy finds the same hits as testing every sphere: the same sphere at the same distance, bit for bit.
+//! The hierarchy finds the same hits as testing every sphere: the same sphere and the same distance, bit for bit.
 
 use crate::common::*;
 use crate::film::trace_tables;
@@ -20,7 +20,7 @@ fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> V
     let mut spheres: Vec<Sphere> = Vec::with_capacity(count);
     for index in 0..count {
         if index % 8 == 7 {
-            // The same sphere again: a tie.
+            // A copy: a tie.
             spheres.push(spheres[index - 1 - (random.bits() % 7) as usize]);
             continue;
         }
@@ -44,7 +44,7 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     let target = spheres[index];
     let aim = target.center + random.direction() * target.radius * random.within(0.0, 1.001);
     match random.bits() % 5 {
-        // From the surface of a sphere outwards, or inwards.
+        // Outwards or inwards from the surface of a sphere.
         kind @ (0 | 1) => {
             let from = ray(l, target.center, random.direction());
             let [center, radius] = [target.center, DVec3::splat(target.radius)];
@@ -89,10 +89,10 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
 /// A hierarchy in which only the nearer root counts for every other sphere.
 struct Tree<L: Lanes> {
     hierarchy: Hierarchy<L::Real>,
-    /// In the order of the leaves.
+    /// In leaf order.
     ordered: Vec<Sphere>,
     rows: Vec<[L::Real; 4]>,
-    /// The numbers of the spheres in the order of the list.
+    /// The spheres' numbers in list order.
     numbers: Vec<u32>,
 }
 
@@ -178,7 +178,7 @@ fn hierarchy_and_list_agree() {
 
 /// A hundred scenes of various sizes, at scales from `1e-12` to `1e12`.
 #[test]
-fn hierarchy_and_list_agree_on_a_hundred_scenes() {
+fn hierarchy_matches_list_on_hundred_scenes() {
     let mut random = Random::new(11);
     let (mut hits, mut rays) = (0, 0);
     for seed in 100..200 {
@@ -194,7 +194,7 @@ fn hierarchy_and_list_agree_on_a_hundred_scenes() {
     assert!(hits > rays / 4, "{hits}");
 }
 
-/// Packets of rays in all directions find the same hits as single rays that test the whole list.
+/// Packets of rays in all directions find the same hits as single rays tested against the whole list.
 #[cfg(target_arch = "x86_64")]
 fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
     use fearless_simd::{Level, Simd};
@@ -268,7 +268,7 @@ fn same_packets<L: Lanes<Real = f32>>(
 
 /// The book's final picture with and without the hierarchy.
 #[test]
-fn hierarchy_and_list_render_the_same_film() {
+fn hierarchy_and_list_render_same_film() {
     let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
     let prepared = PreparedScene::<f32>::new(&job);
     assert!(prepared.hierarchy.is_some(), "the book has a hierarchy");
@@ -282,7 +282,7 @@ fn hierarchy_and_list_render_the_same_film() {
 
 /// Rays along an axis from afar, on either side, that pass a box within its margin or beyond it.
 #[test]
-fn boxes_are_widened_alike_on_every_side() {
+fn boxes_are_widened_on_every_side() {
     const FAR: f64 = 1e6;
     let l = Scalar::<true>;
     let node = Node { low: [-1.0; 3], high: [1.0; 3], ..Node::default() };
@@ -297,9 +297,9 @@ fn boxes_are_widened_alike_on_every_side() {
     }
 }
 
-/// A renderer keeps what it has prepared for the next job of the same scene, unless the rules are others.
+/// A renderer reuses its prepared scene for the next job unless the rules change.
 #[test]
-fn a_renderer_of_other_rules_before_renders_the_same() {
+fn renderer_reused_after_other_rules() {
     let balls: Vec<_> = (0..125)
         .map(|i| {
             (

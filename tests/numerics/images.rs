@@ -39,7 +39,7 @@ fn case_10_scaled_scenes() {
     }
 }
 
-/// A shell of glass, 1e-4 thick, over a matte ground.
+/// A glass shell, 1e-4 thick, over a matte ground.
 #[test]
 fn case_11_thin_shell() {
     let scene = scene(&[
@@ -57,9 +57,9 @@ fn case_11_thin_shell() {
     }
 }
 
-/// The limit on the RMS applies to samples whose path is the same in both precisions. A path that rounding sends
-/// another way (at a random choice in glass, or at an outline) is off by about .1 and is counted as an outlier; one
-/// such sample in 1e4 makes an RMS of 1e-3 however good the others are.
+/// The limit on the RMS applies to samples with the same path in both precisions. A path that rounding diverts (at a
+/// random choice in glass, or at an outline) is off by about .1 and counts as an outlier; one such sample in 1e4 makes
+/// an RMS of 1e-3 however good the others are.
 #[test]
 fn case_12_single_against_double() {
     let scene = three_spheres(LeftSphere::HollowGlass);
@@ -73,10 +73,10 @@ fn case_12_single_against_double() {
     }
 }
 
-/// A path draws the same numbers as the scalar oracle: in an empty scene, each sample is the sky in the direction that
-/// [`numbers`] and the camera give.
+/// A path draws the same numbers as the scalar oracle: in an empty scene, each sample is the sky in the direction given
+/// by [`numbers`] and the camera.
 #[test]
-fn samples_are_those_of_the_oracle() {
+fn samples_match_oracle() {
     let (width, height) = (24, 16);
     let sky = Sky::default();
     for sampler in weekender::job::render::SamplerKind::ALL {
@@ -160,7 +160,7 @@ fn case_36_depth_1() {
     for y in 0..height {
         for x in 0..width {
             let (o, d) = centre_ray(&Camera::BOOK, width, height, x, y);
-            // How far the most central hit lies inside the outline of its sphere, in radii.
+            // How far the most central hit is inside the outline of its sphere, in radii.
             let depth = scene
                 .spheres
                 .iter()
@@ -241,7 +241,7 @@ fn case_38_eye_inside_a_matte_sphere() {
 
 /// Red goes from 0 at the left to 1 at the right, green from 0 at the top to 1 at the bottom. (Section 2.)
 #[test]
-fn the_image_gradient_spans_the_picture() {
+fn image_gradient_spans_picture() {
     for (width, height) in [(16, 9), (1, 5), (5, 1)] {
         let mut recipe = Stage::find("ppm-tiny").unwrap().recipe();
         (recipe.settings.width, recipe.settings.height) = (width, height);

@@ -20,7 +20,7 @@ pub const UNFUSED: Scalar<false> = Scalar;
 /// A sphere's number in these tests.
 pub const NUMBER: u32 = 7;
 
-/// Errors of the roots that rays aimed at a sphere find.
+/// Errors of the roots for rays aimed at a sphere.
 #[derive(Debug, Default)]
 struct Aimed {
     hits: u32,
@@ -131,8 +131,8 @@ fn ground_job(radius: f64) -> RenderJob {
     job(&scene, camera, size(16, 9))
 }
 
-/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is computed without squaring the radius, so
-/// that `f64` resolves it even for a radius of 1e7.
+/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is computed without squaring the radius, so `f64`
+/// resolves it even for a radius of 1e7.
 fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
     let a = direction.length_squared();
     let b = direction.dot(origin) + radius * direction.y;
@@ -141,7 +141,7 @@ fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64
     (d >= 0.0 && b < 0.0).then(|| c / (-b + d.sqrt()))
 }
 
-/// Largest error of the distance, and of the height of the hit point above the ground.
+/// Largest errors of the distance, and of the hit point's height above the ground.
 fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
     let prepared: PreparedScene<L::Real> = PreparedScene::new(&ground_job(radius));
     assert_eq!(prepared.anchored.len(), 1, "the ground is anchored");
@@ -251,7 +251,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let (center, radius) = (random.in_box(100.0), random.log_within(1e-3, 1e3));
         let Some(point) = arrival(l, &mut random, center, radius) else { continue };
         let normal = vector::<Scalar<false>>(point.outward);
-        // Includes grazing angles, at which offsets along the normal, as other tracers use them, fail.
+        // Includes grazing angles, where the usual offset along the normal fails.
         let lift = random.log_within(1e-7, 1.0);
         let direction = perpendicular(normal, &mut random) + normal * lift;
         let mut rays = ray(l, DVec3::ZERO, direction);
@@ -280,7 +280,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
     }
 }
 
-/// A ray enters glass of index 1.5 and travels to the other side.
+/// A ray enters glass of index 1.5 and crosses to the other side.
 fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<f64> {
     let number = l.splat_u(NUMBER);
     let sphere = packed::<L>(center, radius);

@@ -1,4 +1,4 @@
-//! Spheres that are thin, close to others, small or far away: rendered right, or reported.
+//! Spheres that are thin, close together, small or far away: rendered right, or reported.
 
 use crate::common::*;
 use crate::stiff::*;
@@ -7,9 +7,9 @@ use weekender::job::render::RenderSettings;
 use weekender::prepared::PreparedScene;
 use weekender::scene::{Camera, Scene, Sky};
 
-/// Details close to the eye are resolved, even where a small ball lies near the far side of the same planet.
+/// Details near the eye are resolved, even with a small ball near the far side of the same planet.
 #[test]
-fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
+fn planet_is_resolved_near_eye() {
     let (radius, height) = (8.8e9, 5.6e4);
     let toward = DVec3::new(-0.181, 0.734, -0.6546).normalize();
     let planet = (toward * (radius + height), radius, lambertian(0.5));
@@ -27,10 +27,10 @@ fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
     assert!(found.bias.abs() < 1e-5, "{found:?}");
 }
 
-/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface,
-/// and must hit it nevertheless. With two rays per path the ground is black from inside; bright pixels have leaked.
+/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface
+/// and must still hit it. With two rays per path the ground is black from inside; bright pixels have leaked.
 #[test]
-fn nothing_leaks_where_glass_touches_the_ground() {
+fn no_leaks_where_glass_touches_ground() {
     let (eye, radius, ground) = (DVec3::new(0.3, 0.2, -0.1), 10.3, 4073.8);
     let down = DVec3::new(-0.1, -1.0, -0.2).normalize();
     for overlap in [0.0, 1e-4, 3e-3, 0.1] {
@@ -44,9 +44,9 @@ fn nothing_leaks_where_glass_touches_the_ground() {
     }
 }
 
-/// A picture of something small is as sharp as single precision allows, wherever the origin is.
+/// Pictures of small things are as sharp as single precision allows, wherever the origin is.
 #[test]
-fn small_balls_near_the_origin_are_where_they_are() {
+fn small_balls_near_origin_are_exact() {
     let center = DVec3::new(-0.000_118, 0.001_18, 0.002_05);
     let scene = Scene {
         sky: Sky { bottom: DVec3::ZERO, top: DVec3::new(0.5, 1.0, 2.0) },
@@ -59,9 +59,9 @@ fn small_balls_near_the_origin_are_where_they_are() {
     assert!(found.bias.abs() < 4e-6, "{found:?}");
 }
 
-/// The surface nearest to the eye need not be the one that it looks at.
+/// The surface nearest to the eye need not be the one it looks at.
 #[test]
-fn a_small_ball_beside_a_larger_one_is_where_it_is() {
+fn small_ball_beside_larger_is_exact() {
     let small = DVec3::new(0.014_095_8, 0.034_369_6, 0.036_614_1);
     let scene = Scene {
         sky: Sky { bottom: DVec3::ZERO, top: DVec3::new(0.5, 1.0, 2.0) },
@@ -81,7 +81,7 @@ fn a_small_ball_beside_a_larger_one_is_where_it_is() {
 
 /// On far balls, the normal at a hit has length 1 however coarsely the distance is rounded.
 #[test]
-fn specks_are_shaded_as_balls_are() {
+fn specks_shade_like_balls() {
     for radius in [1e-4, 1e-6, 1e-8] {
         let balls = [(DVec3::new(0.0, 0.0, -1.0), radius, lambertian(0.5))];
         let camera = Camera { vfov_degrees: 0.01, ..Camera::BOOK };

@@ -1,5 +1,5 @@
-//! The required precision of the arithmetic. Each numbered test is a case of docs/numerics.md, with the tolerance given
-//! there; run with `--nocapture`, it prints what it measures.
+//! The required precision of the arithmetic. Each numbered test is a case of docs/numerics.md with its tolerance;
+//! `--nocapture` prints the measured values.
 //!
 //! Single functions run in lanes of `f32`, with and without fused multiply and add, against closed forms in
 //! `f64`; whole pictures run in the widest packets against the `f64` reference, sample by sample. The

@@ -1,4 +1,4 @@
-//! What surfaces do: cases 14 to 18, 20 to 22. (Book 1, sections 9 to 11.)
+//! Surfaces: cases 14 to 18, 20 to 22. (Book 1, sections 9 to 11.)
 
 use crate::common::*;
 use glam::DVec3;
@@ -56,7 +56,7 @@ fn case_15_matte_ball_under_the_sky() {
             sum += z;
             squares += z * z;
             largest = largest.max(z.abs());
-            // The blue of the sky is the same everywhere.
+            // The sky's blue is the same everywhere.
             assert!((found[2] - expected.z).abs() < 1e-6, "{found:?}, not {expected}");
         }
     }
@@ -226,7 +226,7 @@ fn case_22_mirrors_have_no_noise() {
 }
 
 #[test]
-fn a_sine_that_rounding_pushes_above_1_is_grazing() {
+fn sine_rounded_above_1_is_grazing() {
     let l = Reference;
     for sine2 in [0.0, 0.25, 1.0, 1.0 + f64::EPSILON, 1.1] {
         let incidence = incidence_of_sine2(l, l.constant(sine2));

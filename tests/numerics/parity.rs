@@ -1,5 +1,5 @@
-//! All packets of one class render the same bits. Levels with fused multiply and add are one class, those
-//! without are the other.
+//! All packets of one class render the same bits: levels with fused multiply and add are one class, those without the
+//! other.
 //!
 //! At a level's own lane count the path loop is specialised to the job; the other lane counts have only the general
 //! loop. Equality over the widths is therefore also case 39, on the CPU and to the bit.
@@ -26,8 +26,8 @@ fn small(recipe: &Recipe, sampler: SamplerKind) -> RenderJob {
     RenderJob::new(recipe.scene.clone(), recipe.camera, settings, recipe.rules).unwrap()
 }
 
-/// Wide packets trace this many samples in blocks in which their lanes wait for each other. A half's blocks have four
-/// samples and one, so that lanes wait even where each path is one ray long.
+/// Wide packets trace this many samples in blocks in which lanes wait for each other. A half's blocks have four samples
+/// and one, so lanes wait even where each path is a single ray.
 const SAMPLES: u64 = 10;
 
 fn assert_parity(recipes: impl Iterator<Item = Recipe>) {
@@ -58,7 +58,7 @@ fn case_39_all_packets_render_the_same_scenes() {
 
 /// Tiles, threads and passes do not change the picture.
 #[test]
-fn tiles_threads_and_passes_do_not_show() {
+fn tiles_threads_and_passes_are_invisible() {
     let threaded = |threads| CpuRenderer::new(CpuOptions { threads: Some(threads), ..CpuOptions::default() });
     for name in ["three-spheres", "close-up"] {
         let recipe = Recipe::find(name).unwrap();

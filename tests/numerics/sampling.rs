@@ -22,7 +22,7 @@ fn case_26_no_draw_repeats() {
     }
 }
 
-/// The mean of `n` independent samples has 1/n of the variance of one sample, whatever is sampled.
+/// Whatever is sampled, the mean of `n` independent samples has 1/n of the variance of one.
 #[test]
 fn independent_samples_are_independent() {
     const SAMPLES: u32 = 64;
@@ -110,7 +110,7 @@ fn assert_twins<L: Lanes>(l: L) {
 }
 
 #[test]
-fn lanes_draw_the_numbers_of_the_oracle() {
+fn lanes_draw_oracle_numbers() {
     assert_twins(Scalar::<false>);
     assert_twins(Reference);
     #[cfg(target_arch = "x86_64")]

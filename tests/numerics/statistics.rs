@@ -1,4 +1,4 @@
-//! Samplers and estimates of error: cases 28 to 30.
+//! Samplers and error estimates: cases 28 to 30.
 
 use crate::common::*;
 use glam::DVec3;
@@ -55,7 +55,7 @@ fn case_28_sobol_keeps_converging() {
     assert!(fine / coarse <= 0.55, "{coarse} to {fine}");
 }
 
-/// The three spheres, the book's last scene, a wide lens, and hollow glass from near by.
+/// The three spheres, the book's last scene, a wide lens, and hollow glass up close.
 fn calibration_jobs(sampler: SamplerKind, seed: u32) -> Vec<(&'static str, RenderJob)> {
     let of = |name: &'static str, camera: Option<Camera>| {
         let recipe = Recipe::find(name).unwrap();

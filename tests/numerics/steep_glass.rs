@@ -1,4 +1,4 @@
-//! Light that goes into steep glass (an index outside of 1/4 to 4, or paths of many rays) and comes out again.
+//! Light that enters steep glass (an index outside of 1/4 to 4, or paths of many rays) and leaves it again.
 //!
 //! The `f64` reference has the same code as the packets, so these cases compare with Snell's law itself.
 
@@ -9,17 +9,17 @@ use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{DielectricLaws, Rules};
 
-/// Every ray has one way only.
+/// Every ray has only one possible path.
 const WITHOUT_CHANCE: Rules =
     Rules { dielectric: DielectricLaws::TotalReflection, antialiasing: false, ..Rules::FINISHED };
 
-/// Black below, white above: a sample tells the height of the direction in which its path has left.
+/// Black below, white above: a sample shows how steeply its path left.
 const SLOPE: Sky = Sky { bottom: DVec3::ZERO, top: DVec3::ONE };
 
 const VIEW: Camera =
     Camera { look_from: DVec3::new(0.3, 0.2, 4.0), look_at: DVec3::ZERO, vfov_degrees: 32.0, ..Camera::BOOK };
 
-/// The direction in which a ray leaves balls of glass, by Snell's law. `None` if rounding could send it another way.
+/// The direction in which a ray leaves glass balls, by Snell's law. `None` if rounding could divert it.
 fn way_out(mut origin: DVec3, mut direction: DVec3, balls: &[Ball]) -> Option<DVec3> {
     loop {
         let mut nearest: Option<(f64, DVec3, f64)> = None;
@@ -49,7 +49,7 @@ fn way_out(mut origin: DVec3, mut direction: DVec3, balls: &[Ball]) -> Option<DV
 }
 
 #[test]
-fn rays_through_steep_glass_leave_it_where_snell_says() {
+fn steep_glass_obeys_snell() {
     let (width, height) = (48, 48);
     let ball = |index: f64| vec![(DVec3::ZERO, 1.0, glass(index))];
     let shell = |index: f64| vec![(DVec3::ZERO, 1.0, glass(index)), (DVec3::ZERO, 0.5, glass(1.0 / index))];
@@ -86,9 +86,9 @@ fn rays_through_steep_glass_leave_it_where_snell_says() {
     }
 }
 
-/// Nothing is absorbed, and what a ball lets in can leave it, however often it is reflected inside.
+/// Nothing is absorbed, and light that enters a ball can leave it, however often it is reflected inside.
 #[test]
-fn a_ball_of_steep_glass_is_as_white_as_the_sky() {
+fn steep_glass_loses_no_light() {
     for index in [0.1, 1.5, 5.0, 20.0, 100.0] {
         let scene = under_white_sky(&[(DVec3::ZERO, 1.0, glass(index))]);
         let job = job(&scene, VIEW, RenderSettings { max_depth: 2000, ..size(24, 24) });

@@ -18,7 +18,7 @@ pub fn under_white_sky(balls: &[Ball]) -> Scene {
     Scene { sky: WHITE, ..scene(balls) }
 }
 
-/// The balls and forty more far behind the eye, which is enough for a hierarchy.
+/// The balls and forty more far behind the eye, enough for a hierarchy.
 pub fn among_many(balls: &[Ball]) -> Vec<Ball> {
     let far = |i: u32| (DVec3::new(f64::from(i) - 20.0, 0.0, 500.0), 0.1, lambertian(0.5));
     balls.iter().copied().chain((0..40).map(far)).collect()
@@ -45,7 +45,7 @@ fn shown_mean(job: &RenderJob, samples: u64) -> f64 {
 }
 
 #[test]
-fn copies_of_a_ball_are_the_ball() {
+fn copies_look_like_one_ball() {
     let ball = (DVec3::ZERO, 1.0, lambertian(0.5));
     for copies in [1, 2, 110, 3000] {
         let balls = among_many(&vec![ball; copies]);
@@ -58,7 +58,7 @@ fn copies_of_a_ball_are_the_ball() {
 }
 
 #[test]
-fn a_field_with_copies_is_the_field() {
+fn copies_do_not_change_field() {
     let (plain, camera) = field(2000);
     let mut copied = plain.clone();
     copied.spheres.extend([plain.spheres[77]; 120]);
@@ -67,7 +67,7 @@ fn a_field_with_copies_is_the_field() {
 }
 
 #[test]
-fn nearly_equal_balls_reflect_what_one_does() {
+fn nearly_equal_balls_look_like_one() {
     for offset in [1e-9, 1e-7, 1e-6, 1e-5, 1e-4] {
         let balls: Vec<Ball> = (0..3)
             .map(|i| (DVec3::new(offset, -0.3 * offset, 0.2 * offset) * f64::from(i), 1.0, lambertian(0.5)))
@@ -81,7 +81,7 @@ fn nearly_equal_balls_reflect_what_one_does() {
 }
 
 #[test]
-fn of_copies_in_two_colours_the_first_is_seen() {
+fn first_of_coloured_copies_is_visible() {
     let coloured = |albedo| (DVec3::ZERO, 1.0, Material::Lambertian { albedo });
     for (first, second) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::X)] {
         let balls = [coloured(first), coloured(second)];
@@ -116,7 +116,7 @@ fn shells_and_crowds_have_low_trees() {
 }
 
 #[test]
-fn an_eye_on_a_surface_sees_the_sky_before_it() {
+fn eye_on_surface_sees_sky() {
     let up = DVec3::new(0.3, 0.8, -0.5).normalize();
     for material in [lambertian(0.5), mirror(0.9), glass(1.5)] {
         for radius in [1e-3, 0.5, 1000.0, 1e7] {
@@ -145,7 +145,7 @@ fn an_eye_on_a_surface_sees_the_sky_before_it() {
 
 /// An eye on a surface counts as outside.
 #[test]
-fn an_eye_on_a_surface_sees_it_from_outside() {
+fn eye_on_surface_is_outside() {
     for (radius, height) in [(0.5, 0.0), (1000.0, 0.0), (1000.0, 1e-12), (0.5, 1e-10)] {
         let center = DVec3::new(0.0, -radius, 0.0);
         let eye = DVec3::new(0.0, height, 0.0);
@@ -160,7 +160,7 @@ fn an_eye_on_a_surface_sees_it_from_outside() {
     }
 }
 
-/// A shell of glass and a coat of glass on a matte ball, beside the eye.
+/// A glass shell and a glass coat on a matte ball, beside the eye.
 pub fn shells_at(at: DVec3, thickness: f64) -> (Scene, Camera) {
     let left = at + DVec3::new(-1.1, 0.0, 0.0);
     let right = at + DVec3::new(1.1, 0.0, 0.0);
@@ -176,7 +176,7 @@ pub fn shells_at(at: DVec3, thickness: f64) -> (Scene, Camera) {
 }
 
 #[test]
-fn thin_shells_far_from_the_origin_are_right() {
+fn thin_shells_far_from_origin() {
     for thickness in [1e-2, 1e-3, 1e-4] {
         for distance in [0.0, 1e2, 1e4, 1e5, 1e7] {
             let (scene, camera) = shells_at(DVec3::new(0.6, -0.3, 0.9) * distance, thickness);
@@ -190,7 +190,7 @@ fn thin_shells_far_from_the_origin_are_right() {
 }
 
 #[test]
-fn a_scene_is_the_same_wherever_it_is() {
+fn moved_scene_looks_the_same() {
     let scene = three_spheres(LeftSphere::HollowGlass);
     let film = |by: DVec3| {
         let mut scene = scene.clone();
@@ -239,7 +239,7 @@ fn total_reflection_lasts() {
 #[test]
 fn steep_glass_is_right() {
     for index in [10.0, 100.0, 1e4, 1e6] {
-        // So close to the centre that about half of the rays meet the surface below the critical angle.
+        // So close to the centre that about half the rays meet the surface below the critical angle.
         for offset in [0.0, 1.5 / index] {
             let eye = DVec3::new(offset, 0.0, 0.0);
             let camera =
@@ -258,7 +258,7 @@ fn steep_glass_is_right() {
 }
 
 #[test]
-fn no_light_gets_into_a_closed_ball() {
+fn closed_ball_is_dark() {
     let inside = |at: DVec3| Camera { look_from: at, look_at: at + DVec3::new(0.3, -1.0, 0.2), ..AT_BALL };
     let settings = RenderSettings { max_depth: 2000, ..size(8, 8) };
     for at in [DVec3::ZERO, DVec3::new(1000.0, 0.0, -300.0)] {
@@ -279,9 +279,9 @@ fn no_light_gets_into_a_closed_ball() {
     }
 }
 
-/// Spheres much larger than what lies on them are anchored there, in the order of the scene, whichever gains most.
+/// Spheres much larger than what is on them are anchored there, in the scene's order, whichever gains most.
 #[test]
-fn large_spheres_are_anchored_at_their_details() {
+fn large_spheres_are_anchored_at_details() {
     let grounds = [
         (DVec3::Y * -(1e4 + 10.0), 1e4, DVec3::new(0.01, 1.0, 0.0).normalize()),
         (DVec3::Y * (1e6 + 10.0), 1e6, DVec3::new(0.0, -1.0, 1e-4).normalize()),

@@ -1,9 +1,9 @@
-//! A third arithmetic: the nearest hit of a ray in numbers of 106 bits, twice those of `f64`, and what the tracer makes of
-//! the same rays.
+//! A third arithmetic: the nearest hit of a ray in numbers of 106 bits, twice those of `f64`, compared with the
+//! tracer's.
 //!
-//! A number is the sum of two `f64`s that do not overlap. Sums and products of such pairs are exact to `2^-104`,
-//! which leaves 50 bits even after the squares of an ordinary `f64` scene have cancelled. Unlike intervals or
-//! fractions, pairs are fast enough to check thousands of rays.
+//! A number is the sum of two `f64`s that do not overlap. Sums and products of such pairs are exact to `2^-104`, which
+//! leaves 50 bits even after the squares of an ordinary `f64` scene have cancelled. Unlike intervals or fractions,
+//! pairs are fast enough to check thousands of rays.
 //!
 //! Source: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971. Fused multiplication
 //! makes Dekker's splitting unnecessary.
@@ -34,7 +34,7 @@ impl Double {
         Double { high: sum, low: low - (sum - high) }
     }
 
-    /// The square root; the number must not be negative.
+    /// Must not be negative.
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Double::from(0.0);
@@ -44,7 +44,7 @@ impl Double {
         root + Double::from(rest.to_f64() / (2.0 * root.high))
     }
 
-    /// Division; `other` must not be 0.
+    /// `other` must not be 0.
     fn over(self, other: Double) -> Self {
         let first = Double::from(self.high / other.high);
         let rest = self - first * other;
@@ -94,8 +94,8 @@ fn exact_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// The first sphere that a ray hits: its index, and the distance in units of the direction's length. Surfaces at a
-/// distance of exactly 0 are left, not hit. Of several at the same distance, the first of the scene counts.
+/// The first sphere that a ray hits: its index, and the distance in units of the direction's length. Surfaces at
+/// distance 0 are left, not hit. At equal distance, the scene's first sphere wins.
 fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let mut nearest: Option<(usize, Double)> = None;
     for (index, sphere) in scene.spheres.iter().enumerate() {
@@ -133,10 +133,10 @@ fn distance(sphere: &Sphere, origin: DVec3, direction: DVec3) -> Option<Double> 
 /// Larger scenes are not checked, because each ray is tested against all spheres.
 const CHECKED_SPHERES: usize = 5000;
 
-/// Number of pixels per axis whose first ray is checked.
+/// Pixels per axis whose first ray is checked.
 const CHECKED_PIXELS: u32 = 8;
 
-/// Allowed error of the distance of a hit, relative to that distance and to the distance of focus.
+/// Allowed error of a hit's distance, relative to that distance and to the focus distance.
 const DISTANCE_TOLERANCE: f64 = 1e-5;
 
 /// How many rays from the eye were checked, and how many hit the same surface as in 106-bit arithmetic.
@@ -164,7 +164,7 @@ fn first_hits(recipe: &Recipe) -> [usize; 2] {
     [rays, agree]
 }
 
-/// The eye; if `f64` cannot tell it from a surface, it is moved outside by the smallest distance that `f64` can tell.
+/// The eye; if `f64` cannot tell it from a surface, moved outside by the smallest distance that `f64` can tell.
 fn outside(scene: &Scene, eye: DVec3) -> DVec3 {
     let mut outside = eye;
     for sphere in &scene.spheres {
@@ -179,7 +179,7 @@ fn outside(scene: &Scene, eye: DVec3) -> DVec3 {
 }
 
 #[test]
-fn rays_from_the_eye_hit_what_they_hit_in_106_bits() {
+fn first_hits_match_106_bits() {
     let is_checked = |recipe: &Recipe| {
         recipe.camera.defocus_angle_degrees == 0.0 && recipe.scene.spheres.len() <= CHECKED_SPHERES
     };
@@ -187,7 +187,7 @@ fn rays_from_the_eye_hit_what_they_hit_in_106_bits() {
         .iter()
         .filter(|case| is_checked(&case.recipe))
         .map(|case| (&case.id, first_hits(&case.recipe)))
-        // One in twenty may just have grazed an edge.
+        // One in twenty may just graze an edge.
         .filter(|(_, [rays, agree])| *rays == 0 || 20 * (rays - agree) > *rays)
         .collect();
     assert!(wrong.is_empty(), "{wrong:?}");
@@ -203,7 +203,7 @@ fn scene(balls: &[(DVec3, f64)]) -> Scene {
 }
 
 #[test]
-fn hits_are_exact_where_f64_has_no_digits_left() {
+fn exact_hits_beyond_f64() {
     // A gap of 1e-9 in front of a ball at 1e9: f64 cannot resolve its square.
     let far = scene(&[(DVec3::new(1e9, 0.0, 0.0), 1e9 - 1e-3)]);
     let (_, distance) = first_hit(&far, DVec3::ZERO, DVec3::X).unwrap();
@@ -212,7 +212,7 @@ fn hits_are_exact_where_f64_has_no_digits_left() {
 }
 
 #[test]
-fn a_ray_leaves_the_surface_that_it_starts_on() {
+fn ray_leaves_its_surface() {
     let ball = scene(&[(DVec3::ZERO, 1.0)]);
     assert_eq!(first_hit(&ball, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)), None);
     assert_eq!(first_hit(&ball, DVec3::Y, -DVec3::Y), Some((0, 2.0)));

@@ -1,4 +1,4 @@
-//! The suite of stiff scenes: its quick part on every class of CPU arithmetic, and the program around it.
+//! The stiff scenes: the quick ones on every class of CPU arithmetic, and the program around them.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 mod exact;
@@ -21,7 +21,7 @@ fn suite() -> Suite {
     Suite::new(best(true).into_iter().chain(best(false)).map(backend).chain([reference]).collect())
 }
 
-/// The case with fewer samples: an error in these cases affects many samples.
+/// Fewer samples suffice, because an error in these cases affects many of them.
 fn small(case: &Case) -> Case {
     let mut case = case.clone();
     case.recipe.samples_per_pixel = case.recipe.samples_per_pixel.min(8);
@@ -32,7 +32,7 @@ fn small(case: &Case) -> Case {
 }
 
 #[test]
-fn the_quick_cases_are_right_on_every_level() {
+fn quick_cases_are_right_on_every_level() {
     let (mut suite, go_on) = (suite(), AtomicBool::new(false));
     let mut wrong = Vec::new();
     for case in cases().iter().filter(|case| case.is_quick) {
@@ -51,7 +51,7 @@ fn the_quick_cases_are_right_on_every_level() {
 }
 
 #[test]
-fn the_books_arithmetic_fails_where_its_threshold_is_a_length_of_the_scene() {
+fn book_threshold_breaks_small_scenes() {
     let (mut suite, go_on) = (suite(), AtomicBool::new(false));
     for id in ["scaled/1e-3", "cavity/white-touching-of-1e-3"] {
         let case = cases().iter().find(|case| case.id == id).unwrap();
@@ -65,7 +65,7 @@ fn weekender(arguments: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn the_program_prints_a_table_and_writes_json_and_pictures() {
+fn program_writes_table_json_and_pictures() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out");
     let json = directory.path().join("figures.json");

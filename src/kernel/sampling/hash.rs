@@ -3,7 +3,7 @@
 /// `2^32` over the golden ratio, rounded to an odd number: its multiples are far apart.
 pub const GOLDEN_RATIO: u32 = 0x9E37_79B9;
 
-/// Hashes four numbers to four numbers. Each bit of the output depends on every bit of the input; a bijection.
+/// Hashes four numbers: a bijection in which each output bit depends on every input bit.
 ///
 /// Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020.
 pub fn pcg4d(v: [u32; 4]) -> [u32; 4] {
@@ -19,7 +19,7 @@ fn stir([x, y, z, w]: [u32; 4]) -> [u32; 4] {
     [x, y, z, w]
 }
 
-/// Hashes a number to a number; a bijection.
+/// Hashes a number: a bijection.
 ///
 /// Source: Wellons, "Prospecting for Hash Functions", 2018 (`lowbias32`).
 pub fn mix32(mut x: u32) -> u32 {

@@ -1,4 +1,4 @@
-//! The source of a sample's numbers, in plain scalar code: the oracle for all lane widths and the GPU.
+//! The source of a sample's numbers in plain scalar code: the oracle for all lane widths and the GPU.
 //!
 //! Each number is a pure function of (sampler, seed, pixel, sample index, bounce). No state is carried along a path, so
 //! a sample does not depend on what was traced before it.
@@ -42,7 +42,7 @@ pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
     key_in_half(half_key(seed, half), pixel)
 }
 
-/// The part of [`pixel_key`] that all pixels share.
+/// The part of [`pixel_key`] shared by all pixels.
 fn half_key(seed: u32, half: u32) -> u32 {
     mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO)))
 }
@@ -52,12 +52,11 @@ fn key_in_half(half_key: u32, pixel: u32) -> u32 {
     mix32(half_key ^ pixel)
 }
 
-/// The part of a sampler's stream keys that all pixels share.
+/// The part of a sampler's stream keys shared by all pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfKey(Option<u32>);
 
 impl HalfKey {
-    /// The shared part for one half of the film.
     pub fn new(settings: &RenderSettings, half: u32) -> Self {
         match settings.sampler {
             SamplerKind::Independent => HalfKey(None),
@@ -65,7 +64,7 @@ impl HalfKey {
         }
     }
 
-    /// The number that the keys of all pixels have in common; `None` for the sampler that hashes the pixel itself.
+    /// The number common to all pixels' keys; `None` for the sampler that hashes the pixel itself.
     #[inline(always)]
     pub fn bits(self) -> Option<u32> {
         self.0
@@ -79,7 +78,7 @@ impl HalfKey {
     }
 }
 
-/// The difference between the streams of consecutive rays of a path.
+/// The difference between the streams of a path's consecutive rays.
 #[inline(always)]
 pub fn stream_stride(sampler: SamplerKind) -> u32 {
     match sampler {
@@ -88,7 +87,7 @@ pub fn stream_stride(sampler: SamplerKind) -> u32 {
     }
 }
 
-/// Converts a 32-bit number to a float in `[0, 1)`, using its upper 24 bits so that the result is exact and never 1.
+/// Converts the upper 24 bits to a float in `[0, 1)`, so that the result is exact and never 1.
 pub fn unit_float(u: u32) -> f32 {
     (u >> 8) as f32 * (1.0 / 16_777_216.0)
 }
@@ -101,12 +100,12 @@ pub struct SampleBlock {
     pub half: u32,
     /// Index of the first sample within the half.
     pub first: u32,
-    /// Number of samples, a power of two.
+    /// A power of two.
     pub count: u32,
 }
 
 impl SampleBlock {
-    /// Splits samples `range` into blocks of at most `count_limit` (a power of two) samples.
+    /// Splits a range of samples into blocks of at most `count_limit` (a power of two).
     pub fn split(range: std::ops::Range<u64>, half_count: u32, count_limit: u32) -> Vec<SampleBlock> {
         let mut blocks = Vec::new();
         for half in 0..half_count {

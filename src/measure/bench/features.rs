@@ -1,5 +1,5 @@
-//! Measures what a kernel gains by leaving out what its picture does not need: each picture is rendered with its own
-//! kernel and with the general one in turn. Both films must be equal to the bit.
+//! Measures the gain of specialised kernels: renders each picture alternately with its own kernel and with the general
+//! one. The films must be equal bit for bit.
 
 use super::super::{Candidate, Stop};
 use super::figures::{DeviceFigures, GainRow, Run};
@@ -10,14 +10,12 @@ use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 use anyhow::{Result, bail};
 
-/// Candidates with each picture's own kernel, and with the general one.
+/// Candidates with a picture's own kernel and with the general one.
 type Pair = [Candidate; 2];
 
 impl Bench<'_> {
-    /// Measures every picture on every device. An interrupt keeps the rows so far.
-    ///
-    /// # Errors
-    /// If the films of a picture's own and of the general kernel differ.
+    /// Measures every picture on every device. An interrupt keeps the rows measured before it. Fails if the two films
+    /// differ.
     pub(super) fn features(&mut self, scenes: &[BenchScene]) -> Result<()> {
         let pairs = self.pairs();
         self.expect_runs(pairs.len() * scenes.len() * (1 + self.options.runs()));
@@ -104,7 +102,7 @@ impl Bench<'_> {
         general.trace(job, samples, cancel)?;
         self.progress.finished(1.0);
         for turn in 0..self.options.runs() {
-            // Neither kernel always follows the other.
+            // Alternate which kernel goes first.
             let early = (turn % 2 == 1).then(|| general.trace(job, samples, cancel)).transpose()?;
             let of_own = own.trace(job, samples, cancel)?;
             let of_general = early.map_or_else(|| general.trace(job, samples, cancel), Ok)?;

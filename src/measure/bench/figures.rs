@@ -1,18 +1,17 @@
-//! The measured figures, as the JSON has them.
+//! The measured figures, as they appear in the JSON.
 
 use super::super::{Candidate, Traced};
 use crate::job::render::RenderJob;
 use crate::numbers::statistics::median;
 use serde::Serialize;
 
-/// Everything that was measured.
 #[derive(Default, Serialize)]
 pub struct BenchFigures {
-    /// Scenes, each with a row per candidate.
+    /// Scenes, with one row per candidate.
     pub scenes: Vec<SceneFigures>,
     /// Fields of growing size.
     pub scale: Vec<ScaleFigures>,
-    /// What leaving things out of kernels gains, by device.
+    /// Gain of specialised kernels, by device.
     pub features: Vec<DeviceFigures>,
     /// Reasons to doubt the figures.
     pub warnings: Vec<String>,
@@ -28,11 +27,10 @@ pub struct SceneFigures {
     /// The C program always uses independent numbers, as the book does.
     pub sampler: &'static str,
     pub spheres: usize,
-    /// The rows in the order of the table.
+    /// Rows in the table's order.
     pub rows: Vec<Row>,
 }
 
-/// What kind of candidate a row is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -42,28 +40,26 @@ pub enum Kind {
     Scalar,
     /// Packets on one thread.
     Packets,
-    /// Several threads.
+    /// Packets on several threads.
     Threads,
     Gpu,
 }
 
-/// A candidate and its runs.
 #[derive(Default, Serialize)]
 pub struct Row {
     pub name: String,
     pub kind: Kind,
-    /// Number of paths that advance in step.
+    /// Number of paths that advance in lockstep.
     pub lanes: usize,
     pub threads: usize,
-    /// Samples per pixel of each run.
     pub samples_per_pixel: u64,
     /// All runs except the warm-up.
     pub runs: Vec<Run>,
     pub paths_per_second: Option<Spread>,
     pub rays_per_second: Option<Spread>,
-    /// Fraction of the lanes that traced a ray; `None` for the C program and a GPU.
+    /// Share of the lanes that traced a ray; `None` for the C program and a GPU.
     pub lanes_in_use: Option<f64>,
-    /// Paths per second, relative to the C program in the same scene.
+    /// Paths per second relative to the C program in the same scene.
     pub ratio_to_baseline: Option<f64>,
     /// `1 / (MSE seconds)`; `None` if the error is unknown.
     pub efficiency: Option<f64>,
@@ -71,7 +67,7 @@ pub struct Row {
     pub skipped: Option<String>,
 }
 
-/// A run. Its time does not include reading, preparing and writing.
+/// A run. The time excludes reading, preparing and writing.
 #[derive(Clone, Copy, Serialize)]
 pub struct Run {
     /// Wall time of tracing.
@@ -87,7 +83,6 @@ pub struct Run {
     pub rmse: Option<f64>,
 }
 
-/// A field of a certain size.
 #[derive(Serialize)]
 pub struct ScaleFigures {
     pub spheres: u64,
@@ -107,20 +102,20 @@ pub struct ScaleFigures {
     pub rays_per_second: Option<Spread>,
 }
 
-/// The gain of leaving things out of kernels, on one device.
+/// Gain of specialised kernels on one device.
 #[derive(Serialize)]
 pub struct DeviceFigures {
-    /// The device, with lanes and threads of a CPU.
+    /// The device, with the lanes and threads of a CPU.
     pub device: String,
     pub rows: Vec<GainRow>,
     /// Why it was not measured.
     pub skipped: Option<String>,
 }
 
-/// A stage or scene, rendered with its own kernel and with the general one in turn.
+/// A stage or scene, rendered alternately with its own kernel and with the general one.
 #[derive(Default, Serialize)]
 pub struct GainRow {
-    /// Id of the stage or name of the scene.
+    /// Stage id or scene name.
     pub name: String,
     pub is_stage: bool,
     pub width: u32,
@@ -128,23 +123,22 @@ pub struct GainRow {
     pub max_depth: u32,
     pub sampler: &'static str,
     pub samples_per_pixel: u64,
-    /// What its own kernel has.
+    /// What its own kernel supports.
     pub kernel: String,
-    /// What its own kernel leaves out, of what the general kernel has.
+    /// What its own kernel leaves out of the general one.
     pub left_out: Vec<&'static str>,
     pub own_runs: Vec<Run>,
     pub general_runs: Vec<Run>,
     pub own_paths_per_second: Option<Spread>,
     pub general_paths_per_second: Option<Spread>,
-    /// Time of the general kernel relative to its own, over the pairs of runs.
+    /// Time of the general kernel relative to its own, by pair of runs.
     pub gain: Option<Spread>,
-    /// Whether the films of both kernels are equal to the bit.
+    /// Whether both films are equal bit for bit.
     pub same_bits: Option<bool>,
     /// Why it was not measured.
     pub skipped: Option<String>,
 }
 
-/// The spread of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     pub median: f64,
@@ -153,19 +147,18 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// `None` if there are no values.
+    /// `None` without values.
     pub fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
         let min = values.clone().reduce(f64::min)?;
         let max = values.clone().reduce(f64::max)?;
         Some(Spread { median: median(values)?, min, max })
     }
 
-    /// Of `count` per second.
     fn of_speeds(runs: &[Run], count: fn(&Run) -> u64) -> Option<Self> {
         Spread::of(runs.iter().map(|run| count(run) as f64 / run.seconds))
     }
 
-    /// The range as a fraction of the median.
+    /// The range as a share of the median.
     pub fn share(self) -> f64 {
         (self.max - self.min) / self.median
     }
@@ -192,7 +185,6 @@ impl Row {
         Row { name: candidate.name.clone(), kind, lanes, threads, skipped, ..Row::default() }
     }
 
-    /// Computes the row's figures from its runs.
     pub fn sum_up(&mut self) {
         self.paths_per_second = Spread::of_speeds(&self.runs, |run| run.paths);
         self.rays_per_second = Spread::of_speeds(&self.runs, |run| run.rays);
@@ -207,7 +199,6 @@ impl Row {
 }
 
 impl GainRow {
-    /// Computes the row's figures from its runs.
     pub fn sum_up(&mut self) {
         self.own_paths_per_second = Spread::of_speeds(&self.own_runs, |run| run.paths);
         self.general_paths_per_second = Spread::of_speeds(&self.general_runs, |run| run.paths);
@@ -217,7 +208,7 @@ impl GainRow {
 }
 
 impl SceneFigures {
-    /// Compares the rows with the C program.
+    /// Relates the rows to the C program.
     pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>) -> Self {
         let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
         let baseline = rows.iter().find(|row| row.kind == Kind::Baseline).and_then(speed);
@@ -252,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_compared_with_the_baseline_of_their_own_scene() {
+    fn ratio_uses_baseline_of_same_scene() {
         let run =
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();
@@ -277,7 +268,7 @@ mod tests {
         assert_eq!(packets.paths_per_second, Some(Spread { median: 4.0, min: 2.0, max: 8.0 }));
         assert_eq!(packets.rays_per_second, Some(Spread { median: 10.0, min: 5.0, max: 20.0 }));
         assert_eq!((packets.efficiency, packets.lanes_in_use), (Some(2.0), Some(0.75)));
-        // A black film has no noise, which tells nothing about the efficiency.
+        // A black film has no noise, so its efficiency is unknown.
         assert_eq!(row(Kind::Packets, vec![Run { rmse: Some(0.0), ..run }]).efficiency, None);
         // A GPU has threads instead of lanes.
         assert_eq!(row(Kind::Gpu, runs).lanes_in_use, None);

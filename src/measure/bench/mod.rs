@@ -24,22 +24,19 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// At a higher system load, the figures are doubtful.
+/// System load above which the figures are doubtful.
 const LOAD_LIMIT: f64 = 0.5;
 
-/// The figures are doubtful if the range of the runs exceeds this fraction of their median.
+/// Figures are doubtful if the range of the runs exceeds this share of their median.
 const SPREAD_LIMIT: f64 = 0.1;
 
-/// How long a GPU is kept busy before each measured run.
+/// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
 
-/// Shortest warm-up run whose speed is meaningful, seconds.
+/// Shortest warm-up with a meaningful speed, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
 
-/// Measures, prints tables and writes files.
-///
-/// # Errors
-/// [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
+/// Measures, prints tables and writes files. [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::input)?;
     let levels = options.levels().map_err(Failure::input)?;
@@ -78,7 +75,7 @@ fn write(
     machine: &Machine,
     figures: &BenchFigures,
 ) -> anyhow::Result<()> {
-    // The files are written even if printing failed.
+    // Write the files even if printing failed.
     let printed = terminal::print_beside(json, &text::text(machine, figures));
     if let Some(target) = json {
         write_json(target, machine, figures)?;
@@ -89,10 +86,9 @@ fn write(
     printed
 }
 
-/// A measurement under way.
 struct Bench<'a> {
     options: &'a BenchOptions,
-    /// At least one, the most capable last.
+    /// Never empty; the most capable level is last.
     levels: Vec<Isa>,
     cancel: &'a AtomicBool,
     progress: Progress,
@@ -124,7 +120,7 @@ impl Bench<'_> {
         }
     }
 
-    /// All candidates, in the order of the table.
+    /// All candidates in the table's order.
     fn candidates(&self) -> Vec<(Kind, Candidate)> {
         let mut c89 = Candidate::new("C89, 1 thread", Source::C89);
         if let Ok(renderer) = c89.start() {
@@ -154,7 +150,7 @@ impl Bench<'_> {
         found
     }
 
-    /// Runs all candidates in turn, so that drift affects all of them alike.
+    /// Runs all candidates in turn, so that drift affects all alike.
     fn rows(
         &mut self,
         scene: &str,
@@ -188,7 +184,7 @@ impl Bench<'_> {
     }
 
     fn run(&self, candidate: &mut Candidate, job: &RenderJob, row: &mut Row) -> Result<(), Stop> {
-        // A GPU that waits for its turn lowers its clock, and takes a while to raise it.
+        // An idle GPU lowers its clock and takes a while to raise it.
         let begin = Instant::now();
         while row.kind == Kind::Gpu && begin.elapsed() < WAKING {
             candidate.trace(job, row.samples_per_pixel, self.cancel)?;
@@ -197,8 +193,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Warms up with more and more samples. Returns how many a measured run takes: as many as the time limit allows, at
-    /// most `samples`.
+    /// Warms up with growing sample counts. Returns the most samples, up to `samples`, that fit the time limit.
     fn affordable_samples(
         &self,
         candidate: &mut Candidate,
@@ -225,17 +220,16 @@ fn cpu(isa: Isa, lanes: usize, threads: usize) -> Candidate {
     Candidate::backend(name, BackendChoice::Cpu(options))
 }
 
-/// How many samples a run may take within `limit_seconds`: at most `samples`, at least `least`.
+/// How many samples fit into `limit_seconds`, between `least` and `samples`.
 fn affordable(samples: u64, least: u64, seconds_per_sample: f64, limit_seconds: f64) -> u64 {
     let mut chosen = samples;
     while chosen > least && chosen as f64 * seconds_per_sample > limit_seconds {
-        // Both halves of the film get the same number.
+        // Both halves of the film get equally many.
         chosen = (chosen / 2).next_multiple_of(least);
     }
     chosen
 }
 
-/// Reasons to doubt the figures.
 fn warnings(figures: &BenchFigures, load: Option<f64>) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(load) = load.filter(|load| *load > LOAD_LIMIT) {
@@ -257,7 +251,7 @@ fn warnings(figures: &BenchFigures, load: Option<f64>) -> Vec<String> {
     warnings
 }
 
-/// The name of each measured row, and the range of its runs as a fraction of their median.
+/// The name of each measured row, with the range of its runs as a share of their median.
 fn spreads(figures: &BenchFigures) -> Vec<(String, f64)> {
     let mut found: Vec<(String, Option<Spread>)> = Vec::new();
     for scene in &figures.scenes {
@@ -278,7 +272,7 @@ mod tests {
     use figures::{DeviceFigures, GainRow};
 
     #[test]
-    fn a_run_takes_as_many_samples_as_its_time_allows() {
+    fn samples_fit_time_limit() {
         for (seconds_per_sample, expected) in [(0.0, 100), (0.01, 100), (0.011, 50), (0.04, 26), (9.0, 2)] {
             assert_eq!(affordable(100, 2, seconds_per_sample, 1.04), expected, "{seconds_per_sample}");
         }
@@ -286,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn a_busy_machine_and_runs_that_differ_are_reasons_to_doubt() {
+    fn load_and_spread_warn() {
         let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
         let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
         let rows = vec![

@@ -6,11 +6,11 @@ use crate::numbers::chart::{
     Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series,
 };
 
-/// Height of a bar's row and of everything around the rows, points.
+/// Height of a bar's row, and of everything around the rows, points.
 const ROW_HEIGHT: u32 = 36;
 const FRAME_HEIGHT: u32 = 100;
 
-/// A chart of the rows of all scenes or, if they were measured, of the fields.
+/// Charts the rows of all scenes or, if fields were measured, the fields.
 pub fn figure(machine: &Machine, figures: &BenchFigures) -> Figure {
     let about = machine.words();
     if figures.scale.is_empty() { bars(&figures.scenes, about) } else { scale(&figures.scale, about) }
@@ -95,7 +95,7 @@ fn scale(rows: &[ScaleFigures], about: String) -> Figure {
     }
 }
 
-/// A guide in proportion to x, through the first point of a series and a little above it.
+/// A guide proportional to x, through a point just above the series' first.
 fn in_proportion(series: &Series) -> Series {
     let law = |point: &Point| (point.x, 3.0 * series.points[0].y * point.x / series.points[0].x);
     Series::new("in proportion", Look::Guide, series.points.iter().map(law))

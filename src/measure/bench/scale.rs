@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 use std::time::Instant;
 
 impl Bench<'_> {
-    /// Measures fields of these numbers of spheres with the widest packets on all threads.
+    /// Measures fields of these sizes with the widest packets on all threads.
     pub(super) fn fields(&mut self, counts: &[u64]) -> Result<()> {
         self.expect_runs(counts.len() * (1 + self.options.runs()));
         for count in counts {

@@ -11,7 +11,6 @@ const SCENE_WIDTHS: [i32; 9] = [-33, 5, 8, 7, 7, 6, 7, 7, 9];
 const SCALE_WIDTHS: [i32; 9] = [9, 11, 9, 12, 7, 9, 5, 9, 9];
 const GAIN_WIDTHS: [i32; 8] = [-33, 10, 10, 10, 9, 7, 7, 7];
 
-/// All tables and warnings as text.
 pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
     let mut parts = vec![machine.words() + "\n"];
     parts.extend(figures.scenes.iter().map(scene));
@@ -133,7 +132,7 @@ fn millions(spread: Option<Spread>, part: fn(Spread) -> f64) -> String {
     or_dash(spread, |spread| short(part(spread) / 1e6))
 }
 
-/// A number with at least three digits, in at most five characters below 100,000.
+/// At least three digits, in at most five characters below 100,000.
 fn short(number: f64) -> String {
     let decimals = match number {
         ..100.0 => 2,

@@ -1,15 +1,14 @@
-//! The measurements of a report, as `report.json` holds them.
+//! The measurements of a report, as stored in `report.json`.
 
 use crate::measure::SCHEMA;
 use serde::{Deserialize, Serialize};
 
-/// Everything that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Data {
     /// See [`SCHEMA`].
     #[serde(skip_serializing)]
     pub schema: u32,
-    /// Settings on which the figures depend; runs with different settings are not mixed.
+    /// Settings that determine the figures; runs with different settings are not mixed.
     pub settings: Settings,
     /// One entry per scene that has runs.
     pub references: Vec<ReferenceUsed>,
@@ -24,8 +23,8 @@ impl Data {
         Data { schema: SCHEMA, settings, references: Vec::new(), runs: Vec::new(), rounding: Vec::new() }
     }
 
-    /// Sets the references, and discards everything that was measured against another one: a scene with the same name
-    /// may have changed.
+    /// Replaces the references and discards everything measured against a different one: a scene may have changed under
+    /// the same name.
     pub fn take_references(&mut self, mut references: Vec<ReferenceUsed>) {
         self.references.retain(|old| !references.contains(old));
         let is_replaced = |scene: &str, old: &[ReferenceUsed]| {
@@ -39,28 +38,28 @@ impl Data {
     }
 }
 
-/// Settings that all runs have in common.
+/// Settings common to all runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Program and version.
     pub software: String,
     /// Width and height of all pictures.
     pub size: (u32, u32),
-    /// Number of pictures of each curve, which differ only in their noise.
+    /// Number of pictures per curve, which differ only in their noise.
     pub seeds: u32,
-    /// Seconds of tracing for all seeds of a curve.
+    /// Tracing time for all seeds of a curve, seconds.
     pub time_limit: f64,
     /// Most samples per pixel.
     pub max_samples: u64,
-    /// Whether samples are kept in two halves, which is needed to estimate the error.
+    /// Whether films have two halves, as an error estimate needs.
     pub estimate_error: bool,
     /// Samples per pixel of the references that the report renders.
     pub reference_samples: u64,
-    /// The backend that renders the references, or the file that is used.
+    /// The backend that renders the references, or the file used instead.
     pub reference: String,
 }
 
-/// The picture relative to which errors are measured.
+/// The picture that errors are measured against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceUsed {
     pub scene: String,
@@ -68,7 +67,7 @@ pub struct ReferenceUsed {
     pub about: String,
     /// Samples per pixel.
     pub samples: u64,
-    /// Its own mean squared error, as its halves estimate it; it is subtracted from the errors of pictures.
+    /// Its own mean squared error, estimated from its halves and subtracted from the pictures' errors.
     pub mse: f64,
     /// Its own relative mean squared error.
     pub rel_mse: f64,
@@ -83,7 +82,7 @@ pub struct Curve {
     pub sampler: String,
 }
 
-/// A picture, measured while samples were added.
+/// A picture, measured as samples are added.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     #[serde(flatten)]
@@ -91,31 +90,31 @@ pub struct Run {
     pub seed: u32,
     /// Full name of the backend.
     pub about: String,
-    /// Seconds of preparing the scene.
+    /// Time to prepare the scene.
     pub prepare_seconds: f64,
-    /// Measurements at powers of two of samples.
+    /// Measured at powers of two of samples.
     pub points: Vec<Measured>,
 }
 
-/// A picture at one number of samples.
+/// A picture at one sample count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
     /// Seconds of tracing.
     pub trace_seconds: f64,
-    /// Seconds of tracing and adding to the film.
+    /// Time of tracing and adding to the film.
     pub wall_seconds: f64,
-    /// Seconds that the device was busy, by its own clock; `None` if it has none.
+    /// Time the device was busy, by its own clock; `None` if it has none.
     pub device_seconds: Option<f64>,
-    /// Mean squared error over pixels and channels, linear radiance, minus the reference's own. It is negative if the
-    /// picture is better than the reference.
+    /// Mean squared error over pixels and channels, linear radiance, minus the reference's own; negative if the picture
+    /// is better than the reference.
     pub mse: f64,
-    /// Mean of the squared error divided by `reference^2 + 0.01`, minus the reference's own.
+    /// Mean of the squared error over `reference^2 + 0.01`, minus the reference's own.
     pub rel_mse: f64,
     /// LDR-FLIP of the displayed picture.
     pub flip: f64,
-    /// Mean squared error as the picture's halves estimate it.
+    /// Mean squared error estimated from the picture's halves.
     pub mse_estimate: Option<f64>,
     /// Number of rejected samples.
     pub rejected: u64,
@@ -130,12 +129,12 @@ pub struct Rounding {
     pub samples: u64,
     /// Mean difference from `f64`, linear radiance.
     pub bias: f64,
-    /// Root mean square difference of pixels at this number of samples. Most of it comes from paths that rounding
-    /// sent another, equally likely way, and falls with more samples.
+    /// Root mean square pixel difference at this sample count. It comes mostly from paths that rounding sent a
+    /// different but equally likely way, and falls with more samples.
     pub rms: f64,
-    /// Root mean square difference that would remain with infinitely many samples; `None` if it is too small to tell.
+    /// The root mean square difference that infinitely many samples would leave; `None` if too small to tell.
     pub floor: Option<f64>,
-    /// Upper limit of the floor (two standard deviations).
+    /// Upper limit of the floor, at two standard deviations.
     pub floor_limit: f64,
 }
 
@@ -145,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_measured_against_another_reference_is_discarded() {
+    fn changed_reference_discards_runs() {
         let run = |scene: &str| Run {
             curve: Curve { scene: scene.to_owned(), ..curve("cpu", "sobol") },
             seed: 0,

@@ -36,7 +36,7 @@ fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> Line
     series.extend(floor(scene, data, times, bottom));
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
     let axis = |label: &str, limits: [f64; 2]| {
-        // A chart without points has no limits of its own.
+        // A chart without points has no limits.
         let limits = (limits[0] > 0.0 && limits[0] < limits[1]).then_some(limits);
         Axis { limits, ..Axis::new(label, Scale::Log) }
     };
@@ -66,7 +66,7 @@ fn guide(name: &str, ends: [(f64, f64); 2]) -> Series {
     Series::new(name, Look::Guide, ends)
 }
 
-/// Guides: the slope of independent samples, the target, and when each curve reaches it.
+/// Guides: the slope of independent samples, the target, and the time each curve reaches it.
 fn guides(
     times: [f64; 2],
     errors: [f64; 2],

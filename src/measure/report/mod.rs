@@ -36,22 +36,19 @@ use summary::Findings;
 /// Samples per pixel of the films that show the effect of rounding.
 const ROUNDING_SAMPLES: u64 = 256;
 
-/// Expected seconds for a reference and the rounding of a scene, for the progress bar.
+/// Expected seconds for a scene's reference and rounding, for the progress bar.
 const EXPECTED_SECONDS: f64 = 40.0;
 
-/// Largest `report.json` that is read, bytes.
+/// Largest `report.json` read, bytes.
 const REPORT_LIMIT: u64 = 64 << 20;
 
-/// Measures everything and writes the report to its directory. Results of an earlier, interrupted report with the
-/// same settings are used again.
-///
-/// # Errors
-/// [`Failure::Input`] if nothing was rendered, [`Failure::Run`] otherwise.
+/// Measures everything and writes the report to its directory, reusing results of an interrupted report with the same
+/// settings. [`Failure::Input`] if nothing was rendered, [`Failure::Run`] otherwise.
 pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let mut report = Report::open(options).map_err(Failure::Input)?;
     let outcome = report.measure();
     report.progress.clear();
-    // Measured results are kept in any case.
+    // Keep the measured results even if the report failed.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
     let is_interrupted = report.interrupt.is_set();
     match outcome {
@@ -77,7 +74,7 @@ struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Checks for everything that could fail later, and reads existing results.
+    /// Checks everything that could fail later, and reads existing results.
     fn open(options: &'a ReportOptions) -> Result<Self> {
         let (scenes, reference) = (options.scenes()?, options.reference()?);
         let candidates = candidates(options)?;
@@ -98,13 +95,12 @@ impl<'a> Report<'a> {
         Ok(Report { options, scenes, reference, machine, data, candidates, interrupt, progress })
     }
 
-    /// Measures what is missing.
     fn measure(&mut self) -> Result<(), Stop> {
         let scenes = std::mem::take(&mut self.scenes);
         let references: Vec<ReferencePicture> =
             scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_, _>>()?;
         self.data.take_references(references.iter().map(|reference| reference.used.clone()).collect());
-        // The outer loop is over seeds, so that load from other programs affects all curves alike.
+        // Loop over seeds on the outside, so that load from other programs affects all curves alike.
         for seed in 0..self.options.seeds() {
             for (recipe, reference) in scenes.iter().zip(&references) {
                 for candidate in 0..self.candidates.len() {
@@ -210,7 +206,7 @@ impl<'a> Report<'a> {
     }
 }
 
-/// The candidates. The C program may be missing if it was not asked for.
+/// The C program may be missing unless it was asked for.
 fn candidates(options: &ReportOptions) -> Result<Vec<Candidate>> {
     let mut candidates = Vec::new();
     for name in options.backends() {
@@ -225,7 +221,7 @@ fn candidates(options: &ReportOptions) -> Result<Vec<Candidate>> {
     Ok(candidates)
 }
 
-/// The samplers that a candidate is measured with. The C program only has its own independent numbers.
+/// The samplers to measure a candidate with. The C program only has its own independent numbers.
 fn samplers(candidate: &Candidate, options: &ReportOptions) -> Vec<SamplerKind> {
     if candidate.is_baseline() { vec![SamplerKind::Independent] } else { options.samplers.clone() }
 }
@@ -247,7 +243,6 @@ fn settings(options: &ReportOptions, reference: &ReferenceChoice) -> Settings {
     }
 }
 
-/// Limits of a picture.
 #[derive(Clone, Copy)]
 struct Limits {
     seconds: f64,
@@ -255,8 +250,8 @@ struct Limits {
     samples: u64,
 }
 
-/// Renders 1, 2, 4 ... samples and measures each picture. The last one is the last that should be finished within the
-/// limits, but two samples are always rendered. Returns also what rendered it, and the seconds of preparing.
+/// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
+/// renders at least two. Also returns the backend's name and the preparation time in seconds.
 fn measured(
     candidate: &mut Candidate,
     job: &RenderJob,
@@ -270,7 +265,7 @@ fn measured(
     let prepare_seconds = begin.elapsed().as_secs_f64();
     let info = renderer.info();
     let about = format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads);
-    // The first use of caches, threads and memory takes longer, so it happens outside the clock.
+    // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
     let device_begin = candidate.start()?.device_time();
     let mut film = candidate.new_film(job);
@@ -279,7 +274,7 @@ fn measured(
     while samples <= limits.samples.max(2) {
         let begin = Instant::now();
         let stats = candidate.add(job, film.sample_count()..samples, &mut film, cancel)?;
-        // Starting the C program and reading its picture is no rendering.
+        // Starting the C program and reading its picture do not count as rendering.
         wall += if candidate.is_baseline() { stats.trace } else { begin.elapsed() };
         total.add(&stats);
         let device = candidate.start()?.device_time().zip(device_begin);
@@ -295,7 +290,7 @@ fn measured(
             mse_estimate: film.error().map(|error| error.rmse.powi(2)),
             rejected: total.rejected,
         });
-        // Twice the samples are assumed to take twice as long.
+        // Assumes that twice the samples take twice as long.
         if samples >= 2 && 2.0 * wall.as_secs_f64() > limits.seconds {
             break;
         }
@@ -304,10 +299,7 @@ fn measured(
     Ok((about, prepare_seconds, points))
 }
 
-/// Parses the measurements in the text of a `report.json`.
-///
-/// # Errors
-/// What is wrong, and where.
+/// Parses a `report.json`.
 pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
     serde_json::from_slice(json)
 }
@@ -317,7 +309,7 @@ pub fn chart(data: &Data, target: f64) -> chart::Figure {
     figure::figure(data, &curves(data, &[target]), target)
 }
 
-/// The measurements in `path`, if they were made with the same settings.
+/// The measurements in `path`, if made with the same settings.
 fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
     let data = parse(&files::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
     (data.schema == SCHEMA && data.settings == *settings).then_some(data)
@@ -351,20 +343,19 @@ mod tests {
         })
     }
 
-    /// A small picture.
     pub fn small() -> Recipe {
         let mut recipe = Recipe::find("metals").unwrap();
         (recipe.settings.width, recipe.settings.height) = (16, 9);
         recipe
     }
 
-    /// One thread of the CPU, which panics after so many tiles.
+    /// One CPU thread, which panics after this many tiles.
     pub fn cpu(panics_after: Option<u64>) -> BackendChoice {
         BackendChoice::Cpu(CpuOptions { threads: Some(1), panics_after, ..CpuOptions::default() })
     }
 
     #[test]
-    fn each_point_is_measured_on_the_samples_so_far_until_a_limit() {
+    fn points_accumulate_until_limit() {
         let go_on = AtomicBool::new(false);
         let recipe = small();
         let job = job(&recipe, SamplerKind::Sobol, 3, true).unwrap();
@@ -392,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_goes_on_only_with_the_same_settings() {
+    fn resumes_only_with_same_settings() {
         let at = tempfile::tempdir().unwrap();
         let path = at.path().join("report.json");
         let data = data();

@@ -1,4 +1,4 @@
-//! The reference pictures against which errors are measured, and the errors.
+//! Reference pictures, and the errors measured against them.
 
 use super::data::ReferenceUsed;
 use crate::film::{Description, Film, checkpoint, key};
@@ -13,18 +13,17 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Seed of the references. No picture of a report uses it, so none shares random numbers with its reference.
+/// Seed of the references. No measured picture uses it, so none shares random numbers with its reference.
 const SEED: u32 = 0x5EED_0000;
 
-/// A seed to recommend for a reference film.
+/// Seed to recommend for a reference film.
 const FREE_SEED: u32 = 900;
 
-/// Duration of a pass of a reference; progress is shown and Ctrl-C is noticed between passes.
+/// Duration of a reference's pass, between updates of progress and checks for Ctrl-C.
 const PASS: Duration = Duration::from_millis(500);
 
-/// A picture relative to which errors are measured.
+/// A picture that errors are measured against.
 pub struct ReferencePicture {
-    /// Its entry in the report.
     pub used: ReferenceUsed,
     means: Vec<[f64; 3]>,
     appearance: Appearance,
@@ -33,7 +32,7 @@ pub struct ReferencePicture {
     height: u32,
 }
 
-/// The errors of a picture: see the fields of the same names of [`super::data::Measured`].
+/// See the fields of [`super::data::Measured`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     pub mse: f64,
@@ -42,10 +41,7 @@ pub struct Errors {
 }
 
 impl ReferencePicture {
-    /// Uses a film as the reference of the scene `scene`.
-    ///
-    /// # Errors
-    /// If the film has no estimate of its own error.
+    /// Uses a film as the reference of a scene. Fails if the film has no error estimate.
     pub fn of_film(scene: &str, about: &str, film: &Film, transfer: Transfer) -> Result<Self> {
         let Some(own) = film.error() else {
             bail!(
@@ -72,7 +68,7 @@ impl ReferencePicture {
         })
     }
 
-    /// The errors of a picture of the same size; the means are linear RGB, row by row from the top.
+    /// The errors of a picture of equal size, from its pixel means: linear RGB, row by row from the top.
     pub fn errors(&self, means: &[[f64; 3]]) -> Errors {
         let (mut squares, mut relative) = (0.0, 0.0);
         for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
@@ -90,12 +86,11 @@ impl ReferencePicture {
     }
 }
 
-/// The mean of each pixel of a film, linear RGB, row by row from the top.
+/// Pixel means of a film: linear RGB, row by row from the top.
 pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
     (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
-/// The picture as a display shows it.
 fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -> Appearance {
     let shown: Vec<[f64; 3]> = means
         .iter()
@@ -108,23 +103,21 @@ fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -
     Appearance::of(width as usize, &shown)
 }
 
-/// The recipe of the reference for a scene.
+/// The recipe of a scene's reference.
 fn recipe_of(recipe: &Recipe) -> Recipe {
     let settings =
         RenderSettings { seed: SEED, sampler: SamplerKind::Sobol, estimate_error: true, ..recipe.settings };
     Recipe { settings, ..recipe.clone() }
 }
 
-/// Reads an existing film as the reference of a scene, whose measured pictures have these samplers, each with the seeds
-/// from 0 up to `seeds`.
+/// Reads an existing film as the reference of a scene measured with these samplers and the seeds `0 .. seeds`.
 ///
-/// # Errors
-/// If it is the film of another picture, or has the random numbers of a measured one.
+/// Fails if the film shows a different picture or shares random numbers with a measured one.
 pub fn read(path: &Path, recipe: &Recipe, samplers: &[SamplerKind], seeds: u32) -> Result<ReferencePicture> {
     let (theirs, read) = saved::open_film(path)?;
     let RenderSettings { seed, sampler, estimate_error, .. } = *theirs.settings();
     let mine = recipe_of(recipe).job()?;
-    // Everything but the random numbers must be the same.
+    // Everything but the random numbers must match.
     let settings = RenderSettings { seed, sampler, estimate_error, ..*mine.settings() };
     if mine.seen_by(*mine.camera(), settings)? != theirs {
         bail!(
@@ -149,12 +142,11 @@ pub fn read(path: &Path, recipe: &Recipe, samplers: &[SamplerKind], seeds: u32) 
     ReferencePicture::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
 }
 
-/// Renders the reference, or continues the part of it in `path`. `go_on` receives the fraction that is done; if it
-/// returns false, the result is `None` and the film is kept.
+/// Renders the reference, or continues the part of it in `path`. `go_on` receives the share done; if it returns false,
+/// the result is `None` and the film is kept.
 ///
-/// # Errors
-/// If the renderer fails, in which case the film is kept unless it is spoiled; if `path` is something that cannot be
-/// read as a film; or if the film cannot be written.
+/// Fails if the renderer fails (keeping the film unless it is spoiled), if `path` holds something other than a film, or
+/// if the film cannot be written.
 pub fn make(
     renderer: &mut dyn Renderer,
     path: &Path,
@@ -197,10 +189,8 @@ pub fn make(
     ReferencePicture::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
 }
 
-/// The film in `path`, if there is one of this job and backend.
-///
-/// # Errors
-/// If something else is there that cannot be read as a film: it might be worth hours, so it is not replaced.
+/// The film in `path`, if it is of this job and backend. Anything unreadable there is an error and is not replaced,
+/// because it may be worth hours.
 fn kept(path: &Path, job: &RenderJob, about: &str) -> Result<Option<Film>> {
     if path.symlink_metadata().is_err_and(|error| error.kind() == std::io::ErrorKind::NotFound) {
         return Ok(None);
@@ -228,14 +218,13 @@ mod tests {
         (directory, path)
     }
 
-    /// Renders a reference of the small picture.
     fn made(path: &Path, choice: &BackendChoice, samples: u64) -> Result<ReferencePicture> {
         let mut renderer = backends::create(choice).unwrap();
         make(renderer.as_mut(), path, &small(), samples, |_| true).map(Option::unwrap)
     }
 
     #[test]
-    fn only_a_film_of_the_same_paths_is_a_reference() {
+    fn reference_needs_same_paths() {
         let (_directory, path) = place();
         let recipe = small();
         let made = made(&path, &cpu(None), 2).unwrap();
@@ -259,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_with_the_random_numbers_of_a_measured_picture_is_no_reference() {
+    fn reference_needs_independent_samples() {
         use SamplerKind::{Independent, Sobol};
         let (_directory, path) = place();
         let recipe = small();
@@ -283,28 +272,28 @@ mod tests {
         }
     }
 
-    /// Every error is that of the reference and of the picture together, as the two are independent.
+    /// The measured error combines those of reference and picture, which are independent.
     #[test]
-    fn errors_are_means_without_the_error_of_the_reference() {
+    fn errors_exclude_reference_error() {
         let mut film = Film::new(16, 9, 2);
         for (half, radiance) in film.halves_mut().iter_mut().zip([0.25, 0.75]) {
             half.iter_mut().for_each(|sum| sum.add(fixed_point([radiance; 3]).unwrap()));
         }
         film.record(0..2, 0).unwrap();
         let reference = ReferencePicture::of_film("grey", "", &film, Transfer::Linear).unwrap();
-        // Its mean is 0.5, and its error a quarter of the squared difference of the halves.
+        // The mean is 0.5, and the error a quarter of the halves' squared difference.
         let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
         assert!(near(reference.used.mse, 0.0625) && near(reference.used.rel_mse, 0.0625 / 0.26));
         let errors = reference.errors(&[[1.0; 3]; 16 * 9]);
         assert!(near(errors.mse, 0.25 - 0.0625), "{errors:?}");
         assert!(near(errors.rel_mse, (0.25 - 0.0625) / 0.26) && errors.flip > 0.0, "{errors:?}");
-        // A picture that is nearer than the reference can be has a negative error.
+        // A picture closer than the reference can be has a negative error.
         let errors = reference.errors(&film_means(&film));
         assert!(near(errors.mse, -0.0625) && errors.flip == 0.0, "{errors:?}");
     }
 
     #[test]
-    fn what_is_shown_decides_how_different_pictures_look() {
+    fn flip_uses_display_values() {
         let pixels = [[0.25; 3], [4.0; 3], [-1.0; 3], [0.25; 3]];
         let equals = |transfer: Transfer, shown: [f64; 4]| {
             let shown = shown.map(|x| [x; 3]);
@@ -317,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backend_that_fails_is_an_error_and_the_film_is_kept() {
+    fn failed_backend_keeps_film() {
         let (_directory, path) = place();
         made(&path, &cpu(None), 2).unwrap();
         let error = made(&path, &cpu(Some(0)), 8).err().unwrap();
@@ -326,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_film_is_not_replaced() {
+    fn foreign_file_is_not_replaced() {
         let (_directory, path) = place();
         std::fs::write(&path, "no film").unwrap();
         let error = made(&path, &cpu(None), 4).err().unwrap().to_string();
@@ -335,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_of_the_same_backend_is_continued_and_any_other_is_replaced() {
+    fn only_same_backend_continues_film() {
         let (_directory, path) = place();
         let exact = BackendChoice::Reference { threads: Some(1) };
         let job = recipe_of(&small()).job().unwrap();

@@ -3,10 +3,11 @@
 use super::data::Rounding;
 use crate::film::Film;
 
-/// Compares two films of the same samples; both have two halves.
+/// Compares two films of the same samples, each with two halves.
 ///
-/// A difference has two parts: the systematic effect of rounding, and noise from paths that rounding sent another
-/// way. The noise is independent in the two halves, so the mean product of the halves' differences estimates the
+/// Their difference has two parts: the systematic effect of rounding, and noise from paths that rounding sent another
+/// way. The noise is independent in the two halves, so the mean product of the halves' differences estimates the square
+/// of the systematic part.
 /// square of the systematic part.
 pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Rounding {
     let scale = [0, 1].map(|half| 1.0 / film.half_sample_count(half) as f64);
@@ -25,7 +26,7 @@ pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Roundi
             product += a * b;
         }
         products += product;
-        // The channels of a pixel are correlated: only pixels count as independent.
+        // A pixel's channels are correlated, so only pixels count as independent.
         product_squares += product * product;
     }
     let values = (3 * pixels) as f64;
@@ -47,8 +48,7 @@ mod tests {
     use super::*;
     use crate::film::fixed_point;
 
-    /// Three samples per pixel, two in the first half and one in the second. In sixteenths, the mean of a half is 8 and
-    /// what `more` says of it.
+    /// Two samples per pixel in the first half and one in the second. In sixteenths, each half's mean is 8 plus `more`.
     fn uneven(more: &[[[f64; 3]; 2]]) -> Film {
         let mut film = Film::new(more.len() as u32, 1, 2);
         for (pixel, halves) in more.iter().enumerate() {
@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn rounding_is_worked_out_by_hand() {
+    fn rounding_matches_hand_calculation() {
         let pixels = [[[1.0, 2.0, 3.0], [3.0, -2.0, 1.0]], [[-1.0, 0.0, 2.0], [1.0, 4.0, 2.0]]];
         let of = |pixels: &[[[f64; 3]; 2]]| {
             rounding("a scene", "a backend", &uneven(pixels), &uneven(&vec![[[0.0; 3]; 2]; pixels.len()]))
@@ -75,14 +75,14 @@ mod tests {
         );
         // Half the sums are 2, 0, 2 and 0, 2, 2.
         assert!(close(found.bias, 8.0 / 6.0) && close(found.rms, (16.0_f64 / 6.0).sqrt()), "{found:?}");
-        // The products of the pixels sum to 2 and 3, so they are 5/6 on average, with a deviation of the root of 13 over 6.
+        // The products of the pixels sum to 2 and 3, so their mean is 5/6 with a deviation of sqrt(13) / 6.
         let limit = (5.0_f64 / 6.0 + 2.0 * 13.0_f64.sqrt() / 6.0).sqrt();
         assert!(found.floor.is_none() && close(found.floor_limit, limit), "{found:?}");
         // Nine pixels of 2 each: 2/3 on average, with a deviation of 6/27.
         let found = of(&[pixels[0]; 9]);
         assert!(close(found.floor.unwrap(), (2.0_f64 / 3.0).sqrt()), "{found:?}");
         assert!(close(found.floor_limit, (2.0_f64 / 3.0 + 4.0 / 9.0).sqrt()), "{found:?}");
-        // A mean product below 0 counts as 0 for the limit: here it is -1, with a deviation of 1.
+        // A negative mean product counts as 0 for the limit: here it is -1, with a deviation of 1.
         let found = of(&[[[1.0; 3], [-1.0; 3]]]);
         assert!(found.floor.is_none() && close(found.floor_limit, 2.0_f64.sqrt()), "{found:?}");
     }

@@ -1,4 +1,4 @@
-//! What follows from the measurements: curves, comparisons of the samplers, and whether the error estimates are accurate.
+//! What the measurements show: curves, comparisons of samplers, and the accuracy of error estimates.
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::numbers::statistics::fit::{Crossing, Point, PowerLaw, time_to};
@@ -6,21 +6,20 @@ use crate::numbers::statistics::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// From this many samples on, slopes are fitted and estimates checked: smaller pictures finish before all threads are
-/// at work, and no stop condition uses their estimates.
+/// Slopes and estimates are evaluated from this many samples on: smaller pictures finish before all threads are busy,
+/// and no stop condition uses their estimates.
 const FROM_SAMPLES: u64 = 16;
 
-/// An estimate counts as accurate if its ratio to the true error differs from 1 by at most this.
+/// An estimate is accurate if its ratio to the true error differs from 1 by at most this.
 pub const TOLERANCE: f64 = 0.05;
 
-/// Everything that a report shows. Its JSON leaves out what other programs derive themselves.
+/// Everything a report shows. The JSON leaves out what readers can derive.
 #[derive(Serialize)]
 pub struct Findings<'a> {
     #[serde(flatten)]
     pub data: &'a Data,
     #[serde(skip)]
     pub curves: Vec<CurveSummary>,
-    /// Target errors.
     #[serde(skip)]
     pub targets: &'a [f64],
     pub calibration: Vec<Calibration>,
@@ -35,16 +34,16 @@ impl<'a> Findings<'a> {
     }
 }
 
-/// The pictures of a curve at one number of samples.
+/// The pictures of a curve at one sample count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePoint {
     /// Samples per pixel.
     pub samples: u64,
-    /// Median seconds of tracing.
+    /// Median tracing time.
     pub trace_seconds: f64,
-    /// Median seconds of tracing and adding to the film.
+    /// Median time of tracing and adding to the film.
     pub wall_seconds: f64,
-    /// Median seconds on the device's own clock; `None` if it has none.
+    /// Median time on the device's own clock; `None` if it has none.
     pub device_seconds: Option<f64>,
     /// Square root of the mean squared error over all pictures; 0 if they are better than the reference.
     pub rmse: f64,
@@ -54,27 +53,26 @@ pub struct CurvePoint {
     pub rel_mse: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// Square root of the ratio of the mean estimated squared error to the true one; `None` if either is missing.
+    /// Square root of the mean estimated squared error over the true one; `None` if either is missing.
     pub estimate_ratio: Option<f64>,
 }
 
-/// A curve of the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSummary {
     pub curve: Curve,
     /// Full name of the backend.
     pub about: String,
-    /// Ordered by the number of samples.
+    /// By rising sample count.
     pub points: Vec<CurvePoint>,
-    /// Exponent of the seconds in the RMSE, and its standard error.
+    /// Exponent of time in the RMSE, and its standard error.
     pub slope: Option<[f64; 2]>,
-    /// `1 / (MSE seconds)` at the last point that has an error; NaN if there is none.
+    /// `1 / (MSE seconds)` at the last point with an error; NaN without one.
     pub efficiency: f64,
-    /// Seconds until each target is reached.
+    /// Time to each target.
     pub times: Vec<Option<Crossing>>,
 }
 
-/// All curves that have runs, in the order of their first run, with the times until the errors in `targets` are reached.
+/// All curves with runs, in order of their first run, with the times to the errors in `targets`.
 pub fn curves(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
     let keys = distinct(data.runs.iter().map(|run| &run.curve)).into_iter();
     keys.map(|curve| {
@@ -84,7 +82,7 @@ pub fn curves(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
     .collect()
 }
 
-/// Without repetitions, in the order of the first.
+/// Removes duplicates, keeping the first of each.
 pub fn distinct<T: PartialEq>(values: impl Iterator<Item = T>) -> Vec<T> {
     values.fold(Vec::new(), |mut found, value| {
         if !found.contains(&value) {
@@ -100,11 +98,11 @@ impl CurveSummary {
         for point in runs.iter().flat_map(|run| &run.points) {
             by_samples.entry(point.samples).or_default().push(point);
         }
-        // If noise of the machine ended some runs early, the longer runs alone do not represent the curve.
+        // Where timing noise ended some runs early, the longer ones alone do not represent the curve.
         by_samples.retain(|_, points| 2 * points.len() > runs.len());
         let points: Vec<CurvePoint> =
             by_samples.into_iter().map(|(samples, points)| curve_point(samples, &points)).collect();
-        // The error of a picture that is better than its reference is unknown.
+        // The error of a picture better than its reference is unknown.
         let known = || points.iter().filter(|p| p.rmse > 0.0);
         let errors: Vec<Point> = known().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
         let first = known().position(|p| p.samples >= FROM_SAMPLES).unwrap_or(0);
@@ -118,7 +116,7 @@ impl CurveSummary {
         }
     }
 
-    /// Number of samples at which its error would be `error`.
+    /// Number of samples at which the error reaches `error`.
     pub fn samples_to(&self, error: f64) -> Option<f64> {
         let known = self.points.iter().filter(|p| p.rmse > 0.0);
         let points: Vec<Point> = known.map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
@@ -146,20 +144,19 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     }
 }
 
-/// Compares the samplers on one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SamplerRatio {
     pub scene: String,
     pub backend: String,
     /// Samples per pixel.
     pub samples: u64,
-    /// Squared error of independent samples relative to that of Sobol points.
+    /// Squared error of independent samples over that of Sobol points.
     pub at_equal_samples: f64,
     /// The same at equal time: how many times as long independent samples take.
     pub at_equal_time: f64,
 }
 
-/// Compares `sobol` with `independent` at every number of samples that both have.
+/// Compares `sobol` with `independent` at every sample count that both have.
 pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
     let mut ratios = Vec::new();
     for sobol in curves.iter().filter(|c| c.curve.sampler == "sobol") {
@@ -181,14 +178,13 @@ pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
     ratios
 }
 
-/// Estimated and true errors of a curve's pictures at one number of samples.
+/// Estimated and true errors of a curve's pictures at one sample count.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
     #[serde(flatten)]
     pub curve: Curve,
     /// Samples per pixel.
     pub samples: u64,
-    /// Number of pictures.
     pub seeds: usize,
     /// Square root of the mean estimated squared error.
     pub predicted_rmse: f64,
@@ -201,7 +197,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Of pairs of an estimated and a true squared error.
+    /// `pairs` holds estimated and true squared errors.
     fn of(curve: &Curve, samples: u64, pairs: &[[f64; 2]]) -> Option<Self> {
         let count = pairs.len() as f64;
         let [predicted, actual] = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>());
@@ -221,7 +217,7 @@ impl Calibration {
     }
 }
 
-/// One entry for each curve with error estimates and each number of samples from [`FROM_SAMPLES`] on.
+/// One entry per curve with error estimates and sample count from [`FROM_SAMPLES`] on.
 pub fn calibration(data: &Data) -> Vec<Calibration> {
     let mut pairs: BTreeMap<(&Curve, u64), Vec<[f64; 2]>> = BTreeMap::new();
     for run in &data.runs {
@@ -239,10 +235,10 @@ mod tests {
     use super::super::tests::{curve, data};
     use super::*;
 
-    /// The runs of a curve whose squared error is `mse / samples`, at `seconds` per sample.
+    /// Runs with a squared error of `mse / samples`, at `seconds` per sample.
     fn runs(backend: &str, sampler: &str, mse: f64, seconds: f64) -> Vec<Run> {
         let point = |seed: u32, samples: u64| {
-            // Two seeds are better than the mean, and two are worse.
+            // Two seeds are better than the mean, two are worse.
             let mse = mse / samples as f64 * if seed < 2 { 0.5 } else { 1.5 };
             let seconds = seconds * samples as f64;
             Measured {
@@ -272,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_has_its_slope_its_times_and_its_spread() {
+    fn curve_slope_times_and_spread() {
         let found = one(runs("cpu", "sobol", 0.04, 0.01), &[0.01, 0.001]);
         let last = found.points.last().unwrap();
         assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12, "{last:?}");
@@ -288,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_is_better_than_the_reference_has_no_error_to_go_by() {
+    fn picture_better_than_reference_has_no_error() {
         let mut better = runs("cpu", "sobol", 0.04, 0.01);
         better.iter_mut().for_each(|run| run.points[8].mse = -1e-6);
         let found = one(better, &[0.01]);
@@ -299,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_ends_where_most_of_its_pictures_end() {
+    fn curve_ends_with_most_pictures() {
         let mut some = runs("cpu", "sobol", 1.0, 1.0);
         some[0].points.truncate(5);
         some[1].points.truncate(3);
@@ -317,7 +313,7 @@ mod tests {
             assert!((row.actual_rmse - (0.04 / row.samples as f64).sqrt()).abs() < 1e-12, "{row:?}");
         }
         let key = curve("cpu", "sobol");
-        // Without one of two pairs, the ratios are 2 and 1/2: their deviation is 3/4.
+        // Leaving out either of two pairs gives ratios of 2 and 1/2, so their deviation is 3/4.
         let two = Calibration::of(&key, 16, &[[4.0, 1.0], [1.0, 4.0]]).unwrap();
         assert!((two.ratio - 1.0).abs() < 1e-12 && (two.deviation - 0.75).abs() < 1e-12, "{two:?}");
         assert_eq!(Calibration::of(&key, 16, &[[1.0, 1.0]]), None);

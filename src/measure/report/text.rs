@@ -5,10 +5,10 @@ use super::data::{Data, Measured};
 use super::summary::{Calibration, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
 use crate::numbers::statistics::fit::Crossing;
 
-/// Backends that others are compared with, if they were measured.
+/// Backends to compare others with, if measured.
 const BASES: [&str; 2] = ["c89", "scalar"];
 
-/// The report as Markdown. `command` is the command that made it.
+/// The report as Markdown. `command` made the report.
 pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
     let Findings { data, curves, targets, calibration: calibrations, sampler_ratios } = findings;
     let settings = &data.settings;
@@ -83,7 +83,7 @@ fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
     })
 }
 
-/// The points of a curve, with one row per number of samples.
+/// One row per sample count of a curve.
 fn points(curve: &CurveSummary) -> String {
     let heads = [
         "samples",
@@ -205,7 +205,7 @@ fn rounding(data: &Data, curves: &[CurveSummary]) -> String {
     )
 }
 
-/// A number with three significant digits.
+/// Three significant digits.
 fn number(x: f64) -> String {
     match x.abs() {
         size if !size.is_finite() => "-".to_owned(),
@@ -214,7 +214,7 @@ fn number(x: f64) -> String {
     }
 }
 
-/// All measurements, one line for each picture and number of samples.
+/// All measurements, one line per picture and sample count.
 pub fn csv(data: &Data) -> String {
     let mut text = String::from(
         "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn backends_are_compared_with_the_best_sampler_of_the_baseline() {
+    fn ratio_uses_best_baseline_sampler() {
         let curves = [
             curve("c89", "independent", 40.0),
             curve("c89", "sobol", 20.0),

@@ -1,4 +1,4 @@
-//! A case of the suite: a scene, what is stiff about it, and the expected result.
+//! A stress case: a scene, what makes it hard, and the expected result.
 
 use crate::job::recipe::{Recipe, plain_name};
 use crate::scene::{Material, Scene};
@@ -6,14 +6,14 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
-/// What the cases of a family have in common.
+/// What a family's cases share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Family {
     /// First part of the ids of its cases.
     pub id: &'static str,
     /// What the family tests, as a heading.
     pub title: &'static str,
-    /// What can be learnt from it, in a sentence or two.
+    /// What it teaches, in a sentence or two.
     pub lesson: &'static str,
 }
 
@@ -22,11 +22,11 @@ pub struct Family {
 pub enum Expected {
     /// Every sample has this radiance, RGB: a closed form without noise.
     Every([f64; 3]),
-    /// The mean over pixels and channels is known: a closed form with noise.
+    /// The mean over pixels and channels: a closed form with noise.
     Mean(f64),
-    /// Sample by sample the same as another scene on the same backend.
+    /// Same samples as another scene on the same backend.
     Same(Box<Recipe>),
-    /// Sample by sample the same as the `f64` reference.
+    /// Same samples as the `f64` reference.
     Reference,
 }
 
@@ -42,38 +42,36 @@ impl fmt::Display for Expected {
     }
 }
 
-/// How the window shows a case.
+/// How the window presents a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watch {
-    /// Its name in the menu.
+    /// Title in the menu.
     pub title: &'static str,
     /// What to look for, in a sentence or two.
     pub look_for: &'static str,
 }
 
-/// Size of the picture of a case in the window, pixels.
+/// Size of a case's picture in the window, pixels.
 const SHOWN_SIZE: [u32; 2] = [600, 400];
 
-/// A scene with its expected result.
 #[derive(Clone)]
 pub struct Case {
     /// The family's id and a name within the family: `copies/110`.
     pub id: String,
     pub family: &'static Family,
-    /// What is stiff about it, in a sentence.
+    /// What makes the scene hard, in a sentence.
     pub stiff: String,
-    /// The picture, with its number of samples per pixel.
     pub recipe: Recipe,
-    /// Typical length of what is near the eye, in scene units; the distant spheres are a thousand times as far away.
+    /// Typical length near the eye, scene units; the distant spheres are a thousand times as far away.
     pub unit: f64,
     pub expected: Expected,
-    /// The derivation of what is expected, in a sentence.
+    /// How the expected result is derived, in a sentence.
     pub why: &'static str,
-    /// By how much the mean may differ apart from noise, linear radiance.
+    /// Allowed difference of the mean apart from noise, linear radiance.
     pub tolerance: f64,
     /// A similar scene without the difficulty, to compare times with.
     pub tame: Option<Recipe>,
-    /// How the window shows it; `None` if there is nothing to look at.
+    /// How the window shows it; `None` if there is nothing to see.
     pub watch: Option<Watch>,
     /// Whether `cargo test` runs it.
     pub is_quick: bool,
@@ -93,10 +91,10 @@ impl PartialEq for Case {
 
 impl Eq for Case {}
 
-/// From this number of spheres on every backend builds a hierarchy anyway, so distant spheres would change nothing.
+/// From this many spheres on, every backend builds a hierarchy anyway, so distant ones change nothing.
 const HIERARCHY_SPHERES: usize = 24;
 
-/// Whether the scene gets distant spheres, which switch the hierarchy on.
+/// Whether to add distant spheres, which switch the hierarchy on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     Plain,
@@ -104,7 +102,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// Its name in the table.
+    /// Name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Form::Plain => "plain",
@@ -114,7 +112,7 @@ impl Form {
 }
 
 impl Case {
-    /// A case that expects the result of `f64`; the builder methods below change that.
+    /// Expects the `f64` reference's result unless a builder method below changes that.
     pub fn new(
         family: &'static Family,
         name: impl fmt::Display,
@@ -137,61 +135,59 @@ impl Case {
         }
     }
 
-    /// Sets the expected result.
     #[must_use]
     pub fn expect(self, expected: Expected, why: &'static str, tolerance: f64) -> Self {
         Case { expected, why, tolerance, ..self }
     }
 
-    /// Expects every sample to be grey with this radiance.
+    /// Expects every sample to be this grey.
     #[must_use]
     pub fn every(self, value: f64, why: &'static str) -> Self {
         self.expect(Expected::Every([value; 3]), why, 1e-6)
     }
 
-    /// Compares its time with that of `tame`.
+    /// Compares the time with that of `tame`.
     #[must_use]
     pub fn beside(self, tame: Recipe) -> Self {
         Case { tame: Some(tame), ..self }
     }
 
-    /// Shows it in the window.
+    /// Shows the case in the window.
     #[must_use]
     pub fn watched(self, title: &'static str, look_for: &'static str) -> Self {
         Case { watch: Some(Watch { title, look_for }), ..self }
     }
 
-    /// Includes it in `cargo test`.
+    /// Includes the case in `cargo test`.
     #[must_use]
     pub fn quick(self) -> Self {
         self.quick_if(true)
     }
 
-    /// Includes it in `cargo test` on a condition.
     #[must_use]
     pub fn quick_if(self, is_quick: bool) -> Self {
         Case { is_quick, ..self }
     }
 
-    /// Sets the typical length of what is near the eye.
+    /// Sets the typical length near the eye.
     #[must_use]
     pub fn of_unit(self, unit: f64) -> Self {
         Case { unit, ..self }
     }
 
-    /// The picture at the window's size, with a name that can be a file name.
+    /// The picture at the window's size, with a name that is a valid file name.
     pub fn shown(&self) -> Recipe {
         let mut recipe = Recipe { name: plain_name(&self.id), samples_per_pixel: 256, ..self.recipe.clone() };
         [recipe.settings.width, recipe.settings.height] = SHOWN_SIZE;
         recipe
     }
 
-    /// Its title in menus, or its id if it is not shown.
+    /// The menu title, or the id of a case the window does not show.
     pub fn title(&self) -> &str {
         self.watch.map_or(&self.id, |watch| watch.title)
     }
 
-    /// The forms in which it is rendered.
+    /// The forms to render.
     pub fn forms(&self) -> &'static [Form] {
         if self.recipe.scene.spheres.len() < HIERARCHY_SPHERES {
             &[Form::Plain, Form::WithFar]
@@ -200,7 +196,6 @@ impl Case {
         }
     }
 
-    /// The picture in one of its forms.
     pub fn recipe_in(&self, form: Form) -> Recipe {
         match form {
             Form::Plain => self.recipe.clone(),
@@ -209,20 +204,19 @@ impl Case {
     }
 }
 
-/// Number of distant spheres.
 const FAR_COUNT: usize = 40;
 
-/// Their distance from the eye, in units of the scene.
+/// Distance from the eye, in the case's units.
 const FAR_DISTANCE: f64 = 1000.0;
 
-/// Their radius, in units of the scene: together they cover a billionth of the sky.
+/// Radius, in the case's units: together they cover a billionth of the sky.
 const FAR_RADIUS: f64 = 0.01;
 
-/// The scene with forty distant spheres, which switch the hierarchy on and are too small to be seen. They reflect all
-/// light, so a closed room stays dark and a white world white.
+/// Adds forty distant spheres, which switch the hierarchy on and are too small to be visible. They reflect all light,
+/// so a closed room stays dark and a white world white.
 pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
     let mut scene = Scene::clone(&recipe.scene);
-    // No scene that is rendered here has a material of this name.
+    // No stress scene has a material of this name.
     let material = scene.add_material("far".to_owned(), Material::Lambertian { albedo: DVec3::ONE });
     for index in 0..FAR_COUNT {
         // Evenly distributed directions, by the golden angle.
@@ -244,7 +238,7 @@ mod tests {
     const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
 
     #[test]
-    fn scenes_without_a_hierarchy_are_also_rendered_with_one() {
+    fn small_scenes_also_get_hierarchy() {
         for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
             let mut recipe = one_ball();
             let scene = Arc::make_mut(&mut recipe.scene);
@@ -256,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn far_spheres_surround_the_eye_and_cover_nothing() {
+    fn far_spheres_are_invisible() {
         let recipe = Recipe::builtin("two-spheres").unwrap();
         let with = with_far_spheres(&recipe, 2.0);
         let added = &with.scene.spheres[recipe.scene.spheres.len()..];

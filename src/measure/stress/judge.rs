@@ -1,4 +1,4 @@
-//! Measures films and judges what was measured by what was expected.
+//! Measures films and judges them by the expected result.
 
 use crate::film::{Film, PixelSum};
 use serde::Serialize;
@@ -6,17 +6,16 @@ use serde::Serialize;
 /// Standard errors by which noise may move a mean; one mean in sixteen thousand moves further.
 const DEVIATIONS: f64 = 4.0;
 
-/// Pictures of the same samples differ by less than this fraction of their noise. Pictures of unrelated samples differ
-/// by 1.4 times their noise.
+/// Pictures of the same samples differ by less than this share of their noise, unrelated ones by 1.4 times their noise.
 const PAIRED_SHARE: f64 = 0.5;
 
-/// Difference of the pixels that rounding may cause where there is no noise.
+/// Pixel difference that rounding may cause without noise.
 const PAIRED_FLOOR: f64 = 1e-4;
 
-/// A picture is slow if it takes this many times as long as the tame twin and [`SLOW_SECONDS`] longer.
+/// A picture is slow if it takes this many times as long as its tame twin and [`SLOW_SECONDS`] longer.
 const SLOW_RATIO: f64 = 8.0;
 
-/// Extra seconds from which a slow picture matters.
+/// Extra seconds from which slowness matters.
 const SLOW_SECONDS: f64 = 1.0;
 
 /// The difference of two films of the same samples.
@@ -24,7 +23,7 @@ const SLOW_SECONDS: f64 = 1.0;
 pub struct Paired {
     /// Mean difference over pixels and channels, linear radiance.
     pub bias: f64,
-    /// Its standard error, from the spread over the pixels.
+    /// Standard error of the bias, from the spread over the pixels.
     pub bias_deviation: f64,
     /// Root mean square of the pixels' differences, linear radiance.
     pub rms: f64,
@@ -48,26 +47,25 @@ impl Paired {
         let variance = (sum_of_squares / count - bias * bias).max(0.0);
         Paired {
             bias,
-            // A single pixel has no spread: its difference is used instead.
+            // A single pixel has no spread, so use its difference.
             bias_deviation: if count > 1.0 { (variance / (count - 1.0)).sqrt() } else { bias.abs() },
             rms: (squares / count).sqrt(),
         }
     }
 }
 
-/// The mean of a film and its noise.
+/// A film's mean and noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Level {
     /// Mean over pixels, linear RGB.
     pub mean: [f64; 3],
-    /// Standard error of the mean over pixels and channels, from the film's halves; 0 if it has only one.
+    /// Standard error of the mean over pixels and channels, from the film's halves; 0 with a single half.
     pub deviation: f64,
-    /// Root mean square of the pixels' noise, from the film's halves; 0 if it has only one.
+    /// Root mean square of the pixels' noise, from the film's halves; 0 with a single half.
     pub noise: f64,
 }
 
 impl Level {
-    /// Measures a film.
     pub fn of(film: &Film) -> Self {
         let count = pixel_count(film);
         let mut sum = [0.0; 3];
@@ -87,7 +85,7 @@ impl Level {
         }
     }
 
-    /// The mean over pixels and channels.
+    /// Mean over pixels and channels.
     pub fn grey(&self) -> f64 {
         grey(self.mean)
     }
@@ -97,7 +95,7 @@ fn grey(channels: [f64; 3]) -> f64 {
     channels.iter().sum::<f64>() / 3.0
 }
 
-/// Half the difference of the two halves' means; its square estimates the variance of the pixel.
+/// Half the difference of the halves' means; its square estimates the pixel's variance.
 fn half_difference(film: &Film, pixel: usize) -> [f64; 3] {
     let [a, b] = film.halves() else { return [0.0; 3] };
     let mean = |half: usize, sums: &[PixelSum]| {
@@ -111,23 +109,22 @@ fn pixel_count(film: &Film) -> usize {
     film.width() as usize * film.height() as usize
 }
 
-/// The verdict on a case on one backend.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[serde(tag = "verdict", content = "reason", rename_all = "lowercase")]
 pub enum Verdict {
     #[default]
     Right,
-    /// Not as expected, but the backend warned about it and said what to do.
+    /// Wrong, but the backend warned about it and offered a remedy.
     Warned(String),
     Wrong(String),
-    /// As expected, but far slower than the tame twin.
+    /// Right, but far slower than the tame twin.
     Slow(String),
-    /// There is no picture: it was refused, the tracer failed, or it took too long.
+    /// No picture: it was refused, the tracer failed, or it took too long.
     None(String),
 }
 
 impl Verdict {
-    /// Its name in the table.
+    /// Name in the table.
     pub fn name(&self) -> &'static str {
         match self {
             Verdict::Right => "right",
@@ -149,7 +146,7 @@ impl Verdict {
         }
     }
 
-    /// Whether the result is as expected or the backend warned about it.
+    /// Whether the result is right or the backend warned about it.
     pub fn is_right(&self) -> bool {
         matches!(self, Verdict::Right | Verdict::Warned(_))
     }
@@ -166,18 +163,17 @@ impl Verdict {
     }
 }
 
-/// What a picture is compared with.
 #[derive(Clone, Copy, Debug)]
 pub enum Against {
     /// The radiance of every sample, linear RGB.
     Every([f64; 3]),
     /// The mean over pixels and channels, linear radiance.
     Mean(f64),
-    /// A picture of the same samples; the value is the difference from it.
+    /// The difference from a picture of the same samples.
     Picture(Paired),
 }
 
-/// Distance of the mean from the expected one, linear radiance; if each channel is known, that of the worst channel.
+/// Distance of the mean from the expected one, linear radiance; of the worst channel if each is known.
 pub fn offset(level: &Level, against: Against) -> f64 {
     match against {
         Against::Every(value) => {
@@ -214,7 +210,7 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
     }
 }
 
-/// Judges the time of a picture if its radiance is right.
+/// Judges a picture's time if its radiance is right.
 pub fn judge_time(verdict: Verdict, seconds: f64, tame: Option<f64>) -> Verdict {
     match (verdict, tame) {
         (Verdict::Right, Some(tame)) if seconds > SLOW_RATIO * tame && seconds > tame + SLOW_SECONDS => {
@@ -229,7 +225,7 @@ mod tests {
     use super::*;
     use crate::film::fixed_point;
 
-    /// A film in a row, of these samples; each half has the sums of its pixels in units of a sixteenth.
+    /// A film of one row; each half gives its pixels' sums in sixteenths.
     fn row(samples: u64, halves: [&[[f64; 3]]; 2]) -> Film {
         let mut film = Film::new(halves[0].len() as u32, 1, 2);
         for (half, sums) in halves.into_iter().enumerate() {
@@ -242,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_is_worked_out_by_hand() {
+    fn level_matches_hand_calculation() {
         // Two samples in the first half and one in the second.
         let film = row(3, [&[[4.0, 8.0, 12.0], [2.0; 3]], &[[5.0, 1.0, 3.0], [4.0; 3]]]);
         let level = Level::of(&film);
@@ -265,7 +261,7 @@ mod tests {
         let pixels = [[2.0; 3], [3.0; 3], [4.0; 3], [7.0; 3]];
         let film = row(2, [&pixels, &pixels]);
         let close = |x: f64, y: f64| (x - y / 16.0).abs() < 1e-6;
-        // The differences of the pixels are 1, 2, 3 and 6 sixteenths.
+        // The pixels differ by 1, 2, 3 and 6 sixteenths.
         let pair = Paired::of(&film, &exact);
         assert!(close(pair.bias, 3.0) && close(pair.bias_deviation, (3.5_f64 / 3.0).sqrt()), "{pair:?}");
         assert!(close(pair.rms, 12.5_f64.sqrt()), "{pair:?}");
@@ -276,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_channel_that_is_farthest_off_counts() {
+    fn worst_channel_counts() {
         let every = Against::Every([0.5, 0.25, 0.75]);
         for (mean, off) in [
             ([0.75, 0.5, 0.625], 0.25),
@@ -292,7 +288,7 @@ mod tests {
         }
     }
 
-    /// A little within each limit and a little beyond it.
+    /// Slightly within each limit and slightly beyond it.
     #[test]
     fn limits_lie_where_they_should() {
         let level = |deviation, noise| Level { mean: [1.0; 3], deviation, noise };

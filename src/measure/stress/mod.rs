@@ -1,8 +1,8 @@
-//! `weekender stress`: renders stiff and extreme scenes on every backend and checks the results.
+//! `weekender stress`: renders extreme scenes on every backend and checks the results.
 //!
-//! Each case states its expected result and derives it in a sentence: a closed form (a white world is 1, a closed room
-//! 0, a convex ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64`
-//! reference where `f64` has digits to spare. The window shows the cases that are worth looking at.
+//! Each case derives its expected result in a sentence: a closed form (a white world is 1, a closed room 0, a convex
+//! ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64` reference
+//! where `f64` has digits to spare. The window shows the cases worth looking at.
 
 mod case;
 pub mod families;
@@ -32,10 +32,8 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Runs the suite, prints the table and writes the files.
-///
-/// # Errors
-/// [`Failure::Input`] if nothing was run; [`Failure::Run`] otherwise.
+/// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
+/// otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     if let Some(JsonTarget::File(path)) = &options.json() {
         check_writable(path).map_err(Failure::input)?;
@@ -75,7 +73,7 @@ fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
         tracers.push(Candidate::backend(adapter.unwrap_or("gpu"), gpu));
     }
     tracers.push(Candidate::backend("f64", BackendChoice::Reference { threads: None }));
-    // A backend that is not available is reported before anything runs.
+    // Report unavailable backends before anything runs.
     for tracer in &mut tracers {
         tracer.start()?;
     }
@@ -100,7 +98,7 @@ fn suite(
         cases: Vec::new(),
     };
     let json = options.json();
-    // If the table cannot be printed, the pictures and figures are still written.
+    // Write pictures and figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_ref(), &report::head());
     for case in chosen {
         progress.at(&case.id, 0.0);

@@ -1,4 +1,4 @@
-//! Pictures of the cases, by Weekender and by the book's arithmetic, and a page that shows them side by side.
+//! A page that compares the cases' pictures by Weekender and by the book's arithmetic.
 
 use super::super::Candidate;
 use super::case::Case;
@@ -24,13 +24,11 @@ const SAMPLES: u64 = 32;
 /// Larger scenes are not rendered with the book's arithmetic, which has no hierarchy.
 const BOOK_SPHERES: usize = 5000;
 
-/// The two pictures of a case, as in the file names.
+/// A case's two pictures, as named in the files.
 const KINDS: [&str; 2] = ["ours", "book"];
 
-/// Renders the pictures of a case and writes them to `directory`.
-///
-/// # Errors
-/// If a file cannot be written. A picture that cannot be rendered is left out.
+/// Renders a case's pictures into `directory`, leaving out any that cannot be rendered. Fails if a file cannot be
+/// written.
 pub fn write_pictures(
     directory: &Path,
     case: &Case,
@@ -48,7 +46,7 @@ pub fn write_pictures(
     Ok(())
 }
 
-/// A recipe as both pictures of the page show it.
+/// The recipes of both pictures.
 fn recipes(recipe: &Recipe) -> [Option<Recipe>; 2] {
     let [width, height] = SIZE;
     let is_square = recipe.settings.width == recipe.settings.height;
@@ -62,9 +60,6 @@ fn file_name(id: &str, kind: &str) -> String {
 }
 
 /// Writes the table and the page to `directory`.
-///
-/// # Errors
-/// If a file cannot be written.
 pub fn write_pages(directory: &Path, report: &StressReport) -> Result<()> {
     write_text(&directory.join("table.md"), &report.markdown()).context("cannot write the table")?;
     let page = page(directory, report).into_string();

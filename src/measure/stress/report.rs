@@ -1,4 +1,4 @@
-//! The results of a run, as the JSON has them, and as a table.
+//! The results of a run, as JSON and as a table.
 
 use super::super::table::{counted, markdown_row, markdown_table, or_dash, text_row};
 use super::families::families;
@@ -7,15 +7,15 @@ use serde::Serialize;
 
 #[derive(Serialize)]
 pub struct StressReport {
-    /// Names of the backends that were tested.
+    /// Names of the tested backends.
     pub backends: Vec<String>,
     /// Wall time of the run.
     pub seconds: f64,
-    /// Number of cases that were to be run.
+    /// Number of cases selected.
     #[serde(skip)]
     pub chosen: usize,
     pub interrupted: bool,
-    /// The cases, in the table's order.
+    /// In the table's order.
     pub cases: Vec<CaseReport>,
 }
 
@@ -25,19 +25,19 @@ pub struct CaseReport {
     pub id: String,
     /// The family's title.
     pub family: &'static str,
-    /// What is stiff about it.
+    /// What makes it hard.
     pub stiff: String,
     /// The expected result, as in the table.
     pub expected: String,
-    /// Its derivation.
+    /// How the expected result is derived.
     pub why: &'static str,
-    /// By how much the mean may differ.
+    /// Allowed difference of the mean.
     pub tolerance: f64,
     /// Number of spheres in the scene.
     pub spheres: usize,
     /// One entry per backend and form.
     pub measured: Vec<Measured>,
-    /// The results of the book's own arithmetic.
+    /// Results of the book's own arithmetic.
     pub book: Vec<BookMeasured>,
 }
 
@@ -47,7 +47,7 @@ pub struct Measured {
     pub backend: String,
     /// "plain", or "+40" with 40 distant spheres, which switch the hierarchy on.
     pub form: &'static str,
-    /// Mean over pixels and channels; `None` if there is no picture.
+    /// Mean over pixels and channels; `None` without a picture.
     pub mean: Option<f64>,
     /// Distance of the mean from the expected one.
     pub offset: Option<f64>,
@@ -68,7 +68,7 @@ pub struct Measured {
 pub struct BookMeasured {
     /// "f32" or "f64".
     pub precision: &'static str,
-    /// Mean over pixels and channels; `None` if there is no picture.
+    /// Mean over pixels and channels; `None` without a picture.
     pub mean: Option<f64>,
     /// Distance of the mean from the expected one.
     pub offset: Option<f64>,
@@ -77,10 +77,8 @@ pub struct BookMeasured {
     pub verdict: Verdict,
 }
 
-/// Column widths of the terminal's table.
 const WIDTHS: [i32; 8] = [-30, -12, -12, -9, -18, -7, -7, -18];
 
-/// The header of the terminal's table.
 pub fn head() -> String {
     let heads =
         ["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book's f32, f64"];
@@ -93,7 +91,7 @@ impl CaseReport {
         self.measured.iter().all(|measured| measured.verdict.is_right())
     }
 
-    /// The measurement that is farthest off, among those with a picture.
+    /// The measurement farthest off, of those with a picture.
     fn worst(&self) -> Option<&Measured> {
         let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
         self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
@@ -105,18 +103,18 @@ impl CaseReport {
         all.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
     }
 
-    /// The largest ratio of the time to that of the tame twin.
+    /// The largest ratio of a time to the tame twin's.
     fn time_ratio(&self) -> Option<f64> {
         let ratios = self.measured.iter().filter_map(|m| Some(m.seconds? / m.tame_seconds?.max(1e-6)));
         ratios.max_by(f64::total_cmp)
     }
 
-    /// The measurements that are not as expected.
+    /// The measurements that are not right.
     pub fn complaints(&self) -> impl Iterator<Item = &Measured> {
         self.measured.iter().filter(|measured| measured.verdict != Verdict::Right)
     }
 
-    /// One line, followed by a line for each backend that is not right.
+    /// One line, and one more for each backend that is not right.
     pub fn text(&self) -> String {
         let worst = self.worst();
         let complaint = self.complaints().find(|m| !m.verdict.is_right()).or(self.complaints().next());
@@ -170,7 +168,7 @@ impl StressReport {
         self.cases.iter().all(CaseReport::is_right)
     }
 
-    /// One line that sums up the run.
+    /// Sums up the run in one line.
     pub fn summary(&self) -> String {
         let count = self.cases.len();
         let right = self.cases.iter().filter(|case| case.is_right()).count();
@@ -254,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_has_the_worst_of_its_backends() {
+    fn row_shows_worst_backend() {
         let offsets = [(Some(0.1), 3.0, Some(2.0)), (Some(-0.5), 8.0, Some(2.0)), (None, 9.0, None)];
         let mut found = case(offsets.map(|(offset, seconds, tame)| measured(offset, seconds, tame)).into());
         assert_eq!(found.cells(), ["1", "-5.0e-1", "-5.0e-1 (0)", "4.0x", ""]);
@@ -276,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_is_right_if_every_case_is_right_on_every_backend() {
+    fn run_is_right_if_all_cases_are() {
         let right = || case(vec![measured(Some(0.0), 1.0, None)]);
         let mut wrong = right();
         wrong.measured[0].verdict = Verdict::Wrong("off".to_owned());

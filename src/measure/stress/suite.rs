@@ -12,16 +12,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Time limit for one picture.
+/// Time limit of one picture.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// How often the time limit and the user's interrupt are checked.
+/// How often to check the time limit and the user's interrupt.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// How often a case and its tame twin are timed; the fastest of each counts.
+/// How often to time a case and its tame twin; the fastest of each counts.
 const TURNS: usize = 5;
 
-/// Time limit for these repetitions, seconds.
+/// Time limit of these repetitions, seconds.
 const TURNS_TIME: f64 = 0.6;
 
 /// The recipe with the book's own arithmetic.
@@ -29,10 +29,7 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
     Recipe { rules: Rules { surface: SurfaceRule::Book, ..recipe.rules }, ..recipe.clone() }
 }
 
-/// Traces all samples of a picture.
-///
-/// # Errors
-/// A sentence that says why there is no picture: it was refused, failed, panicked or took too long.
+/// Traces all samples of a picture. The error is a sentence: it was refused, failed, panicked or took too long.
 pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
     let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
     within_time(interrupt, |cancel| tracer.trace(&job, recipe.samples_per_pixel, cancel)).map_err(|stop| {
@@ -44,7 +41,7 @@ pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) ->
     })
 }
 
-/// Runs `work` with a flag that is set when the time limit has passed or the user interrupts.
+/// Runs `work` with a flag that is set on timeout or when the user interrupts.
 fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
     let cancel = AtomicBool::new(false);
     let begin = Instant::now();
@@ -64,7 +61,7 @@ fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -
     })
 }
 
-/// The backends under test, which are compared with the last of them, the `f64` reference.
+/// The backends under test, which are compared with the last one, the `f64` reference.
 pub struct Suite {
     tracers: Vec<Candidate>,
     /// Films of scenes that several cases share, by tracer and name.
@@ -72,12 +69,12 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// The last tracer is the reference. The first one also renders the book's arithmetic in `f32`.
+    /// The last tracer is the reference. The first also renders the book's arithmetic in `f32`.
     pub fn new(tracers: Vec<Candidate>) -> Self {
         Suite { tracers, shared: HashMap::new() }
     }
 
-    /// Names of the backends under test, the reference last.
+    /// The reference is last.
     pub fn names(&self) -> Vec<String> {
         self.tracers.iter().map(|tracer| tracer.name.clone()).collect()
     }
@@ -110,7 +107,6 @@ impl Suite {
     }
 }
 
-/// A case under way.
 struct CaseRun<'a> {
     suite: &'a mut Suite,
     case: &'a Case,
@@ -166,10 +162,10 @@ impl CaseRun<'_> {
         }
     }
 
-    /// Shortest times of the picture and its tame twin, taken in turns: other load on the machine can only add time.
+    /// Shortest times of the picture and its tame twin, taken alternately: other load on the machine can only add time.
     fn times(&mut self, tracer: usize, tame: &Recipe, first: f64) -> (f64, Option<f64>) {
         let case = self.case;
-        // The first picture may have had to wait for a kernel.
+        // The first picture may have waited for a kernel.
         let (mut least, mut least_tame, mut spent) = (first, None::<f64>, 0.0);
         for _ in 0..TURNS {
             let Ok(of_tame) = self.trace(tracer, tame) else { break };
@@ -184,7 +180,7 @@ impl CaseRun<'_> {
         (least, least_tame)
     }
 
-    /// How far a film of `tracer` is off, and the verdict.
+    /// How far a tracer's film is off, and the verdict.
     fn judge(&mut self, tracer: usize, level: &Level, film: &Film) -> (Option<f64>, Verdict) {
         let against = match &self.case.expected {
             Expected::Every(value) => Ok(Against::Every(*value)),
@@ -217,8 +213,8 @@ impl CaseRun<'_> {
         film
     }
 
-    /// The book's own arithmetic, in `f32` on the first backend and in `f64`. It is compared with our own picture of
-    /// another scene, which is right, not with the book's.
+    /// The book's own arithmetic, in `f32` on the first backend and in `f64`. Where a case expects another scene's
+    /// samples, it is compared with our picture of that scene, because the book's may be wrong, too.
     fn book(&mut self) -> Vec<BookMeasured> {
         let (recipe, reference) = (by_the_book(&self.case.recipe), self.suite.reference());
         let mut measured = Vec::new();
@@ -261,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_case_is_measured_on_every_backend_in_every_form() {
+    fn case_covers_all_backends_and_forms() {
         let (mut suite, go_on) = (real(), AtomicBool::new(false));
         let report = suite.run(find("shells/1"), &go_on);
         let who: Vec<_> = report.measured.iter().map(|m| (m.backend.as_str(), m.form)).collect();
@@ -276,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backend_that_does_not_start_or_refuses_has_no_picture_and_is_not_right() {
+    fn missing_picture_is_not_right() {
         let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
         let go_on = AtomicBool::new(false);
         let mut suite = real();
@@ -291,7 +287,7 @@ mod tests {
         assert!(reason.starts_with("refused: look_from and look_at are both"), "{reason}");
     }
 
-    /// Fills pictures with the radiance that a job has, and warns of scenes with many spheres.
+    /// Fills pictures with the radiance that the job determines, and warns of scenes with many spheres.
     struct Painter(fn(&RenderJob) -> f64, Vec<String>);
 
     impl Renderer for Painter {
@@ -345,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn each_backend_is_compared_with_its_own_picture_and_the_books_with_ours() {
+    fn same_samples_compare_per_backend() {
         let cpu = painter("cpu", |job| if job.rules().surface == SurfaceRule::Book { 0.875 } else { 0.75 });
         let exact = painter("f64", |job| if job.rules().surface == SurfaceRule::Book { 0.625 } else { 0.5 });
         assert_eq!(
@@ -362,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_is_compared_with_the_plain_picture_of_the_reference_and_warnings_excuse() {
+    fn forms_compare_with_plain_reference() {
         let cpu = painter("cpu", |_| 0.25);
         let exact = painter("f64", |job| if is_far(job) { 0.25 } else { 0.5 });
         assert_eq!(
@@ -379,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn a_renderer_that_panics_is_replaced_and_cancelling_is_noticed() {
+    fn panicking_renderer_is_replaced() {
         let go_on = AtomicBool::new(false);
         let small = sized(one_ball(), [2, 2], 4);
         let mut broken = painter("cpu", |_| panic!("on purpose"));

@@ -3,7 +3,6 @@
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-/// How values are spaced along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Equal differences have equal distances.
@@ -12,37 +11,35 @@ pub enum Scale {
     Log,
 }
 
-/// An axis of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What the axis shows, with the unit.
+    /// Quantity and unit.
     pub label: String,
-    /// How values are spaced.
     pub scale: Scale,
-    /// Smallest and largest value; with `None`, the points determine them.
+    /// Smallest and largest value; `None` fits the points.
     pub limits: Option<[f64; 2]>,
 }
 
-/// Margin beyond the outermost points, as a fraction of the axis.
+/// Margin beyond the outermost points, as a share of the axis.
 const MARGIN: f64 = 0.04;
 
 /// Approximate number of ticks per axis.
 const TICKS: f64 = 6.0;
 
-/// An axis laid out: it maps values to positions on a linear scale.
+/// A laid-out axis, which maps values to positions on a linear scale.
 #[derive(Clone)]
 pub(super) struct Ruler {
     scale: Scale,
-    /// Positions of the two ends.
+    /// Positions of the ends.
     pub range: Range<f64>,
-    /// Positions of ticks with labels.
+    /// Positions of labelled ticks.
     pub ticks: Vec<f64>,
     /// Positions of the fine grid lines.
     fine_ticks: Vec<f64>,
 }
 
 impl Axis {
-    /// An axis whose limits the points determine.
+    /// An axis fitted to the points.
     pub fn new(label: impl Into<String>, scale: Scale) -> Self {
         Axis { label: label.into(), scale, limits: None }
     }
@@ -126,7 +123,7 @@ fn linear_ticks(range: &Range<f64>) -> Vec<f64> {
     numbers.map(|number| number as f64 * step).collect()
 }
 
-/// Ticks at powers of ten or, if there are few of these, also at 2 and 5 times them; fine ticks at every digit.
+/// Ticks at powers of ten and, if these are few, at 2 and 5 times them; fine ticks at every digit.
 fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
     let at = |digits: &[u32]| -> Vec<f64> {
         (range.start.floor() as i32..=range.end.ceil() as i32)
@@ -145,7 +142,7 @@ fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
     (ticks, fine)
 }
 
-/// A number of at most seven digits, without trailing zeros.
+/// At most seven digits, without trailing zeros.
 fn label(value: f64) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) {
@@ -177,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_is_a_little_longer_than_its_values_unless_it_has_limits() {
+    fn axis_adds_margin_without_limits() {
         for (scale, limits, values, expected) in [
             (Scale::Linear, None, &[100.0, 0.0, f64::NAN, 50.0][..], [-4.0, 104.0]),
             (Scale::Log, None, &[1e3, 10.0, -5.0], [1.0 - 0.08, 3.0 + 0.08]),

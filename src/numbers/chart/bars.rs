@@ -10,9 +10,9 @@ type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType
 
 const ROW_TEXT: f64 = 15.0;
 const TITLE_TEXT: f64 = 17.0;
-/// Gap between texts and bars, points.
+/// Gap between text and bars, points.
 const GAP: f64 = 8.0;
-/// Height of a bar, as a fraction of its row.
+/// Height of a bar as a share of its row.
 const BAR_SHARE: f64 = 0.66;
 
 pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &BarChart, units: Units) -> Drawn<B> {

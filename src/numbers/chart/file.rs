@@ -12,23 +12,17 @@ use std::path::{Path, PathBuf};
 /// Pixels of a PNG per point.
 const PNG_SCALE: u32 = 2;
 
-/// A PNG is drawn larger by this factor and then reduced, which smooths edges.
+/// A PNG is drawn this much larger and then reduced, to smooth edges.
 const SMOOTHING: u32 = 2;
 
-/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChartFormat {
-    /// Pixels.
     Png,
-    /// Vector graphics.
     Svg,
 }
 
 impl ChartFormat {
-    /// The format that belongs to a file name's extension, in upper or lower case.
-    ///
-    /// # Errors
-    /// [`ChartError::UnknownEnding`].
+    /// The format for a file name's extension, in either case. Fails with [`ChartError::UnknownEnding`].
     pub fn from_path(path: &Path) -> Result<Self, ChartError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         match ending.as_deref() {
@@ -39,32 +33,19 @@ impl ChartFormat {
     }
 }
 
-/// Why a figure cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ChartError {
-    /// The file name has no known extension.
     #[error("cannot tell the format of {}; let the name of a chart end in .png or .svg", path.display())]
-    UnknownEnding {
-        /// The file.
-        path: PathBuf,
-    },
+    UnknownEnding { path: PathBuf },
     /// plotters, the font or the encoder failed.
     #[error("cannot draw {}: {reason}; the figures are also in the text and the JSON", path.display())]
-    Draw {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
-    /// The file cannot be written.
+    Draw { path: PathBuf, reason: String },
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
-/// Writes a figure to `path`, replacing an existing file, in the format of its extension.
-///
-/// # Errors
-/// [`ChartError`]; an existing file is then unchanged.
+/// Writes a figure to `path`, replacing any file, in the format of its extension. On failure, an existing file is
+/// unchanged.
 pub fn save(path: &Path, figure: &Figure) -> Result<(), ChartError> {
     let draw_error = |reason: String| ChartError::Draw { path: path.to_owned(), reason };
     if !provide_font() {

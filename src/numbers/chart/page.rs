@@ -1,19 +1,16 @@
-//! Charts for a web page: SVG that takes its colours from the page.
+//! Charts for a web page: SVG in the page's colours.
 
 use super::Figure;
 use super::file::svg;
 use super::style::{FAINT_INK, FINE_GRID, GRID, GUIDE, INK, PALETTE, provide_font};
 use plotters::style::{RGBColor, WHITE};
 
-/// Height of the empty space above the charts of a figure without a title, points.
+/// Height of the space above the charts of an untitled figure, points.
 pub const UNTITLED_TOP: u32 = 40;
 
-/// The figure as an `<svg>` element that is as wide as its place, with the page's colours: `currentColor` for text, the
-/// variables `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for what was measured. `label`
-/// describes it to those who cannot see it.
-///
-/// # Errors
-/// If plotters or the font fails.
+/// The figure as an `<svg>` element that fills its place, in the page's colours: `currentColor` for text, the variables
+/// `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for measurements. `label` describes it to
+/// screen readers. Fails if plotters or the font does.
 pub fn page_svg(figure: &Figure, label: &str) -> Result<String, String> {
     if !provide_font() {
         return Err("the font of the charts cannot be read".to_owned());

@@ -3,7 +3,6 @@
 use plotters::style::{FontStyle, RGBColor, register_font};
 use std::sync::OnceLock;
 
-/// Text.
 pub const INK: RGBColor = RGBColor(0x22, 0x26, 0x2B);
 /// Less important text, and axes.
 pub const FAINT_INK: RGBColor = RGBColor(0x5B, 0x63, 0x6B);
@@ -32,7 +31,7 @@ pub fn color(index: usize) -> RGBColor {
     PALETTE[index % PALETTE.len()]
 }
 
-/// Name of the font, which SVG readers also know.
+/// A name that SVG readers know, too.
 pub const FONT: &str = "sans-serif";
 
 /// Registers [`FONT`] with plotters. Returns whether that succeeded.
@@ -42,7 +41,7 @@ pub fn provide_font() -> bool {
         .get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok())
 }
 
-/// Converts points to pixels of a drawing.
+/// Pixels per point.
 #[derive(Clone, Copy)]
 pub struct Units(pub f64);
 

@@ -1,69 +1,63 @@
-//! Whether two pictures differ by more than their noise.
+//! Tests whether two pictures differ by more than their noise.
 //!
-//! The picture is cut into blocks of about 8 x 8 pixels. A block's `z` is its mean difference divided by the
-//! deviation of that mean; if there is nothing but noise, it is a normal number. Over `m` blocks the sum of `z^2`
-//! then lies within `m +- 4 sqrt(2 m)`, and the largest `z` within a limit that 99 of 100 pairs of equal pictures
-//! keep. The three channels are tested separately, because their noise is correlated.
+//! The picture is divided into blocks of about 8 x 8 pixels. A block's `z` is its mean difference over the deviation of
+//! that mean; with noise alone, it is a standard normal number. Over `m` blocks the sum of `z^2` then lies within
+//! `m +- 4 sqrt(2 m)`, and the largest `z` within a limit that 99 of 100 pairs of equal pictures keep. The channels are
+//! tested separately, because their noise is correlated.
 
 use super::normal::{from_student, largest_of};
 use std::ops::Range;
 
-/// Side of a block in pixels, approximately: blocks divide the picture evenly.
+/// Approximate side of a block, pixels: blocks divide the picture evenly.
 pub const SIDE: u32 = 8;
 
 /// Probability that equal pictures exceed the limit of `z`.
 pub const CHANCE: f64 = 0.01;
 
-/// By how many deviations the sum of `z^2` may differ.
+/// Deviations by which the sum of `z^2` may differ.
 pub const SUM_DEVIATIONS: f64 = 4.0;
 
 /// The difference of two pictures, row by row from the top, and what is known about its noise.
 #[derive(Clone, Debug)]
 pub struct Differences<'a> {
-    /// Width in pixels.
     pub width: u32,
     /// Difference of each pixel. A channel that is not finite in one pixel is left out of the whole block: near a
-    /// limit, noise decides which values are known, so those that are known would be biased.
+    /// limit, noise decides which values are known, so the known ones would be biased.
     pub values: &'a [[f64; 3]],
     /// Independent noise of each pixel.
     pub noise: Noise<'a>,
-    /// Largest error of each pixel in either direction that a whole block may share, such as that of 8-bit
-    /// quantisation.
+    /// Largest error of each pixel, either way, that a whole block may share, such as 8-bit quantisation.
     pub steps: Option<&'a [[f64; 3]]>,
-    /// Additional deviation that the mean of a block may have.
+    /// Additional deviation allowed for the mean of a block.
     pub tolerance: f64,
-    /// Additional deviation that a single pixel of a block may have: the effect of rare paths that both halves happen
-    /// to have in equal numbers, so that the difference of the halves does not show them.
+    /// Additional deviation allowed for a single pixel of a block: rare paths that both halves happen to contain
+    /// equally often, so that the halves' difference does not show them.
     pub rare: f64,
 }
 
-/// What is known about the noise of each pixel.
 #[derive(Clone, Copy, Debug)]
 pub enum Noise<'a> {
     /// Estimates of each pixel's variance, with one degree of freedom each.
     Variances(&'a [[f64; 3]]),
-    /// Nothing. The noise is taken from the spread of the differences within a block, so differences finer than a
-    /// block count as noise.
+    /// Nothing. The noise is taken from the spread of the differences within a block, so differences finer than a block
+    /// count as noise.
     Spread,
 }
 
-/// A block and the differences of its channels.
+/// A block and its channels' differences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Columns of the picture.
     pub x: Range<u32>,
-    /// Rows of the picture.
     pub y: Range<u32>,
-    /// Mean differences.
     pub means: [f64; 3],
     /// Mean differences divided by their deviations, as normal numbers.
     pub z: [f64; 3],
-    /// Fraction of the variance that is noise, not quantisation or tolerance; `None` if the channel is not known.
+    /// Share of the variance that is noise, not quantisation or tolerance; `None` if the channel is unknown.
     noise_share: [Option<f64>; 3],
 }
 
 impl Block {
-    /// The largest `|z|` of the channels.
+    /// The channels' largest `|z|`.
     pub fn largest(&self) -> f64 {
         self.z.iter().fold(0.0, |most, z| most.max(z.abs()))
     }
@@ -74,27 +68,25 @@ impl Block {
     }
 }
 
-/// The result of the test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockTest {
-    /// All blocks, row by row.
+    /// Row by row.
     pub blocks: Vec<Block>,
     /// Number of blocks in which each channel is known.
     pub counts: [usize; 3],
     /// Sum of `z^2` of each channel.
     pub sums: [f64; 3],
-    /// By how many deviations each sum exceeds that of noise.
+    /// Deviations by which each sum exceeds that of noise.
     pub excess: [f64; 3],
-    /// The same, relative to what noise alone would give without quantisation and tolerance: the least possible.
+    /// The same, relative to what noise would give without quantisation and tolerance: a lower bound.
     shortfall: [f64; 3],
     /// The largest `|z|`.
     pub largest: f64,
-    /// The limit for the largest `|z|`.
+    /// The limit of the largest `|z|`.
     pub largest_limit: f64,
 }
 
 impl BlockTest {
-    /// Tests the differences.
     pub fn of(differences: &Differences) -> Self {
         let width = differences.width.max(1);
         let height = (differences.values.len() / width as usize) as u32;
@@ -131,7 +123,7 @@ impl BlockTest {
         self.shortfall.iter().any(|deviations| *deviations < -SUM_DEVIATIONS)
     }
 
-    /// By how many deviations the sum of `z^2` exceeds that of noise, in the worst channel.
+    /// Deviations by which the sum of `z^2` exceeds that of noise, in the worst channel.
     pub fn largest_excess(&self) -> f64 {
         self.excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     }
@@ -142,7 +134,7 @@ impl BlockTest {
         means.fold(0.0, f64::max).sqrt()
     }
 
-    /// The `count` blocks with the largest differences, the largest first.
+    /// The `count` blocks with the largest differences, largest first.
     pub fn worst(&self, count: usize) -> Vec<&Block> {
         let mut blocks: Vec<&Block> = self.blocks.iter().collect();
         blocks.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
@@ -170,12 +162,12 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
         if !mean.is_finite() {
             continue;
         }
-        let (told, freedom) = match differences.noise {
+        let (noise_variance, freedom) = match differences.noise {
             Noise::Variances(variances) => {
                 let sum: f64 = pixels().map(|pixel| variances[pixel][channel]).sum();
                 let squares: f64 = pixels().map(|pixel| variances[pixel][channel].powi(2)).sum();
-                // If v is the true variance of a pixel, E sum^2 = (sum of v)^2 + 2 (sum of v^2) and E squares = 3
-                // (sum of v^2). So this estimates (sum of v)^2 / (sum of v^2) without bias; it is 1 if a single pixel
+                // If v is a pixel's true variance, E sum^2 = (sum of v)^2 + 2 (sum of v^2) and E squares = 3 (sum of
+                // v^2). So this is an unbiased estimate of (sum of v)^2 / (sum of v^2), which is 1 if a single pixel
                 // has all the noise.
                 let freedom = if squares > 0.0 { 3.0 * sum * sum / squares - 2.0 } else { count };
                 (sum / (count * count), freedom)
@@ -191,15 +183,15 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
         // In a smooth block, all pixels may be at the same end of their step, so the whole step counts as one
         // deviation.
         let known = step * step + differences.tolerance.powi(2);
-        // What both halves may miss is a guess, so it has no more degrees of freedom than their estimate.
-        let variance = told + (differences.rare / count).powi(2);
+        // The rare paths are a guess, so they add no degrees of freedom.
+        let variance = noise_variance + (differences.rare / count).powi(2);
         let total = variance + known;
         means[channel] = mean;
         if total > 0.0 {
-            // Known variance counts as having infinitely many degrees of freedom (Welch and Satterthwaite).
+            // Known variance has infinitely many degrees of freedom (Welch and Satterthwaite).
             let freedom = freedom * (total / variance.max(1e-9 * total)).powi(2);
             z[channel] = from_student(mean / total.sqrt(), freedom);
-            noise_share[channel] = Some(told / total);
+            noise_share[channel] = Some(noise_variance / total);
         } else if mean != 0.0 {
             z[channel] = f64::INFINITY.copysign(mean);
             noise_share[channel] = Some(1.0);

@@ -9,10 +9,10 @@ pub struct Point {
     pub error: f64,
 }
 
-/// The least-squares line through the logarithms of points.
+/// The least-squares line through the points' logarithms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// Exponent of the time in the error: -1/2 for independent samples.
+    /// Exponent of time in the error: -1/2 for independent samples.
     pub slope: f64,
     /// Standard error of the slope, from the points' distances to the line; 0 with two points.
     pub slope_deviation: f64,
@@ -21,7 +21,7 @@ pub struct PowerLaw {
 }
 
 impl PowerLaw {
-    /// Fits the points; `None` if they have fewer than two different times.
+    /// `None` with fewer than two different times.
     pub fn through(points: &[Point]) -> Option<Self> {
         let logs = || points.iter().map(|p| (p.time.ln(), p.error.ln()));
         let count = points.len() as f64;
@@ -40,7 +40,7 @@ impl PowerLaw {
     }
 }
 
-/// Sum of the squares of the times' logarithms around their mean.
+/// Sum of squares of the times' logarithms around their mean.
 fn spread_of_times(points: &[Point]) -> f64 {
     let logs = || points.iter().map(|point| point.time.ln());
     let mean = logs().sum::<f64>() / points.len() as f64;
@@ -56,9 +56,9 @@ pub struct Crossing {
     pub is_extrapolated: bool,
 }
 
-/// When points, in the order of time, fall below the target for good: between two points by interpolation of their
-/// logarithms, otherwise after the last point with the slope of the last [`TAIL`] points. `None` if the error does
-/// not fall, or if the first point is already below the target, since the crossing is then unknown.
+/// When points, ordered by time, fall below the target for good: interpolated between two points on logarithmic scales,
+/// otherwise after the last point with the slope of the last [`TAIL`] points. `None` if the error does not fall, or if
+/// the first point is already below the target, which leaves the crossing unknown.
 pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
     let last_above = points.iter().rposition(|point| point.error > target)?;
     let above = points[last_above];
@@ -68,7 +68,7 @@ pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
         return Some(Crossing { time, is_extrapolated: false });
     }
     let law = PowerLaw::through(&points[points.len().saturating_sub(TAIL)..])?;
-    // The extrapolation starts at the last point, not at the fitted line.
+    // Extrapolate from the last point, not from the fitted line.
     let time = above.time * (target / above.error).powf(1.0 / law.slope);
     (law.slope < 0.0).then_some(Crossing { time, is_extrapolated: true })
 }
@@ -76,7 +76,7 @@ pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
 /// Number of points that determine how a curve continues.
 pub const TAIL: usize = 4;
 
-/// When a target will be reached, judging by the estimates so far.
+/// When a target will be reached, by the estimates so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     /// The most likely time.
@@ -85,17 +85,17 @@ pub struct Prediction {
     pub range: [f64; 2],
 }
 
-/// Range of slopes at which the error of a path tracer falls: that of independent samples, and the steepest that was
-/// measured with Sobol points on smooth scenes.
+/// Slopes at which a path tracer's error falls: that of independent samples, and the steepest measured with Sobol
+/// points on smooth scenes.
 const SLOPES: [f64; 2] = [-0.5, -0.75];
 
 /// Uncertainty of the slope before there are any points.
 const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
 
-/// Least uncertainty of the logarithm of an estimate: that of two halves over some thousand pixels.
+/// Least uncertainty of an estimate's logarithm: that of two halves over some thousand pixels.
 const LEAST_SCATTER: f64 = 0.02;
 
-/// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates, the
+/// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates,
 /// oldest first, of which the last [`TAIL`] are used.
 ///
 /// The slope is that of the history and `now`, averaged with the slope of independent samples, weighted by their
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn the_slopes_deviation_is_that_of_a_regression() {
+    fn slope_deviation_matches_regression() {
         // The logarithms are 0, 1, 2 for the time and 0, 1, 0 for the error. The squares around their mean of 1/3 sum
         // to 2/3, with one degree of freedom; those of the times sum to 2.
         let points = [(0.0_f64, 0.0_f64), (1.0, 1.0), (2.0, 0.0)];
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn targets_are_met_between_points_and_beyond() {
+    fn crossings_interpolate_and_extrapolate() {
         let points = curve(-0.5, 7);
         let within = time_to(&points, 0.02).unwrap();
         assert!((within.time - 25.0).abs() < 1e-9 && !within.is_extrapolated);
@@ -161,9 +161,10 @@ mod tests {
         assert_eq!(time_to(&points, 0.2), None);
     }
 
-    /// The measured slope counts by its uncertainty, at least that of a scatter of .02, beside a slope of -.5 +- .08.
+    /// The measured slope is weighted by its uncertainty (at least that of a scatter of .02) against a slope of -.5 +-
+    /// .08.
     #[test]
-    fn a_steep_or_flat_history_is_believed_only_as_far_as_pictures_are_known_to_fall() {
+    fn predicted_slope_is_bounded() {
         // The logarithms of four times, each twice the last, have squares around their mean of 5 ln(2)^2.
         let measured = 5.0 * 2.0_f64.ln().powi(2) / 0.02_f64.powi(2);
         let prior = 1.0 / 0.08_f64.powi(2);
@@ -185,7 +186,7 @@ mod tests {
             assert!((late / (log_factor + 2.0 * deviation).exp() - 1.0).abs() < 1e-9, "{slope}: {late}");
             assert!((early / (log_factor - 2.0 * deviation).exp() - 1.0).abs() < 1e-9, "{slope}: {early}");
         }
-        // Earlier points than the last four do not count.
+        // Only the last four points count.
         let mut points = curve(-0.6, 9);
         let now = points.pop().unwrap();
         let of_last = predict(&points[5..], now, now.error / 2.0);
@@ -194,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_reached_or_cannot_be_reached_has_no_prediction() {
+    fn reached_or_unreachable_target_has_no_prediction() {
         let points = curve(-0.5, 6);
         let now = points[5];
         for (now, target) in [
@@ -206,17 +207,17 @@ mod tests {
         ] {
             assert_eq!(predict(&points[..5], now, target), None, "{now:?} {target}");
         }
-        // An estimate at no time has no logarithm.
+        // Time 0 has no logarithm.
         let begun = [&[Point { time: 0.0, error: 1.0 }][..], &points[3..5]].concat();
         let target = 0.5 * now.error;
         assert_eq!(predict(&begun, now, target), predict(&points[3..5], now, target));
-        // The prediction of a target that is nearly reached does not lie in the past.
+        // The prediction of a nearly reached target is not in the past.
         let near = predict(&points[..5], now, 0.999 * now.error).unwrap();
         assert!(near.range[0] == now.time && near.time > now.time && near.range[1] > near.time, "{near:?}");
     }
 
     #[test]
-    fn a_prediction_reaches_two_deviations_to_either_side() {
+    fn prediction_spans_two_deviations() {
         let now = Point { time: 3.0, error: 0.01 };
         let found = predict(&[], now, 0.005).unwrap();
         // Half the error takes 4 times the time. The logarithm of the time is uncertain by .02 / .5 from the

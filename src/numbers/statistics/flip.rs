@@ -49,10 +49,7 @@ impl Appearance {
         Appearance { colours, features: features(&lightness, width) }
     }
 
-    /// The mean difference from a picture of the same size.
-    ///
-    /// # Panics
-    /// If the sizes differ.
+    /// The mean difference from another picture. Panics if the sizes differ.
     pub fn difference(&self, other: &Appearance) -> f64 {
         assert_eq!(self.colours.len(), other.colours.len(), "the pictures must have the same size");
         let greatest = greatest_colour_difference();
@@ -69,7 +66,7 @@ impl Appearance {
     }
 }
 
-/// The largest difference between colours of a display: between green and blue.
+/// The largest difference between displayable colours: between green and blue.
 fn greatest_colour_difference() -> f64 {
     let of = |linear| hunt(lab_from_xyz(xyz_from_linear(linear)));
     hyab(of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0])).powf(Q_C)
@@ -145,7 +142,7 @@ fn features(lightness: &Plane, width: usize) -> Vec<[f64; 2]> {
     length(&edge).into_iter().zip(length(&point)).map(|(edge, point)| [edge, point]).collect()
 }
 
-/// Filters rows with one kernel and columns with another. Beyond its borders, a picture repeats its outermost pixels.
+/// Filters rows with one kernel and columns with another. Pixels beyond the border repeat the outermost ones.
 fn convolved(plane: &Plane, width: usize, across: &[f64], down: &[f64]) -> Plane {
     let height = plane.len() / width.max(1);
     let pass =
@@ -229,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn black_and_white_are_as_the_paper_has_them() {
+    fn black_and_white_match_paper() {
         // Only the lightness differs, by 100: the paper's formula, evaluated by hand.
         let difference = constant([0.0; 3]).difference(&constant([1.0; 3]));
         let greatest = greatest_colour_difference();
@@ -241,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dot_is_spread_as_the_papers_gaussians_have_it() {
+    fn dot_spreads_by_paper_gaussians() {
         // `sum a sqrt(pi / b) exp(-pi^2 x^2 / b)` with the constants of the paper's table 1, at distances `x` of 0,
         // 2, 4 and 9 pixels at 67 pixels per degree, relative to the value at 0; and that value relative to the sum
         // of all weights.
@@ -269,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_survive_the_way_to_opponents_and_back() {
+    fn opponent_colours_round_trip() {
         let rgb = [0.2, 0.7, 0.4];
         let back = linear_from_xyz(xyz_from_opponent(opponent_from_xyz(xyz_from_linear(rgb))));
         assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-12), "{back:?}");

@@ -5,7 +5,7 @@ pub mod fit;
 pub mod flip;
 pub mod normal;
 
-/// The median, which is the mean of the two middle values of an even number; `None` without values. NaN sorts last.
+/// The median, the mean of the two middle values if their number is even; `None` without values. NaN sorts last.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);

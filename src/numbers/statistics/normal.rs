@@ -7,7 +7,7 @@ pub fn two_sided_tail(z: f64) -> f64 {
     libm::erfc(z / std::f64::consts::SQRT_2)
 }
 
-/// The `z` for which [`two_sided_tail`] is `chance`, between 0 and 1. For 1 and above it is 0, for 0 a number that is
+/// The `z` for which [`two_sided_tail`] is `chance`, between 0 and 1. 1 and above give 0, and 0 gives a number that is
 /// never exceeded.
 pub fn two_sided_quantile(chance: f64) -> f64 {
     let (mut low, mut high) = (0.0, 40.0);
@@ -30,8 +30,8 @@ pub fn largest_of(count: usize, chance: f64) -> f64 {
 /// With this many degrees of freedom or more, Student's distribution equals the normal one to within a millionth.
 const ENDLESS_FREEDOM: f64 = 1e7;
 
-/// The normal number that is as unlikely as the value `t` of Student's distribution with `freedom > 0` degrees of
-/// freedom. NaN stays NaN.
+/// The normal number as unlikely as the value `t` of Student's distribution with `freedom > 0` degrees of freedom. NaN
+/// stays NaN.
 pub fn from_student(t: f64, freedom: f64) -> f64 {
     if t.is_nan() || freedom >= ENDLESS_FREEDOM {
         return t;
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn students_quantiles_become_normal_ones() {
+    fn student_quantiles_become_normal() {
         // Two-sided quantiles of Student's distribution for probabilities of 5 % and .1 %.
         for (freedom, five_percent, per_mille) in
             [(5.0, 2.5706, 6.8688), (20.0, 2.0860, 3.8495), (63.0, 1.9983, 3.4515)]

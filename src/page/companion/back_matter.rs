@@ -1,4 +1,4 @@
-//! The glossary and the references as HTML.
+//! The glossary and references as HTML.
 
 use super::directive::{GLOSSARY_MARK, REFERENCES_MARK};
 use super::fault::Fault;
@@ -8,7 +8,7 @@ use super::reference::{Area, GLOSSARY, REFERENCES};
 use super::site::{Site, Uses};
 use maud::{Markup, html};
 
-/// Puts glossary and references where the chapters want them.
+/// Inserts the glossary and references where chapters ask for them.
 pub fn fill(html: &str, site: &Site, uses: &mut Uses) -> Result<String, Fault> {
     for (file, mark) in [(GLOSSARY, GLOSSARY_MARK), (REFERENCES, REFERENCES_MARK)] {
         let count = html.matches(mark).count();

@@ -1,10 +1,9 @@
-//! The sections of the book: their headings and web addresses.
+//! The book's sections: headings and web addresses.
 
 use crate::stages;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Where the headings are listed.
 pub const FILE: &str = "docs/companion/book.toml";
 
 /// The book's headings by number, such as "6" and "6.1".
@@ -15,12 +14,10 @@ pub struct Book {
 }
 
 impl Book {
-    /// The heading of a chapter or section.
     pub fn heading(&self, number: &str) -> Option<&str> {
         self.headings.get(number).map(String::as_str)
     }
 
-    /// The web address of a chapter or section.
     pub fn url(&self, number: &str) -> Option<String> {
         let chapter = number.split('.').next().unwrap_or(number);
         let title = self.heading(number)?;
@@ -29,13 +26,13 @@ impl Book {
     }
 }
 
-/// Splits a heading that begins with the number of a section, such as "6.1 Shading with Surface Normals".
+/// Splits a heading that starts with a section number, such as "6.1 Shading with Surface Normals".
 pub fn split_heading(heading: &str) -> Option<(&str, &str)> {
     let (number, title) = heading.split_once(' ')?;
     is_section(number).then_some((number, title.trim()))
 }
 
-/// Whether this is a number such as "9.3".
+/// Whether this is a section number, such as "9.3".
 pub fn is_section(number: &str) -> bool {
     number.contains('.') && number.split('.').all(|part| part.parse::<u8>().is_ok())
 }
@@ -47,7 +44,7 @@ mod tests {
     use crate::stages::Stage;
 
     #[test]
-    fn headings_are_those_of_the_stages() {
+    fn headings_match_stages() {
         let book: Book = Library::Embedded.toml(FILE).unwrap();
         for stage in Stage::ALL {
             assert_eq!(book.heading(stage.section), Some(stage.section_title), "{}", stage.id);
@@ -58,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_may_begin_with_the_number_of_a_section() {
+    fn section_number_splits_from_heading() {
         assert_eq!(split_heading("6.1 Shading with Normals"), Some(("6.1", "Shading with Normals")));
         for heading in ["1. Paths", "6 Normals", "What a lane is", "6.x Normals", "6.1"] {
             assert_eq!(split_heading(heading), None, "{heading}");

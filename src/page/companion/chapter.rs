@@ -1,4 +1,4 @@
-//! Chapters of the page: files of Markdown with a few facts before the text.
+//! The page's chapters: Markdown files that start with a few facts.
 
 use super::fault::{Fault, line_of};
 use super::library::Library;
@@ -11,7 +11,7 @@ pub struct Chapter {
     pub file: String,
     /// The number in the file's name.
     pub number: u8,
-    /// The name in the file's name: the chapter's anchor.
+    /// The name in the file's name, which is the chapter's anchor.
     pub id: String,
     pub facts: Facts,
     /// The Markdown.
@@ -20,34 +20,33 @@ pub struct Chapter {
     pub lines_before: usize,
 }
 
-/// What a chapter says before its text.
+/// The facts before a chapter's text.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Facts {
     pub title: String,
-    /// A short title for the navigation.
+    /// Short title for the navigation.
     short: Option<String>,
     /// Number of the book's chapter.
     pub book: Option<String>,
-    /// Its heading.
+    /// Heading of the book's chapter.
     pub book_title: Option<String>,
 }
 
-/// The number of the book's last chapter that the page goes through.
+/// Number of the last of the book's chapters that the page covers.
 const LAST_OF_BOOK: u8 = 14;
 
 impl Chapter {
-    /// Reads all chapters in the order of their numbers.
+    /// Reads all chapters, by number.
     pub fn read_all(library: &Library) -> Result<Vec<Chapter>, Fault> {
         library.chapters()?.iter().map(|path| Chapter::parse(path, &library.read(path)?)).collect()
     }
 
-    /// The short title for the navigation.
     pub fn short(&self) -> &str {
         self.facts.short.as_deref().unwrap_or(&self.facts.title)
     }
 
-    /// The number to show; `None` where it could be taken for that of another chapter of the book.
+    /// The number to show; `None` where it could be mistaken for that of one of the book's chapters.
     pub fn shown_number(&self) -> Option<u8> {
         let is_of_book = self.facts.book.as_deref() == Some(self.number.to_string().as_str());
         (is_of_book || self.number > LAST_OF_BOOK).then_some(self.number)
@@ -58,7 +57,7 @@ impl Chapter {
         self.shown_number().map_or_else(String::new, |number| format!("{number} "))
     }
 
-    /// Splits a file into its facts and its Markdown.
+    /// Splits a file into facts and Markdown.
     fn parse(file: &str, text: &str) -> Result<Chapter, Fault> {
         let parts = text.strip_prefix("+++\n").and_then(|rest| rest.split_once("\n+++\n"));
         let Some((facts, body)) = parts else {
@@ -102,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_facts_are_named_with_their_line() {
+    fn wrong_facts_name_line() {
         for (text, line, word) in [("Text", 1, "+++"), ("+++\ntitle = \"A\"\ncolour = 1\n+++\n", 3, "colour")]
         {
             let fault = Chapter::parse(FILE, text).unwrap_err();

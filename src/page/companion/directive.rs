@@ -1,4 +1,4 @@
-//! Directives: paragraphs such as `{{figure sky}}`, each of which becomes a part of the page.
+//! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
 
 use super::excerpt::Excerpt;
 use super::library::FOLDER;
@@ -9,24 +9,21 @@ use crate::system::suggest::similar_names;
 use anyhow::{Context, Result, bail};
 use maud::{Markup, PreEscaped, html};
 
-/// The directives with what follows them.
+/// The directives and their arguments.
 const KNOWN: &str = "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
-/// Stands where the glossary is to be put, until all chapters are rendered.
+/// Marks the glossary's place until all chapters are rendered.
 pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
 
-/// The same for the references.
+/// Marks the references' place.
 pub const REFERENCES_MARK: &str = "<!-- references -->";
 
-/// A text with the apostrophes of print.
+/// Replaces apostrophes by typographic ones.
 pub fn typographic(text: &str) -> String {
     text.replace('\'', "’")
 }
 
 /// The HTML of a directive, given without its braces.
-///
-/// # Errors
-/// What is wrong with it.
 pub fn html(site: &Site, directive: &str, uses: &mut Uses) -> Result<Markup> {
     let words: Vec<&str> = directive.split_whitespace().collect();
     match words.as_slice() {
@@ -90,7 +87,7 @@ fn excerpt(site: &Site, name: &str, uses: &mut Uses) -> Result<Markup> {
     })
 }
 
-/// Diagrams are SVG files whose colours are those of the text around them. The title is the caption.
+/// Diagrams are SVG files that take their colours from the text around them. The title becomes the caption.
 fn diagram(site: &Site, name: &str) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     let text = site.library.read(&path)?;

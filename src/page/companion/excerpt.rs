@@ -1,4 +1,4 @@
-//! Excerpts: pieces of the sources, found by the beginning of an item or between two comments.
+//! Excerpts of the sources, found by the start of an item or between two comments.
 
 use super::fault::Fault;
 use super::library::{Entry, Library};
@@ -6,22 +6,20 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
-/// Where the excerpts are declared.
 pub const FILE: &str = "docs/companion/excerpts.toml";
 
-/// Most lines of an excerpt: a screen.
+/// Maximum lines of an excerpt: a screen.
 const LINE_LIMIT: usize = 40;
 
-/// A piece of a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excerpt {
     /// Path in the checkout.
     pub file: String,
-    /// The first line in the file, counted from 1.
+    /// First line in the file, counted from 1.
     pub first: usize,
-    /// The last line in the file.
+    /// Last line in the file.
     pub last: usize,
-    /// The lines without the indentation that all of them share.
+    /// The lines without their common indentation.
     pub text: String,
 }
 
@@ -31,12 +29,12 @@ struct Declared {
     file: String,
     item: Option<String>,
     region: Option<String>,
-    /// Whether the comments above the item belong to the excerpt.
+    /// Whether to include the comments above the item.
     #[serde(default)]
     docs: bool,
 }
 
-/// Reads the declarations and cuts all excerpts out of their files.
+/// Reads the declarations and extracts all excerpts from their files.
 pub fn read_all(library: &Library) -> Result<BTreeMap<String, Excerpt>, Fault> {
     let excerpt = |Entry { key, line, value }: Entry<Declared>| match cut(library, value) {
         Ok(excerpt) => Ok((key, excerpt)),
@@ -66,13 +64,13 @@ fn cut(library: &Library, declared: Declared) -> Result<Excerpt, String> {
     Ok(Excerpt { file, first, last, text: without_indentation(&kept) })
 }
 
-/// `ANCHOR` or `ANCHOR_END` with the name of the region, if the line is such a comment.
+/// `ANCHOR` or `ANCHOR_END` with the region's name, if the line is such a comment.
 fn anchor(line: &str) -> Option<(&str, &str)> {
     let (word, name) = line.trim().strip_prefix("//")?.trim().split_once(':')?;
     matches!(word, "ANCHOR" | "ANCHOR_END").then_some((word, name.trim()))
 }
 
-/// The lines between the two comments of a region.
+/// The lines between a region's two comments.
 fn find_region(lines: &[&str], name: &str) -> Result<RangeInclusive<usize>, String> {
     let place = |word: &str| lines.iter().position(|line| anchor(line) == Some((word, name)));
     match (place("ANCHOR"), place("ANCHOR_END")) {
@@ -81,7 +79,7 @@ fn find_region(lines: &[&str], name: &str) -> Result<RangeInclusive<usize>, Stri
     }
 }
 
-/// The lines of the item that begins with these words, perhaps behind its visibility and attributes.
+/// The lines of the item that starts with these words, possibly after its visibility and attributes.
 fn find_item(lines: &[&str], item: &str, docs: bool) -> Result<RangeInclusive<usize>, String> {
     let is_qualifier = |word: &str| {
         word.starts_with("pub")
@@ -111,8 +109,8 @@ fn find_item(lines: &[&str], item: &str, docs: bool) -> Result<RangeInclusive<us
     Ok(begin - above..=end)
 }
 
-/// The last line of an item in formatted code: the first that is indented like the item's first line and ends with a
-/// brace or a semicolon.
+/// The last line of an item in formatted code: the first with the item's indentation that ends with a brace or a
+/// semicolon.
 fn end_of_item(lines: &[&str], begin: usize) -> Option<usize> {
     let indentation = indentation(lines[begin]);
     (begin..lines.len()).find(|place| {
@@ -170,7 +168,7 @@ mod tests {
     ];
 
     #[test]
-    fn items_are_found_behind_qualifiers_and_end_with_their_brace_or_semicolon() {
+    fn items_are_found_whole() {
         let found = |item: &str, docs| {
             find_item(SOURCE, item, docs).map(|range| (range.start() + 1, range.end() + 1))
         };

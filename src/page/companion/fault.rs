@@ -1,16 +1,15 @@
-//! What is wrong with a text of the page, with file and line.
+//! Errors in the page's texts, with file and line.
 
 use std::fmt;
 use thiserror::Error;
 
-/// A fault of a text.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub struct Fault {
     /// Path in the checkout.
     pub file: String,
-    /// Line, counted from 1; 0 if the fault is that of the whole file.
+    /// Counted from 1; 0 if the fault concerns the whole file.
     pub line: usize,
-    /// What is wrong, and what to do.
+    /// What is wrong and how to fix it.
     pub message: String,
 }
 

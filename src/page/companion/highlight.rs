@@ -1,4 +1,4 @@
-//! Code as HTML with classes, so that one style sheet colours it in light and dark.
+//! Highlights code as HTML with classes, so that one style sheet serves light and dark.
 //!
 //! The syntax definitions are small and our own, because no collection has WGSL. Their scopes are the class names:
 //! `hl-k` keyword, `hl-t` type, `hl-f` function, `hl-v` constant, `hl-n` number, `hl-s` string, `hl-c` comment, `hl-m`
@@ -17,19 +17,15 @@ const SYNTAXES: [&str; 5] = [
     include_str!("../../../assets/companion/syntaxes/sh.sublime-syntax"),
 ];
 
-/// The language of blocks without colours.
+/// The language of blocks that are not highlighted.
 const PLAIN: &str = "text";
 
-/// Colours code in the languages of the page.
 pub struct Highlighter {
     syntaxes: SyntaxSet,
 }
 
 impl Highlighter {
     /// Reads the syntax definitions.
-    ///
-    /// # Errors
-    /// If one of them is wrong.
     pub fn new() -> Result<Self> {
         let mut builder = SyntaxSetBuilder::new();
         for text in SYNTAXES {
@@ -39,10 +35,7 @@ impl Highlighter {
         Ok(Highlighter { syntaxes: builder.build() })
     }
 
-    /// The code as HTML. `language` is a name or a file extension.
-    ///
-    /// # Errors
-    /// If the language is unknown.
+    /// The code as HTML. `language` is a name or a file extension; an unknown one is an error.
     pub fn html(&self, language: &str, code: &str) -> Result<PreEscaped<String>> {
         if language == PLAIN {
             return Ok(PreEscaped(maud::html! { (code) }.into_string()));
@@ -65,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_is_unchanged_apart_from_the_tags() {
+    fn highlighting_keeps_text() {
         for (language, code) in [
             ("rust", include_str!("../../render_cpu/sphere.rs")),
             ("wgsl", include_str!("../../../shaders/path.wgsl")),

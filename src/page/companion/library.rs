@@ -1,5 +1,4 @@
-//! The texts of the page and the sources that it quotes: as they were when the program was built, or those of a
-//! checkout.
+//! The page's texts and the sources that it quotes: embedded when the program was built, or read from a checkout.
 
 use super::fault::{Fault, line_of};
 use crate::system::files;
@@ -10,22 +9,21 @@ use std::fs::DirEntry;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
-/// Reads files of the project by their paths in the checkout.
+/// Reads project files by their paths in the checkout.
 #[derive(Clone, Debug)]
 pub enum Library {
-    /// The files in the program.
+    /// The files embedded in the program.
     Embedded,
-    /// Those of a checkout, so that a text can be changed and seen without building the program again.
+    /// A checkout's files, so that edits show without rebuilding the program.
     Checkout(PathBuf),
 }
 
-/// The folder of the texts.
 pub const FOLDER: &str = "docs/companion";
 
-/// Largest file of a checkout that is read, bytes.
+/// Largest file read from a checkout, bytes.
 const FILE_LIMIT: u64 = 1 << 22;
 
-/// Includes files by their folders in the checkout and their names.
+/// Embeds files by folder and name.
 macro_rules! embedded {
     ($($folder:literal: $($name:literal)*;)*) => {
         &[$($((
@@ -35,8 +33,8 @@ macro_rules! embedded {
     };
 }
 
-/// Every file that the page is made of: chapters and data, diagrams, and the sources that it quotes. A test compares
-/// the list with the folder.
+/// Every file that the page is made of: chapters and data, diagrams, and quoted sources. A test compares the list with
+/// the folder.
 #[rustfmt::skip]
 const FILES: &[(&str, &str)] = embedded![
     "docs/companion/": "00-start.md" "01-languages.md" "02-image.md" "03-vectors.md" "04-rays.md"
@@ -75,7 +73,6 @@ pub struct Entry<T> {
 }
 
 impl Library {
-    /// The content of a file.
     pub fn read(&self, path: &str) -> Result<Cow<'static, str>, Fault> {
         let content = match self {
             Library::Embedded => {
@@ -93,7 +90,6 @@ impl Library {
         content.map_err(|message| Fault::new(path, 0, message))
     }
 
-    /// The content of a TOML file.
     pub fn toml<T: DeserializeOwned>(&self, path: &str) -> Result<T, Fault> {
         let text = self.read(path)?;
         toml::from_str(&text).map_err(|error| {
@@ -102,7 +98,7 @@ impl Library {
         })
     }
 
-    /// The tables of a TOML file, in the order of the file.
+    /// The tables of a TOML file, in file order.
     pub fn entries<T: DeserializeOwned>(&self, path: &str) -> Result<Vec<Entry<T>>, Fault> {
         let tables: BTreeMap<String, Spanned<T>> = self.toml(path)?;
         let text = self.read(path)?;
@@ -149,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn every_file_of_the_folder_is_in_the_program() {
+    fn every_file_is_embedded() {
         let paths = FILES.iter().map(|(path, _)| (*path).to_owned());
         let embedded: BTreeSet<String> = paths.filter(|path| path.starts_with(FOLDER)).collect();
         let mut found = BTreeSet::new();
@@ -177,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_have_their_lines_and_files_that_cannot_be_read_are_named() {
+    fn entries_have_lines_and_errors_name_files() {
         let directory = tempfile::tempdir().unwrap();
         let library = Library::Checkout(directory.path().to_owned());
         std::fs::write(directory.path().join("a.toml"), "# A\n[z]\nx = 1\n\n[b]\nx = 2\n").unwrap();

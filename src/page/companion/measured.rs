@@ -1,4 +1,4 @@
-//! Tables and charts of measurements: kept files, each with the command that made it and the machine.
+//! Tables and charts of stored measurements, each with its command and machine.
 
 use super::fault::Fault;
 use super::library::{FOLDER, Library};
@@ -12,25 +12,25 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Where the kept measurements are listed.
+/// Lists the stored measurements.
 const FILE: &str = "docs/companion/measured.toml";
 
-/// The name of the benchmark among the measurements.
+/// Name of the benchmark among the measurements.
 const BENCH: &str = "speed";
 
-/// The measurement of error against time, which is also drawn as a chart.
+/// Name of the measurement of error against time, which also has a chart.
 const REPORT: &str = "error";
 
-/// The errors to which times are given.
+/// Errors to give times for.
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
-/// A measurement and how it was made.
+/// A stored measurement and its origin.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kept {
     /// Its file in `docs/companion`.
     file: String,
-    /// The command that makes such a file.
+    /// The command that produces such a file.
     command: String,
     /// The machine, if the file does not name it.
     machine: Option<String>,
@@ -45,7 +45,6 @@ struct Kept {
 pub struct Measured(BTreeMap<String, Kept>);
 
 impl Measured {
-    /// Reads the kept measurements.
     pub fn read(library: &Library) -> Result<Self, Fault> {
         let mut kept: BTreeMap<String, Kept> = library.toml(FILE)?;
         for kept in kept.values_mut() {
@@ -54,10 +53,7 @@ impl Measured {
         Ok(Measured(kept))
     }
 
-    /// Replaces the tables of speed by the JSON of another `weekender bench`.
-    ///
-    /// # Errors
-    /// If the text is not such JSON.
+    /// Replaces the tables of speed by another `weekender bench` JSON.
     pub fn set_bench(&mut self, text: String) -> Result<()> {
         let command = "weekender bench --json FILE".to_owned();
         let kept = Kept { file: String::new(), command, machine: None, date: None, text };
@@ -67,9 +63,6 @@ impl Measured {
     }
 
     /// The table with this name.
-    ///
-    /// # Errors
-    /// If there is none, or its file is not as expected.
     pub fn table(&self, name: &str) -> Result<Markup> {
         let kept = self.find(name)?;
         match name {
@@ -81,9 +74,6 @@ impl Measured {
     }
 
     /// The chart with this name.
-    ///
-    /// # Errors
-    /// If there is none, or its file is not as expected.
     pub fn chart(&self, name: &str) -> Result<Markup> {
         ensure!(name == REPORT, "there is no chart {name:?}; use {REPORT}");
         error_chart(self.find(name)?)
@@ -142,7 +132,7 @@ fn speed_table(kept: &Kept, machine: &str, scene: &Value) -> Markup {
     table(&format!("Speed of {name}"), &caption, &columns, &body)
 }
 
-/// Ways of doing the same work, from the JSON of `examples/mappings`. They are compared with the first.
+/// Ways of doing the same work, compared with the first, from the JSON of `examples/mappings`.
 fn comparison(kept: &Kept) -> Result<Markup> {
     let json: Value = serde_json::from_str(&kept.text)?;
     let (about, rows) = (text(&json["about"]), rows(&json));
@@ -164,7 +154,7 @@ fn comparison(kept: &Kept) -> Result<Markup> {
     Ok(table(about, &caption, &columns[..if has_use { 4 } else { 3 }], &body))
 }
 
-/// The times to two errors, for all scenes, from the JSON of `weekender report`.
+/// Times to both errors in all scenes, from the JSON of `weekender report`.
 fn error_table(kept: &Kept) -> Result<Markup> {
     let data = report_of(kept)?;
     let curves = report::curves(&data, &TARGETS);
@@ -201,11 +191,11 @@ fn error_table(kept: &Kept) -> Result<Markup> {
     Ok(table("Time to an error", &caption, &columns, &body))
 }
 
-/// The chart of the same data, in the colours of the page.
+/// The chart of the same data, in the page's colours.
 fn error_chart(kept: &Kept) -> Result<Markup> {
     let drawn = report::chart(&report_of(kept)?, TARGETS[0]);
     let figure = chart::Figure {
-        // The caption says both.
+        // The caption already says both.
         title: String::new(),
         about: String::new(),
         size: [640, UNTITLED_TOP + 470 * drawn.panels.len() as u32],
@@ -231,7 +221,7 @@ fn report_of(kept: &Kept) -> Result<report::Data> {
         .map_err(|error| anyhow::anyhow!("{error}; make the file with weekender report --out DIR"))
 }
 
-/// The heading of the column whose cells have bars.
+/// Heading of the column whose cells have bars.
 const SPEED: &str = "million paths per second";
 
 /// A table that scrolls in its own box where it is wider than the page.
@@ -263,7 +253,7 @@ fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
         @if let Some(date) = &kept.date { " on " (date) }
         @if let Some(machine) = machine { ", " (machine) }
         ", by "
-        // A flag must not be broken after its first hyphen.
+        // Don't break a flag after its first hyphen.
         code { @for word in kept.command.split(' ') { span .nb { (word) } " " } }
         "."
     }
@@ -299,7 +289,7 @@ fn shown<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> String {
     value.map(words).unwrap_or_default()
 }
 
-/// The tracer's name. A benchmark puts the level first, which lanes and threads follow.
+/// The tracer's name. A benchmark puts the level before lanes and threads.
 fn tracer(row: &Value) -> String {
     let name = text(&row["name"]);
     let level = name.split(',').next().unwrap_or_default();
@@ -336,7 +326,7 @@ fn three_digits(seconds: f64) -> String {
     format!("{seconds:.digits$}")
 }
 
-/// Two digits that count, as `410` or `2,300`.
+/// Two significant digits: `410` or `2,300`.
 fn two_digits(number: f64) -> String {
     let unit = 10_f64.powf((number.log10().floor() - 1.0).max(0.0));
     let digits = format!("{:.0}", (number / unit).round() * unit);
@@ -360,7 +350,7 @@ mod tests {
         Kept { file, command, machine: None, date: Some("1 May".to_owned()), text: json.to_string() }
     }
 
-    /// The texts of the cells of each row.
+    /// The text of each row's cells.
     fn rows(html: &str) -> Vec<Vec<String>> {
         let (_, body) = html.split_once("<tbody>").unwrap();
         let cells = |row: &str| -> Vec<String> {
@@ -375,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn a_benchmark_has_the_figures_of_each_row() {
+    fn benchmark_table_rows() {
         let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
         let row = |name: &str, kind: &str, lanes: usize, speed: Value, skipped: Option<&str>| {
             json!({"name": name, "kind": kind, "lanes": lanes, "threads": 3, "paths_per_second": speed, "skipped": skipped,
@@ -408,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comparison_is_with_the_first_row() {
+    fn comparison_uses_first_row() {
         let row = |name: &str, median: f64, in_use: Option<f64>| json!({"name": name, "paths_per_second": {"median": median, "min": 1e6, "max": 9e6}, "in_use": in_use});
         let html = |rows: &[Value]| {
             let json = json!({"about": "Mappings.", "machine": "a GPU", "rows": rows});
@@ -424,7 +414,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_have_the_digits_that_count() {
+    fn numbers_have_significant_digits() {
         assert_eq!([5.214e6, 10e6, 54.62e6, 154.2e6].map(millions), ["5.21", "10.0", "54.6", "154"]);
         let times = [1234.6, 12.34, 0.1234, 0.000_012_34, 0.0].map(three_digits);
         assert_eq!(times, ["1235", "12.3", "0.123", "0.000012", "0.000000"]);

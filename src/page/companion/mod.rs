@@ -1,5 +1,5 @@
-//! `weekender companion`: one web page that goes through the book, made from the texts in `docs/companion`, the
-//! sources, the gallery's stills and measurements.
+//! `weekender companion`: one web page that follows the book, built from the texts in `docs/companion`, the sources,
+//! the gallery's stills and measurements.
 
 mod back_matter;
 mod book;
@@ -32,13 +32,11 @@ use page::Page;
 use site::Site;
 use std::process::ExitCode;
 
-/// Largest JSON of `weekender bench` that is read, bytes.
+/// Largest JSON of `weekender bench` read, bytes.
 const BENCH_LIMIT: u64 = 16 << 20;
 
-/// Writes the page and renders the stills that changed.
-///
-/// # Errors
-/// [`Failure::Input`] if nothing was written; [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
+/// Writes the page and renders the stills that changed. [`Failure::Input`] if nothing was written;
+/// [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
     let page = build(options).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
@@ -48,7 +46,7 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
         .map_err(Failure::Input)?;
     let index = out.join("index.html");
     check_page(&index).map_err(Failure::input)?;
-    // The page can be read while its figures are rendered.
+    // Write the page first, so that it can be read while its figures are rendered.
     write_text(&index, &page.html).map_err(Failure::run)?;
     let order = Order {
         directory: &out.join("figures"),

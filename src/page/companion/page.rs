@@ -20,7 +20,6 @@ const THEME_SCRIPT: &str = include_str!("../../../assets/companion/theme.js");
 const TITLE: &str = "Weekender, the companion";
 const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
 
-/// The page, ready to be written.
 #[derive(Debug)]
 pub struct Page {
     /// The content of `index.html`.
@@ -29,10 +28,7 @@ pub struct Page {
     pub stages: Vec<&'static Stage>,
 }
 
-/// Renders everything.
-///
-/// # Errors
-/// The first [`Fault`] of the texts, or if a stage has no data for a browser.
+/// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
 pub fn render(site: &Site) -> Result<Page> {
     let mut uses = Uses::default();
     uses.anchors.extend(site.chapters.iter().map(|chapter| chapter.id.clone()));
@@ -191,7 +187,7 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
     })
 }
 
-/// The web address and the heading of a chapter of the book, which must be the one that the chapter gives.
+/// Address and heading of a chapter of the book. The heading must match the one that our chapter states.
 fn book_chapter<'a>(site: &'a Site, chapter: &Chapter, number: &str) -> Result<(String, &'a str), Fault> {
     let heading =
         site.book.heading(number).filter(|found| Some(*found) == chapter.facts.book_title.as_deref());

@@ -14,16 +14,15 @@ use std::iter::Peekable;
 use std::ops::Range;
 use std::vec::IntoIter;
 
-/// A text and where it stands.
+/// A text and its location.
 struct Place<'a> {
     file: &'a str,
     lines_before: usize,
-    /// The chapter; `None` for a text in the back matter.
+    /// The chapter; `None` in the back matter.
     chapter: Option<&'a Chapter>,
     text: &'a str,
 }
 
-/// A chapter's text as HTML.
 pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
     let place = Place {
         file: &chapter.file,
@@ -34,7 +33,7 @@ pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup
     convert(site, &place, uses)
 }
 
-/// A short text of the back matter as HTML, without the paragraph around it.
+/// A short text of the back matter as HTML, without its paragraph.
 pub fn short_text(
     site: &Site,
     file: &str,
@@ -48,10 +47,10 @@ pub fn short_text(
     Ok(PreEscaped(inside.map_or(html.clone(), str::to_owned)))
 }
 
-/// Words as an anchor: `What a lane is` becomes `what-a-lane-is`.
-fn slug(words: &str) -> String {
+/// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
+fn slug(heading: &str) -> String {
     let mut slug = String::new();
-    for c in words.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
+    for c in heading.chars().filter(|c| !matches!(c, '\'' | '’' | '.')) {
         match c.to_lowercase().next() {
             Some(c) if c.is_ascii_alphanumeric() => slug.push(c),
             _ if slug.ends_with('-') || slug.is_empty() => {}
@@ -65,7 +64,7 @@ type Events<'a> = Peekable<IntoIter<(Event<'a>, Range<usize>)>>;
 
 fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses) -> Result<Markup, Fault> {
     let options = Options::ENABLE_TABLES | Options::ENABLE_MATH | Options::ENABLE_SMART_PUNCTUATION;
-    // `[@key]` is a link to something that Markdown does not know.
+    // Markdown does not know the target of `[@key]`.
     let mut citation = |link: BrokenLink<'_>| {
         let is_citation = link.reference.starts_with('@');
         is_citation.then(|| (CowStr::from(format!("{CITATION}{}", link.reference)), CowStr::from("")))
@@ -95,15 +94,15 @@ struct Converter<'a> {
     closing: Vec<Markup>,
 }
 
-/// Begins the target of a citation such as `[@key]` or `[@key; @other]`.
+/// Prefix of a citation's target, such as `[@key]` or `[@key; @other]`.
 const CITATION: &str = "cite:";
 
-/// HTML that stands by itself.
+/// HTML as a block of its own.
 fn block<'e>(markup: Markup) -> Event<'e> {
     Event::Html(format!("{}\n", markup.into_string()).into())
 }
 
-/// HTML in a line of text.
+/// HTML within a line of text.
 fn inline<'e>(markup: Markup) -> Event<'e> {
     Event::InlineHtml(markup.into_string().into())
 }
@@ -130,7 +129,7 @@ impl Converter<'_> {
                 out.extend([Event::End(TagEnd::Table), Event::Html("</div>\n".into())]);
             }
             Event::Start(Tag::Link { dest_url, .. }) if dest_url.starts_with(CITATION) => {
-                // The numbers replace the keys.
+                // Numbers replace the keys.
                 skip_to(rest, TagEnd::Link);
                 out.push(inline(self.citation(&dest_url)?));
             }
@@ -161,14 +160,14 @@ impl Converter<'_> {
         Ok(())
     }
 
-    /// The beginning of a paragraph, or the directive that it consists of.
+    /// The start of a paragraph, or the directive that is all of it.
     fn paragraph<'e>(&mut self, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Event<'e>> {
         let text = self.place.text[range.clone()].trim();
         if let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) {
             skip_to(rest, TagEnd::Paragraph);
             return directive::html(self.site, inside.trim(), self.uses).map(block);
         }
-        // A formula alone may be wider than the text.
+        // A lone formula may be wider than the text.
         let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
         let wide = Event::Html("<p class=\"wide\">".into());
         Ok(if is_formula { wide } else { Event::Start(Tag::Paragraph) })
@@ -176,17 +175,17 @@ impl Converter<'_> {
 
     fn heading<'e>(&mut self, level: usize, range: &Range<usize>, rest: &mut Events<'e>) -> Result<Markup> {
         let mut inner = Vec::new();
-        let mut words = String::new();
+        let mut plain_text = String::new();
         while let Some((event, at)) = rest.next() {
             match &event {
                 Event::End(TagEnd::Heading(_)) => break,
-                Event::Text(text) | Event::Code(text) => words.push_str(text),
+                Event::Text(text) | Event::Code(text) => plain_text.push_str(text),
                 _ => {}
             }
             self.convert(event, &at, rest, &mut inner)?;
         }
         let chapter = self.place.chapter.map(|chapter| chapter.id.as_str()).unwrap_or_default();
-        let anchor = format!("{chapter}-{}", slug(&words));
+        let anchor = format!("{chapter}-{}", slug(&plain_text));
         let is_new = self.uses.anchors.insert(anchor.clone());
         ensure!(is_new, "another heading has the anchor #{anchor}; choose other words");
         let source = self.place.text[range.clone()].trim_start_matches('#').trim();
@@ -199,7 +198,7 @@ impl Converter<'_> {
             }
         };
         let link = html! { a .anchor href={ "#" (anchor) } aria-label="Link to this section" { "#" } };
-        // The page's title is h1 and a chapter's h2.
+        // h1 is the page's title, h2 a chapter's.
         match level {
             2 => Ok(html! { h3 id=(anchor) { (title) (link) } }),
             3 => Ok(html! { h4 id=(anchor) { (title) (link) } }),
@@ -208,7 +207,7 @@ impl Converter<'_> {
         }
     }
 
-    /// The title of a section of the book, with a link to it.
+    /// The heading of a section of the book, with a link to it.
     fn book_heading(&self, number: &str, words: &str) -> Result<Markup> {
         let book = &self.site.book;
         let section = book.heading(number).zip(book.url(number));
@@ -257,7 +256,7 @@ impl Converter<'_> {
         })
     }
 
-    /// What opens and what closes a link.
+    /// The opening and closing markup of a link.
     fn link(&mut self, link_type: LinkType, target: &str) -> Result<(Markup, Markup)> {
         let site = self.site;
         let (scheme, rest) = target.split_once(':').unwrap_or(("", target));
@@ -295,7 +294,7 @@ impl Converter<'_> {
                 opened("", &format!("#{anchor}"), &title, None)
             }
             "source" => {
-                // The page has no copy of the repository, so it cites the path as it cites references.
+                // The page has no copy of the repository, so it cites the path like a reference.
                 return Ok((html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } }));
             }
             "https" | "mailto" => opened("", target, "", None),
@@ -314,7 +313,7 @@ impl Converter<'_> {
         Ok((open, PreEscaped("</a>".to_owned())))
     }
 
-    /// Notes a link to a term; returns whether it is the first in a chapter.
+    /// Notes a link to a term; returns whether it is the chapter's first.
     fn is_first_use(&mut self, term: &str) -> bool {
         let Some(chapter) = self.place.chapter else { return false };
         let is_first = !self.uses.terms.contains_key(term);
@@ -327,7 +326,6 @@ impl Converter<'_> {
     }
 }
 
-/// The tag that opens a link.
 fn opened(class: &str, href: &str, title: &str, id: Option<String>) -> Markup {
     let whole = html! {
         a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href)
@@ -336,7 +334,7 @@ fn opened(class: &str, href: &str, title: &str, id: Option<String>) -> Markup {
     PreEscaped(whole.into_string().replace("</a>", ""))
 }
 
-/// The formula and a punctuation mark that follows it, which must not begin a line.
+/// The formula with any punctuation that follows it, which must not start a line.
 fn with_punctuation(formula: &Markup, rest: &mut Events<'_>) -> Markup {
     let Some((Event::Text(next), _)) = rest.peek_mut() else { return formula.clone() };
     let Some(mark) = next.chars().next().filter(|c| ".,;:!?)".contains(*c)) else { return formula.clone() };

@@ -1,24 +1,20 @@
-//! The glossary and the list of references.
+//! The entries of the glossary and of the references.
 
 use serde::Deserialize;
 
-/// Where the terms are explained.
 pub const GLOSSARY: &str = "docs/companion/glossary.toml";
 
-/// Where the references are listed.
 pub const REFERENCES: &str = "docs/companion/references.toml";
 
-/// A term of the glossary.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Term {
     pub term: String,
-    /// What it means, in Markdown.
+    /// Definition, in Markdown.
     pub text: String,
     pub area: Area,
 }
 
-/// A part of the glossary.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum Area {
@@ -30,7 +26,7 @@ pub enum Area {
     Numbers,
 }
 
-/// A work that the text refers to.
+/// A work cited in the text.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reference {

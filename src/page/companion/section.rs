@@ -1,13 +1,13 @@
-//! The excerpts that belong to a section of the book, for programs that show them beside a stage.
+//! The excerpts for a section of the book, for programs that show them beside a stage.
 
 use super::book::{is_section, split_heading};
 use super::chapter::Chapter;
 use super::excerpt::{self, Excerpt};
 use super::library::Library;
 
-/// The excerpts that the page shows from behind section `after` up to and including section `section` of one chapter of
-/// the book: the code that is new in `section` if `after` is the section before it that has a picture. Both are numbers
-/// such as "9.1"; an `after` of another chapter leaves nothing out.
+/// The excerpts that the page shows after section `after`, up to and including section `section` of the same chapter of
+/// the book. If `after` is the previous section with a picture, this is the code that `section` adds. Both are numbers
+/// such as "9.1"; an `after` in another chapter excludes nothing.
 pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
     // A test reads these texts, so they have no faults.
     let library = Library::Embedded;
@@ -17,7 +17,7 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
     let Some(chapter) = chapters.iter().find(|chapter| chapter.facts.book == chapter_of(section)) else {
         return Vec::new();
     };
-    // Of the same chapter, only what comes later is new.
+    // Only later sections of the same chapter are new.
     let after = after.filter(|after| chapter_of(after) == chapter_of(section));
     let mut is_new = after.is_none();
     let mut found = Vec::new();
@@ -40,7 +40,7 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
     found
 }
 
-/// Whether a section comes after another one of the same chapter.
+/// Whether a section comes after another of the same chapter.
 fn is_later(section: &str, other: &str) -> bool {
     let part = |section: &str| section.split('.').nth(1).and_then(|part| part.parse::<u8>().ok());
     is_section(section) && part(section) > part(other)
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_section_has_the_excerpts_since_the_one_before() {
+    fn section_has_new_excerpts() {
         let first_lines = |after: Option<&str>, section: &str| -> Vec<String> {
             let first = |excerpt: Excerpt| excerpt.text.lines().next().unwrap_or_default().to_owned();
             excerpts_between(after, section).into_iter().map(first).collect()
@@ -59,7 +59,7 @@ mod tests {
         let glass = first_lines(Some("11.3"), "11.4");
         assert_eq!(glass.len(), 4, "{glass:?}");
         assert!(glass[..2].iter().all(|line| line.contains("fn reflectance")), "{glass:?}");
-        // The code of 5.1 is new in the picture of 5.2, which is the chapter's first.
+        // The code of 5.1 is new in the picture of 5.2, the chapter's first.
         assert!(first_lines(Some("4.2"), "5.2").iter().any(|line| line.contains("fn book_root")));
         assert_eq!(first_lines(Some("10.5"), "10.6"), Vec::<String>::new());
         assert_eq!(first_lines(None, "99.1"), Vec::<String>::new());

@@ -1,4 +1,4 @@
-//! Everything that the texts of the page can refer to, and what they did refer to.
+//! Everything that the page's texts can refer to, and what they did refer to.
 
 use super::book::{self, Book};
 use super::chapter::Chapter;
@@ -13,44 +13,42 @@ use crate::page::gallery::Figure;
 use anyhow::Result;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What texts can refer to.
+/// The targets available to texts.
 pub struct Site {
     /// Where diagrams are read from.
     pub library: Library,
     pub book: Book,
     pub chapters: Vec<Chapter>,
-    /// All excerpts by name.
+    /// By name.
     pub excerpts: BTreeMap<String, Excerpt>,
-    /// The glossary in alphabetical order.
+    /// In alphabetical order.
     pub terms: Vec<Entry<Term>>,
-    /// The references in the order of the file.
+    /// In file order.
     pub references: Vec<Entry<Reference>>,
-    /// What tables and charts are made of.
+    /// The data of tables and charts.
     pub measured: Measured,
     pub highlighter: Highlighter,
     pub formulas: Formulas,
 }
 
-/// What the texts have referred to so far.
+/// The references that the texts have made so far.
 #[derive(Debug, Default)]
 pub struct Uses {
     /// Keys of linked terms, each with the short title of the first chapter that links it.
     pub terms: BTreeMap<String, String>,
-    /// Names of shown excerpts.
+    /// Names of the excerpts shown.
     pub excerpts: BTreeSet<String>,
-    /// Figures in the order of the page.
+    /// In the order of the page.
     pub figures: Vec<&'static Figure>,
-    /// Anchors that exist.
+    /// Existing anchors.
     pub anchors: BTreeSet<String>,
-    /// Anchors that are linked, each with file and line.
+    /// Linked anchors, each with file and line.
     pub targets: Vec<(String, String, usize)>,
 }
 
 impl Site {
-    /// Reads everything from the library.
-    ///
-    /// # Errors
-    /// The first [`Fault`] of the texts, or what is wrong with a part of the program itself.
+    /// Reads everything from the library. Fails with the first [`Fault`] of the texts, or with an error in an embedded
+    /// part.
     pub fn read(library: &Library) -> Result<Self> {
         let mut terms: Vec<Entry<Term>> = library.entries(GLOSSARY)?;
         terms.sort_by_key(|entry| entry.value.term.to_lowercase());
@@ -67,12 +65,12 @@ impl Site {
         })
     }
 
-    /// The number and the entry of a reference.
+    /// The number and entry of a reference.
     pub fn reference(&self, key: &str) -> Option<(usize, &Entry<Reference>)> {
         (1..).zip(&self.references).find(|(_, entry)| entry.key == key)
     }
 
-    /// Looks for what nothing refers to, and for links to nothing: faults that show only after all texts were read.
+    /// Finds unused entries and dead links: faults that show only once all texts are read.
     pub fn check(&self, uses: &Uses) -> Result<(), Fault> {
         if let Some(Entry { key, line, .. }) =
             self.terms.iter().find(|entry| !uses.terms.contains_key(&entry.key))

@@ -1,4 +1,4 @@
-//! Made-up texts as HTML, and what is wrong with them.
+//! Made-up texts as HTML, and errors in them.
 
 use super::back_matter;
 use super::chapter::Chapter;
@@ -30,14 +30,14 @@ fn site() -> Site {
     site
 }
 
-/// The HTML of a text of the chapter on normals.
+/// The HTML of a text in the chapter on normals.
 fn converted(site: &Site, text: &str, uses: &mut Uses) -> Result<String, Fault> {
     let normals = site.chapters.iter().find(|chapter| chapter.id == "normals").unwrap();
     let chapter = Chapter { body: text.to_owned(), lines_before: 4, ..normals.clone() };
     prose::chapter(site, &chapter, uses).map(|html| html.into_string())
 }
 
-/// The HTML of a text of its own.
+/// The HTML of a single text.
 fn alone(site: &Site, text: &str) -> String {
     converted(site, text, &mut Uses::default()).unwrap()
 }
@@ -68,7 +68,7 @@ fn links_lead_to_what_they_name() {
 }
 
 #[test]
-fn links_are_noted_with_their_lines_and_the_first_to_a_term_can_be_returned_to() {
+fn links_are_recorded_with_lines() {
     let (site, mut uses) = (site(), Uses::default());
     let text = "[a](#there)\n\n[b](page:languages#two) [c](glossary:ray)\n\n[d](glossary:ray)";
     let html = converted(&site, text, &mut uses).unwrap();
@@ -81,7 +81,7 @@ fn links_are_noted_with_their_lines_and_the_first_to_a_term_can_be_returned_to()
 }
 
 #[test]
-fn headings_code_and_formulas_have_their_form() {
+fn headings_code_and_formulas_render() {
     let site = site();
     for (text, html) in [
         (
@@ -108,7 +108,7 @@ fn headings_code_and_formulas_have_their_form() {
 }
 
 #[test]
-fn directives_become_figures_excerpts_and_diagrams() {
+fn directives_render() {
     let site = Site::read(&Library::Embedded).unwrap();
     let pair = alone(&site, "{{pair dot dot-wgsl}}");
     assert!(pair.starts_with("<div class=\"pair\"><figure class=\"code\">"), "{pair}");
@@ -126,7 +126,7 @@ fn directives_become_figures_excerpts_and_diagrams() {
 }
 
 #[test]
-fn glossary_and_references_are_on_the_page_once() {
+fn back_matter_appears_once() {
     let (site, mut uses) = (site(), Uses::default());
     uses.terms.insert("ray".to_owned(), "Normals".to_owned());
     let mut fill = |marks: &[&str]| back_matter::fill(&marks.concat(), &site, &mut uses);
@@ -137,15 +137,15 @@ fn glossary_and_references_are_on_the_page_once() {
     ] {
         assert!(html.contains(part), "{part}: {html}");
     }
-    for (marks, told) in
+    for (marks, message) in
         [(&[GLOSSARY_MARK; 2][..], "{{glossary}} must"), (&[GLOSSARY_MARK], "{{references}} must")]
     {
-        assert!(fill(marks).unwrap_err().message.starts_with(told), "{marks:?}");
+        assert!(fill(marks).unwrap_err().message.starts_with(message), "{marks:?}");
     }
 }
 
 #[test]
-fn the_page_has_its_figures_and_the_cover_in_the_order_of_the_book() {
+fn page_figures_follow_book_order() {
     let mut site = site();
     site.terms.clear();
     let [languages, normals] = site.chapters.as_mut_slice() else { panic!("two chapters") };

@@ -1,4 +1,4 @@
-//! The steps of a packet's lanes as a figure, laid out from paths that the tracer recorded.
+//! A figure of the steps of a packet's lanes, laid out from recorded paths.
 
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
@@ -10,16 +10,16 @@ use std::fmt::Write;
 /// Lanes of the packet.
 const LANES: u32 = 8;
 
-/// Samples that each lane traces.
+/// Samples per lane.
 const SAMPLES: u64 = 12;
 
-/// Height of a lane and width of the figure, in units of the drawing.
+/// Height of a lane and width of the figure, in drawing units.
 const SIZE: [f64; 2] = [10.0, 720.0];
 
-/// Space between two lanes.
+/// Gap between lanes.
 const GAP: f64 = 1.5;
 
-/// What the colours mean, with the class of their paths.
+/// Meaning of the colours, with their CSS classes.
 const LEGEND: [(Activity, &str, &str); 5] = [
     (Activity::Camera, "from-camera", "a ray from the camera"),
     (Activity::Matte, "off-matte", "off a matte surface"),
@@ -29,13 +29,10 @@ const LEGEND: [(Activity, &str, &str); 5] = [
 ];
 
 /// The figure for a stage: the packet in the middle of its picture, without and with refill.
-///
-/// # Errors
-/// If there is no such stage, or it cannot be rendered.
 pub fn figure(id: &str) -> Result<Markup> {
     let stage = Stage::find(id)?;
     let job = stage.recipe().job()?;
-    // Every level records the same steps; the portable one is there on all machines.
+    // Every level records the same steps; the portable one exists on all machines.
     let recorder = PathRecorder::new(&job, Isa::Portable, None);
     let middle = [job.settings().width / 2, job.settings().height / 2];
     // Two rows of pixels, from the middle of the picture to the right and downwards.
@@ -44,15 +41,15 @@ pub fn figure(id: &str) -> Result<Markup> {
     let paths: Vec<_> = (0..LANES).map(lane).collect();
     let [plain, refilled] = [false, true].map(|refill| timeline(job.scene(), &paths, refill));
     let columns = plain.len().max(refilled.len()).max(1);
-    let words = |timeline: &Timeline| {
+    let summary = |timeline: &Timeline| {
         format!("{} steps, {:.0} % of the lanes at work", timeline.len(), 100.0 * timeline.share_at_work())
     };
-    let title = format!("Without refill: {}. With refill: {}.", words(&plain), words(&refilled));
+    let title = format!("Without refill: {}. With refill: {}.", summary(&plain), summary(&refilled));
     Ok(html! {
         figure .timeline id={ "timeline-" (id) } {
-            p .label { "Without refill, all lanes wait for the longest path: " (words(&plain)) }
+            p .label { "Without refill, all lanes wait for the longest path: " (summary(&plain)) }
             (drawing(&plain, columns))
-            p .label { "With refill, a lane starts its next path at once: " (words(&refilled)) }
+            p .label { "With refill, a lane starts its next path at once: " (summary(&refilled)) }
             (drawing(&refilled, columns))
             ul .legend aria-hidden="true" {
                 @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
@@ -96,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_figure_says_what_refill_gains() {
+    fn figure_states_gain_of_refill() {
         let html = figure("three-spheres").unwrap().into_string();
         let steps = |after: &str| -> f64 {
             let rest = &html[html.find(after).unwrap() + after.len()..];
@@ -104,7 +101,7 @@ mod tests {
         };
         let (plain, refilled) = (steps("the longest path"), steps("its next path at once"));
         assert!(refilled >= 12.0 && refilled < 0.8 * plain, "{refilled} {plain}");
-        // Every lane begins with a ray from the camera.
+        // Every lane starts with a camera ray.
         assert_eq!(html.matches("M0.0 ").count(), 16);
     }
 }

@@ -1,4 +1,4 @@
-//! The figures in the book's order. The ids never change, because pages and command lines contain them.
+//! The figures in the book's order. Ids never change, because pages and command lines contain them.
 
 use super::{Figure, Panel};
 

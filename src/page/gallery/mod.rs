@@ -1,5 +1,5 @@
-//! The figures: the book's stages as pictures with captions, alone or side by side. `weekender gallery` renders them
-//! into a directory, with a page that shows them.
+//! Figures: the book's stages as pictures with captions, alone or side by side. `weekender gallery` renders them into a
+//! directory with a page.
 
 mod figures;
 mod page;
@@ -26,9 +26,9 @@ pub struct Figure {
     /// The identifier in pages and on the command line. It never changes.
     pub id: &'static str,
     pub title: &'static str,
-    /// What the pictures show: one or two sentences.
+    /// One or two sentences.
     pub caption: &'static str,
-    /// The pictures from left to right, at least one.
+    /// Left to right, at least one.
     pub panels: &'static [Panel],
 }
 
@@ -36,19 +36,19 @@ pub struct Figure {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Panel {
     stage_id: &'static str,
-    /// A few words that tell the picture from its neighbours.
+    /// A few words that distinguish the picture from its neighbours.
     pub label: &'static str,
 }
 
 impl Figure {
-    /// All figures in the book's order. Every stage is in at least one of them.
+    /// All figures in the book's order. Every stage is in at least one.
     pub const ALL: &'static [Figure] = figures::FIGURES;
 
     pub fn find(id: &str) -> Option<&'static Figure> {
         Self::ALL.iter().find(|figure| figure.id == id)
     }
 
-    /// The stage whose section of the book the figure belongs to: the latest of its stages.
+    /// The stage whose section the figure belongs to: its latest.
     pub fn stage(&self) -> &'static Stage {
         let latest = self.panels.iter().map(Panel::stage).max_by_key(|stage| stage.index());
         latest.unwrap_or(&Stage::ALL[0])
@@ -56,17 +56,15 @@ impl Figure {
 }
 
 impl Panel {
-    /// The stage that the picture shows.
+    /// The stage shown.
     pub fn stage(&self) -> &'static Stage {
         // A test finds the stage of every panel.
         Stage::find(self.stage_id).unwrap_or(&Stage::ALL[0])
     }
 }
 
-/// Renders what is missing of the gallery, and writes its page.
-///
-/// # Errors
-/// [`Failure::Input`] if nothing was rendered, [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
+/// Renders missing stills and writes the page. [`Failure::Input`] if nothing was rendered, [`Failure::BrokeOff`] or
+/// [`Failure::Run`] otherwise.
 pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
     let stages = chosen(&options.only).map_err(Failure::Input)?;
     let index = options.out.join("index.html");
@@ -87,7 +85,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
     outcome.report("picture", &index, &interrupt)
 }
 
-/// The stages of these ids of figures or stages, in the book's order; all stages if there are none.
+/// The stages with these figure or stage ids, in the book's order; all stages if no ids are given.
 fn chosen(ids: &[String]) -> Result<Vec<&'static Stage>> {
     let mut chosen: Vec<&str> = Vec::new();
     for id in ids {
@@ -112,7 +110,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn figures_cover_every_stage_in_the_books_order() {
+    fn figures_cover_every_stage_in_order() {
         let shown: HashSet<&str> =
             Figure::ALL.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage_id).collect();
         assert_eq!(shown, Stage::ALL.iter().map(|stage| stage.id).collect());

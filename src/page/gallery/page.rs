@@ -1,4 +1,4 @@
-//! `index.html`: the figures with captions, chapter by chapter. It needs no server, script or network.
+//! `index.html`: the figures with captions, by chapter. It needs no server, script or network.
 
 use super::quality::is_about_pixels;
 use super::{Figure, Panel, Stills};
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 const STYLE: &str = include_str!("../../../assets/gallery/style.css");
 
-/// The page of the stills. A still that is not there has a place that says so.
+/// The page of the stills, with placeholders for missing ones.
 pub fn page(stills: &Stills) -> String {
     let chapters = Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
     let chapters: Vec<(&Stage, &[Figure])> =
@@ -89,7 +89,7 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
     }
 }
 
-/// The panel; `is_labelled` if it has neighbours.
+/// `is_labelled` if the panel has neighbours.
 fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
     let stage = panel.stage();
     let class = if is_about_pixels(stage) { "panel pixels" } else { "panel" };
@@ -117,7 +117,7 @@ mod tests {
     use crate::page::gallery::Still;
 
     #[test]
-    fn a_page_has_every_figure_and_says_which_pictures_are_missing() {
+    fn page_has_figures_and_placeholders() {
         let mut stills = Stills::default();
         for (id, backend) in [("metal", "gpu x"), ("metal-fuzzy", "cpu y"), ("book", "gpu x")] {
             stills.set(Still { backend: backend.to_owned(), ..Still::of(id) });
@@ -128,7 +128,7 @@ mod tests {
             let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());
             assert_eq!(page.matches(&chapter).count(), 1, "{chapter}");
         }
-        // Metal is shown alone and, with a label, beside its fuzzy neighbour.
+        // Metal appears alone and, with a label, beside its fuzzy neighbour.
         let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
         assert_eq!(page.matches("<img ").count(), 4);
         assert_eq!(page.matches("<p class=\"facts\"><strong>").count(), 2);

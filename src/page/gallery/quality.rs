@@ -1,37 +1,36 @@
-//! How large stills are and how many samples they get.
+//! Size and sample count of stills.
 
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
 
-/// The effort for a still.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
-    /// Small and with visible noise, for a first look.
+    /// Small and visibly noisy, for a first look.
     Quick,
-    /// For pages: almost twice as many pixels across as most figures are wide, and hardly any noise.
+    /// For pages: almost twice the pixels that most figures are wide, and hardly any noise.
     Full,
 }
 
-/// Largest width of a quick still, pixels.
+/// Maximum width of a quick still, pixels.
 const QUICK_WIDTH: u32 = 480;
 
-/// Most samples per pixel of a quick still.
+/// Maximum samples per pixel of a quick still.
 const QUICK_SAMPLES: u64 = 64;
 
-/// Least width of a full still, pixels.
+/// Minimum width of a full still, pixels.
 const FULL_WIDTH: u32 = 880;
 
-/// Samples per pixel of a full still: the estimated error is then 0.003 or less, about half a step of 8 bits.
+/// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
 const FULL_SAMPLES: u64 = 1024;
 
-/// Stages about single pixels; neither their size nor their samples may change.
+/// Stages about single pixels, whose size and samples must not change.
 const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
 
-/// A still of fewer pixels across is enlarged.
+/// Stills narrower than this are enlarged.
 const FEW_PIXELS: u32 = 100;
 
-/// Whether a still of the stage has so few pixels that it must be enlarged, with every pixel a square. (Stills that are
-/// reduced must not be shown so: their edges would become steps.)
+/// Whether a still of the stage must be enlarged with every pixel a square. (A reduced still must not be shown so: its
+/// edges would become jagged.)
 pub fn is_about_pixels(stage: &Stage) -> bool {
     stage.setup.width < FEW_PIXELS
 }
@@ -41,7 +40,7 @@ impl Quality {
         if is_quick { Quality::Quick } else { Quality::Full }
     }
 
-    /// The picture of `stage`: its own recipe in the size and with the samples of this quality.
+    /// The stage's own recipe with this quality's size and samples.
     pub fn recipe(self, stage: &Stage) -> Recipe {
         let mut recipe = stage.recipe();
         if PIXELS.contains(&stage.id) {
@@ -54,7 +53,7 @@ impl Quality {
         };
         settings.height = (settings.height * width).div_ceil(settings.width);
         settings.width = width;
-        // A stage with one sample sends it through the centre of the pixel; more would be the same.
+        // A stage with one sample sends it through the pixel's centre; more would be the same.
         recipe.samples_per_pixel = match (self, recipe.samples_per_pixel) {
             (_, 1) => 1,
             (Quality::Quick, samples) => samples.min(QUICK_SAMPLES),
@@ -69,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stills_keep_the_shape_of_their_stage() {
+    fn stills_keep_aspect_ratio() {
         for stage in Stage::ALL {
             let own = stage.recipe();
             for quality in [Quality::Quick, Quality::Full] {

@@ -1,4 +1,4 @@
-//! Renders the stills that are missing or have changed.
+//! Renders missing or outdated stills.
 
 use super::quality::Quality;
 use super::still::{self, INDEX, Still, Stills, fingerprint};
@@ -21,39 +21,34 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Which stills are wanted, and where.
 #[derive(Clone, Debug)]
 pub struct Order<'a> {
-    /// The directory of the stills, which is created if necessary.
+    /// The directory of the stills, created if missing.
     pub directory: &'a Path,
-    /// The stages; stills of others are left as they are.
+    /// The stages to render; stills of others stay untouched.
     pub stages: &'a [&'static Stage],
-    /// The effort for each still. A full still is kept when quick ones are wanted.
+    /// The effort per still. A full still satisfies a quick order.
     pub quality: Quality,
     pub backend: &'a BackendChoice,
     pub progress: ProgressChoice,
-    /// Whether each finished still is printed on a line.
+    /// Whether to print each finished still on a line.
     pub prints_stills: bool,
 }
 
-/// The result of an order.
 #[derive(Debug)]
 pub struct Outcome {
     /// All stills of the directory.
     pub stills: Stills,
-    /// How many were rendered now.
+    /// How many were rendered.
     pub rendered: usize,
-    /// How many of the wanted ones did not have to be rendered.
+    /// How many of the ordered ones were up to date.
     pub kept: usize,
-    /// How many are still missing because of a signal.
+    /// How many are missing because of a signal.
     pub missing: usize,
 }
 
 impl Outcome {
-    /// Says what was done, and where the page is or how to continue.
-    ///
-    /// # Errors
-    /// If standard output cannot be written.
+    /// Reports what was done, and where the page is or how to continue.
     pub fn report(&self, noun: &str, page: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
         if self.missing > 0 {
             let missing = counted(self.missing as u64, noun);
@@ -67,23 +62,21 @@ impl Outcome {
     }
 }
 
-/// A still that must be rendered.
 struct Task {
     stage: &'static Stage,
     recipe: Recipe,
     fingerprint: String,
 }
 
-/// Interval of progress lines when there is no terminal.
+/// Interval of progress lines without a terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
-/// The progress bar, whose steps are paths.
+/// The progress bar, which counts paths.
 const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
 
-/// Renders those of the wanted stills that are missing, damaged or made from other settings or by another tracer, and
-/// writes each with its description as soon as it is finished. After Ctrl-C, the still in progress is dropped.
+/// Renders the ordered stills that are missing, damaged, or made from other settings or by another tracer, and writes
+/// each with its description as soon as it is finished. Ctrl-C drops the still in progress.
 ///
-/// # Errors
 /// [`Failure::Input`] if nothing was rendered, otherwise [`Failure::BrokeOff`] or [`Failure::Run`]. Finished stills are
 /// kept.
 pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failure> {
@@ -117,7 +110,6 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
     Ok(Outcome { stills, rendered, kept, missing: tasks.len() - rendered })
 }
 
-/// The stills that must be rendered.
 fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
     let mut tasks = Vec::new();
     for stage in order.stages {
@@ -133,7 +125,6 @@ fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
     Ok(tasks)
 }
 
-/// The work on an order.
 struct Work<'a> {
     order: &'a Order<'a>,
     interrupt: &'a Interrupt,
@@ -143,7 +134,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Counts the finished stills in `rendered`. Ends early after a signal.
+    /// Counts the finished stills in `rendered`. A signal ends it early.
     fn render_all(&mut self, stills: &mut Stills, rendered: &mut usize) -> Result<()> {
         for (number, task) in self.tasks.iter().enumerate() {
             let Some(still) = self.render(number, task)? else { break };
@@ -164,11 +155,11 @@ impl Work<'_> {
         let plan = Studio::plan(recipe.samples_per_pixel);
         let (display, tasks) = (&mut self.display, self.tasks);
         let (status, film) = self.studio.render(recipe.job()?, plan, None, |event| match event {
-            Event::Warning(words) => display.say(&format!("warning: {words}")),
+            Event::Warning(message) => display.say(&format!("warning: {message}")),
             Event::Stopping => {}
             Event::Status(_, status) => {
-                let (words, done) = progress(tasks, number, status);
-                display.update(done, || words);
+                let (message, done) = progress(tasks, number, status);
+                display.update(done, || message);
             }
         });
         if let Phase::Failed(reason) = &status.phase {
@@ -203,17 +194,16 @@ impl Work<'_> {
     }
 }
 
-/// The progress in words and in paths, while the task with this number is rendered.
+/// The progress as text and in paths, while task `number` is rendered.
 fn progress(tasks: &[Task], number: usize, status: &Status) -> (String, u64) {
     let Task { stage, recipe, .. } = &tasks[number];
     let done = status.samples_per_pixel;
     let error = status.error.map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
     let (count, planned) = (tasks.len(), recipe.samples_per_pixel);
-    let words = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
-    (words, paths(&tasks[..number]) + done * pixels(recipe))
+    let message = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
+    (message, paths(&tasks[..number]) + done * pixels(recipe))
 }
 
-/// The paths of all pictures.
 fn paths(tasks: &[Task]) -> u64 {
     tasks.iter().map(|task| task.recipe.samples_per_pixel * pixels(&task.recipe)).sum()
 }

@@ -1,4 +1,4 @@
-//! The stills of a directory and what its `gallery.json` says about them.
+//! The stills of a directory and their `gallery.json`.
 
 use crate::cli::JsonTarget;
 use crate::cli::terminal::write_json;
@@ -12,21 +12,20 @@ use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// The name of the file that describes the stills of a directory.
+/// The file that describes a directory's stills.
 pub const INDEX: &str = "gallery.json";
 
-/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+/// Version of the JSON, incremented when a key is removed or changes meaning.
 const SCHEMA: u32 = 1;
 
-/// Longest `gallery.json` and longest still that are read, bytes.
+/// Largest `gallery.json` and largest still read, bytes.
 const LENGTH_LIMIT: u64 = 64 << 20;
 
-/// A rendered still.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Still {
-    /// The id of the stage that it shows.
+    /// Id of the stage.
     pub stage: String,
-    /// The name of its file.
+    /// File name.
     pub file: String,
     pub width: u32,
     pub height: u32,
@@ -36,8 +35,7 @@ pub struct Still {
     pub samples_per_pixel: u64,
     /// Wall time of tracing.
     pub trace_seconds: f64,
-    /// Root of the mean squared error, linear radiance, estimated from two halves of the samples; `None` if there was
-    /// one sample.
+    /// Estimated RMSE, linear radiance, from two halves of the samples; `None` with a single sample.
     pub rmse_estimate: Option<f64>,
     /// One standard deviation of `rmse_estimate`.
     pub rmse_deviation: Option<f64>,
@@ -59,7 +57,6 @@ pub fn fingerprint(recipe: &Recipe) -> String {
 }
 
 impl Still {
-    /// The file name of a stage's still.
     pub fn file_name(stage: &Stage) -> String {
         format!("{}.png", stage.id)
     }
@@ -72,7 +69,7 @@ impl Still {
         format!("{stage:<18} {size:>9}, {samples:>4} spp, {time:>15}, {error}\n")
     }
 
-    /// Size, samples and rays in words.
+    /// Size, samples and rays.
     pub fn settings_words(&self) -> String {
         let samples = match self.samples_per_pixel {
             1 => "1 ray through the centre of each pixel".to_owned(),
@@ -85,12 +82,12 @@ impl Still {
         format!("{} × {} pixels, {samples}{depth}", self.width, self.height)
     }
 
-    /// The tracing time in words.
+    /// The tracing time.
     pub fn time_words(&self) -> String {
         if self.trace_seconds < 0.1 { "less than 0.1 s".to_owned() } else { seconds(self.trace_seconds) }
     }
 
-    /// The estimated error in words.
+    /// The estimated error.
     pub fn error_words(&self) -> String {
         match (self.rmse_estimate, self.rmse_deviation) {
             (Some(rmse), Some(deviation)) if rmse > 0.0 => {
@@ -116,8 +113,8 @@ struct Json {
 }
 
 impl Stills {
-    /// Reads a directory's `gallery.json`. Stills of stages that no longer exist are left out. A file that cannot be
-    /// used costs only time: it is named in a warning, and there are no stills.
+    /// Reads a directory's `gallery.json`, skipping stages that no longer exist. An unusable file only costs time: it
+    /// gives a warning and no stills.
     pub fn read(directory: &Path) -> Stills {
         let path = directory.join(INDEX);
         let mut stills = Stills { directory: directory.to_owned(), pictures: Vec::new() };
@@ -132,17 +129,15 @@ impl Stills {
         stills
     }
 
-    /// All stills, in the book's order.
     pub fn all(&self) -> &[Still] {
         &self.pictures
     }
 
-    /// The still of a stage.
     pub fn of(&self, stage: &Stage) -> Option<&Still> {
         self.pictures.iter().find(|still| still.stage == stage.id)
     }
 
-    /// Adds a still, or replaces that of the same stage.
+    /// Adds a still, replacing the same stage's.
     pub(super) fn set(&mut self, still: Still) {
         let index = |still: &Still| Stage::find(&still.stage).ok().map(Stage::index);
         if index(&still).is_none() || still.file.contains(['/', '\\']) {
@@ -153,14 +148,13 @@ impl Stills {
         self.pictures.sort_by_key(index);
     }
 
-    /// Writes `gallery.json`.
     pub(super) fn write(&self) -> Result<()> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let json = Json { schema: SCHEMA, version, pictures: self.pictures.clone() };
         write_json(&json, &JsonTarget::File(self.directory.join(INDEX)))
     }
 
-    /// Whether the still of `stage` has one of these fingerprints and its file is as it was written.
+    /// Whether the still of `stage` has one of these fingerprints and its file is as written.
     pub(super) fn is_fresh(&self, stage: &Stage, fingerprints: &[&str]) -> bool {
         self.of(stage).is_some_and(|still| {
             fingerprints.contains(&still.fingerprint.as_str())
@@ -177,7 +171,6 @@ fn read_index(path: &Path) -> Result<Vec<Still>> {
     Ok(json.pictures)
 }
 
-/// The checksum of a file.
 pub(super) fn checksum(path: &Path) -> Result<String, InputError> {
     let mut checksum = Checksum::default();
     checksum.text(&files::read(path, "a picture", LENGTH_LIMIT)?);
@@ -216,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn every_change_of_a_recipe_changes_the_fingerprint() {
+    fn fingerprint_covers_whole_recipe() {
         let recipe = Quality::Quick.recipe(Stage::find("metal-fuzzy").unwrap());
         let change = |change: &dyn Fn(&mut Recipe)| {
             let mut recipe = recipe.clone();
@@ -239,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn the_index_is_read_as_it_was_written_without_foreign_entries() {
+    fn index_round_trips_without_unknown_stages() {
         let directory = tempfile::tempdir().unwrap();
         let mut stills = Stills::read(directory.path());
         assert_eq!(stills.all(), []);

@@ -34,7 +34,7 @@ pub(super) fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Resu
     }))
 }
 
-/// The byte offsets of a record's fields, and its size as an array element as `stride`.
+/// A record's field offsets in bytes, and its size as an array element as `stride`.
 fn record((name, size, fields): records::Layout) -> (String, Value) {
     let fields = fields.into_iter().map(|field| (field.name.to_owned(), field.offset.into()));
     (name, Value::Object(fields.chain([("stride".to_owned(), size.into())]).collect()))
@@ -71,10 +71,10 @@ fn stage_data(stage: &Stage) -> Result<Value> {
         "sliders": sliders(&job, recipe.samples_per_pixel, &exported.scene_index),
         // Loop turns over lists for one ray.
         "turns_over_lists": exported.turns_over_lists,
-        // Most samples in a block.
+        // Most samples per block.
         "block_limit": exported.block_limit,
         "overrides": overrides.collect::<Map<_, _>>(),
-        // The contents of the buffers of group 0.
+        // Contents of the buffers of group 0.
         "buffers": exported.buffers.map(|bytes| STANDARD.encode(bytes)),
     }))
 }
@@ -87,7 +87,7 @@ mod tests {
     use glam::DVec3;
 
     #[test]
-    fn a_stage_has_the_numbers_of_its_recipe() {
+    fn stage_data_matches_recipe() {
         for stage in Stage::ALL {
             let (data, setup) = (stage_data(stage).unwrap(), stage.setup);
             assert_eq!([&data["width"], &data["height"]], [setup.width, setup.height], "{}", stage.id);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_far_away_has_an_origin_of_its_own() {
+    fn distant_scene_has_own_origin() {
         const AWAY: DVec3 = DVec3::new(4096.0, 0.0, -65_536.0);
         let near = Stage::find("normals").unwrap();
         let scene = || {

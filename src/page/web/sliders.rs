@@ -5,7 +5,7 @@ use crate::scene::{Material, Sphere};
 use crate::stages::Shading;
 use serde::Serialize;
 
-/// A slider: what it changes, its label and its range. The range of `samples` is that of the logarithm to base 2.
+/// A slider. The range of `samples` is that of its base-2 logarithm.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Slider {
     /// What it changes: a number of the camera, `depth`, `samples`, or the material number `fuzz` or `index`.
@@ -18,7 +18,7 @@ pub(super) struct Slider {
     value: f64,
     /// The shading records that get the value.
     rows: Vec<usize>,
-    /// The shading records that get its inverse: bubbles of air in glass.
+    /// The shading records that get its inverse: air bubbles in glass.
     inverse_rows: Vec<usize>,
 }
 
@@ -33,19 +33,19 @@ impl Slider {
     }
 }
 
-/// Most metals that have sliders of their own.
+/// Most metals with sliders of their own.
 const METAL_LIMIT: usize = 2;
 
-/// The sliders of a stage. `scene_index` is the index in the scene of each shading record's sphere.
+/// The sliders of a stage. `scene_index` maps each shading record to its sphere's index in the scene.
 ///
-/// Their ranges keep the features of the kernel: no index is steep, no path longer than the book's.
+/// Their ranges keep the kernel's features: no index is steep, no path longer than the book's.
 pub(super) fn sliders(job: &RenderJob, samples: u64, scene_index: &[u32]) -> Vec<Slider> {
     let shading = job.rules().shading;
     let mut sliders = Vec::new();
     if shading != Shading::ImageGradient {
         let camera = job.camera();
         sliders.push(Slider::new("vfov", "Field of view", [5.0, 120.0, 1.0], camera.vfov_degrees).degrees());
-        // With one sample per pixel, a lens would only make noise.
+        // With one sample per pixel, a lens would only add noise.
         if samples > 1 {
             let focus = camera.effective_focus_distance();
             let angle = camera.defocus_angle_degrees;
@@ -72,7 +72,7 @@ fn rows_of(job: &RenderJob, scene_index: &[u32], is_such: impl Fn(&Sphere) -> bo
     spheres.enumerate().filter(|(_, sphere)| is_such(sphere)).map(|(row, _)| row).collect()
 }
 
-/// A slider for each metal, or for the metal of the largest sphere if there are many.
+/// A slider for each metal or, if there are many, for the largest sphere's.
 fn fuzz(job: &RenderJob, scene_index: &[u32]) -> Vec<Slider> {
     let scene = job.scene();
     let radius = |material: usize| {
@@ -122,7 +122,7 @@ mod tests {
     use crate::stages::Stage;
     use glam::DVec3;
 
-    /// The sliders of a scene whose records are those of its spheres from the last to the first.
+    /// The sliders of a scene whose records list its spheres from last to first.
     fn sliders_of(scene: Scene, samples: u64) -> Vec<Slider> {
         let count = scene.spheres.len() as u32;
         let recipe = Recipe::find("three-spheres").unwrap();
@@ -138,14 +138,14 @@ mod tests {
 
     /// The spheres are the ground, the middle one, the glass, the bubble in it, and the metal.
     #[test]
-    fn a_slider_moves_the_spheres_of_its_material_and_the_bubble_in_the_glass() {
+    fn sliders_cover_material_and_bubble() {
         let hollow = sliders_of(three_spheres(LeftSphere::HollowGlass), 64);
         assert_eq!(with_key(&hollow, "index"), [("Index of refraction", 1.5, &[2][..], &[1][..])]);
         assert_eq!(with_key(&hollow, "fuzz"), [("Fuzz (right)", 1.0, &[0][..], &[][..])]);
-        // A bubble of air under water stands alone.
+        // An air bubble under water is alone.
         let bubble = sliders_of(three_spheres(LeftSphere::Glass(1.0 / 1.33)), 64);
         assert_eq!(with_key(&bubble, "index"), [("Index of refraction", 1.0 / 1.33, &[1][..], &[][..])]);
-        // What has the index 1 is its own inverse, and is written once.
+        // An index of 1 is its own inverse, and is written once.
         let air = sliders_of(three_spheres(LeftSphere::Glass(1.0)), 64);
         assert_eq!(with_key(&air, "index"), [("Index of refraction", 1.0, &[1][..], &[][..])]);
         let metals = sliders_of(metals(0.3, 1.0), 64);
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_metals_the_largest_has_a_slider_for_all_its_spheres() {
+    fn largest_of_many_metals_has_slider() {
         let mut scene = Scene::default();
         for (name, fuzz, radii) in
             [("small", 0.1, &[0.1, 0.2][..]), ("large", 2.5, &[0.3, 0.7]), ("middle", 0.4, &[0.6])]
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn every_slider_can_show_the_value_of_its_stage() {
+    fn slider_ranges_contain_stage_values() {
         for stage in Stage::ALL {
             let (recipe, id) = (stage.recipe(), stage.id);
             let job = recipe.job().unwrap();

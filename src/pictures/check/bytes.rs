@@ -1,10 +1,10 @@
-//! Mistakes that show in the bytes of my picture next to the right one.
+//! Mistakes that show in the bytes of a picture, compared with the right one.
 
 use super::Mine;
 use super::hypothesis::Compared;
 
-/// Whether nearly all bytes are 0 or 255, though the picture should have values between. Cutting turns dark values into
-/// 0, but none of them into 255.
+/// Whether nearly all bytes are 0 or 255, though the picture should have values in between. Converting to an integer
+/// too early turns dark values into 0 but never into 255.
 pub fn is_truncated(mine: &Mine, right: &Compared) -> bool {
     let is_end = |byte: u8| byte <= 1 || byte >= 254;
     let should_be = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
@@ -17,16 +17,16 @@ pub fn is_truncated(mine: &Mine, right: &Compared) -> bool {
     !right.is_noise && 100 * ends >= 99 * all && 2 * expected_ends < all && 100 * too_bright <= all
 }
 
-/// Whether bytes are 255 times the value instead of 256 times, cut off: values are then smaller by 1/256 everywhere.
+/// Whether bytes were scaled by 255 instead of 256 and truncated: all values are then smaller by 1/256.
 pub fn is_times_255(mine: &Mine, right: &Compared) -> bool {
     let (width, height) = (mine.width as usize, mine.height as usize);
     let written = &right.hypothesis.written;
-    // Noise is without bias in linear values, so the loss is fitted there.
+    // Noise is unbiased in linear values, so the loss is fitted there.
     let (mut product, mut square, mut scaled, mut count) = (0.0, 0.0, 0.0, 0);
     for (index, (bytes, expected)) in mine.bytes.iter().zip(&right.expected).enumerate() {
         let row = index / width;
         for (byte, x) in bytes.iter().copied().zip(expected.iter().copied()) {
-            // At the upper end, 255 is a limit and not a value.
+            // At the upper end, 255 is a bound, not a value.
             if byte >= 254 || !(0.05..=0.98).contains(&x) {
                 continue;
             }

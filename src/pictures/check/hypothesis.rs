@@ -1,4 +1,4 @@
-//! Mistakes, pictures as they should be if one was made, or none, and how near mine comes to them.
+//! Hypotheses: the right picture, the picture each mistake would give, and how close the reader's comes to them.
 
 use super::Mine;
 use super::tracer::{Steps, Tracer};
@@ -12,52 +12,49 @@ use anyhow::Result;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-/// By how many deviations the sum of squares of a right picture may differ. Noise alone stays below 4; the rest is for
-/// random numbers that are not quite independent and noise that is far from normal.
+/// Deviations by which a right picture's sum of squares may exceed noise. Noise alone stays below 4; the rest allows
+/// for correlated random numbers and noise that is far from normal.
 const EXCESS_LIMIT: f64 = 10.0;
 
-/// By what factor a block of a right picture may exceed the limit for normal noise.
+/// Factor by which a block of a right picture may exceed the limit for normal noise.
 const LARGEST_FACTOR: f64 = 1.6;
 
-/// A mistake that readers of the book make.
+/// A common mistake in programs that follow the book.
 #[derive(Debug)]
 pub struct Mistake {
-    /// The identifier in JSON.
     pub id: &'static str,
-    /// The section of the book to read again.
+    /// The section of the book to reread.
     pub section: &'static str,
-    /// The mistake in a few words.
     pub title: &'static str,
-    /// What to change.
     pub remedy: &'static str,
-    /// Whether it can show in a picture of a recipe.
+    /// Whether the mistake can show in a picture of this recipe.
     pub applies: fn(&Recipe) -> bool,
     pub change: Change,
 }
 
-/// What a mistake changes, so that its picture can be rendered.
+/// How to render a picture with the mistake.
 #[derive(Debug)]
 pub enum Change {
-    /// How the linear picture becomes bytes.
+    /// Changes how the linear picture becomes bytes.
     Written(fn(&mut Written)),
-    /// The recipe that the program's own tracer renders.
+    /// Changes the recipe of the program's own tracer.
     Recipe(fn(&mut Recipe)),
     Rules(fn(&mut Rules)),
     Camera(fn(&mut Camera)),
     Scene(fn(&mut Scene)),
     Materials(fn(&mut Material)),
-    /// A step of the book's program, as the plain tracer follows it.
+    /// Changes a step of the plain tracer.
     Steps(fn(&mut Steps)),
-    /// One of several things.
+    /// Any of several variants.
     Several(fn(&Recipe) -> Vec<Hypothesis>),
-    /// As inside, but the mean of a block hardly shows it: it is looked for at edges, pixel by pixel.
+    /// Compared pixel by pixel at edges, because block means hardly show it.
     AtEdges(&'static Change),
-    /// As inside, but the bytes show it next to the right picture, even where blocks differ only by noise.
+    /// Detected in the bytes, even where blocks differ only by noise.
     InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
 }
 
 impl Mistake {
-    /// Its pictures; several if it has variants.
+    /// One hypothesis per variant.
     pub fn pictures(&'static self, recipe: &Recipe) -> Vec<Hypothesis> {
         let blame = |picture| Hypothesis { mistake: Some(self), ..picture };
         self.change.pictures(recipe).into_iter().map(blame).collect()
@@ -97,51 +94,49 @@ impl Change {
     }
 }
 
-/// A picture that could be mine: how its linear values are made, and how they become bytes.
+/// A picture the reader's may be: how its linear values are made, and how they become bytes.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
     /// The mistake; `None` for the right picture.
     pub mistake: Option<&'static Mistake>,
-    /// What else is to be said about it.
+    /// An extra remark for the reader.
     pub note: Option<String>,
     pub making: Making,
     pub written: Written,
 }
 
-/// What makes the linear values.
 #[derive(Clone, Debug)]
 pub enum Making {
-    /// The program's own tracer, from the right recipe.
+    /// The program's own tracer, with the right recipe.
     Right,
-    /// The program's own tracer, from another recipe.
+    /// The program's own tracer, with a changed recipe.
     Fast(Box<Recipe>),
     /// The plain tracer, with these steps.
     Plain(Steps),
 }
 
-/// How the linear picture became bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Written {
     pub is_flipped: bool,
     pub is_mirrored: bool,
-    /// The channel that is written as red, green and blue.
+    /// Source channels of the written red, green and blue.
     pub channels: [usize; 3],
     pub curve: Curve,
-    /// The number that displayed values are multiplied by.
+    /// Factor from displayed values to bytes.
     pub levels: f64,
 }
 
 /// The curve from linear to displayed values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
-    /// That of the stage.
+    /// The stage's own.
     Transfer(Transfer),
-    /// The root with this exponent.
+    /// A power with this exponent.
     Gamma(f64),
 }
 
 impl Curve {
-    /// The exponent that makes a displayed value linear.
+    /// The exponent from displayed to linear values.
     fn exponent(self, row: usize, height: usize) -> f64 {
         match self {
             Curve::Transfer(transfer) if transfer.is_gamma(row, height) => 2.0,
@@ -168,24 +163,23 @@ impl Written {
         [linear(0.5), (linear(1.0) - linear(0.0)) / 2.0]
     }
 
-    /// The linear value that is read if the displayed value was multiplied by 255 instead of 256.
+    /// The linear value that a reader sees if the displayed value was multiplied by 255 instead of 256.
     pub fn times_255(&self, linear: f64, row: usize, height: usize) -> f64 {
         linear * power(255.0 / 256.0, self.curve.exponent(row, height))
     }
 
-    /// The byte that a linear value becomes.
     pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
         let displayed = power(linear.max(0.0), 1.0 / self.curve.exponent(row, height));
         (self.levels * displayed.min(0.999)) as u8
     }
 
-    /// The bytes of a picture, row by row.
+    /// Bytes in the layout of the file, row by row.
     pub fn bytes_of(&self, linear: &[[f64; 3]], [width, height]: [u32; 2]) -> Vec<[u8; 3]> {
         let byte = |index: usize, x: f64| self.byte_of(x, index / width as usize, height as usize);
         linear.iter().enumerate().map(|(index, pixel)| pixel.map(|x| byte(index, x))).collect()
     }
 
-    /// The linear picture in the layout of the file.
+    /// Rearranges the linear picture to the layout of the file.
     pub fn laid_out(&self, linear: &[[f64; 3]], width: usize) -> Vec<[f64; 3]> {
         let height = linear.len() / width;
         (0..linear.len())
@@ -200,7 +194,7 @@ impl Written {
     }
 }
 
-/// `x^exponent`, in little time for the exponents of the book.
+/// `x^exponent`, fast for the book's exponents.
 fn power(x: f64, exponent: f64) -> f64 {
     match exponent {
         1.0 => x,
@@ -210,22 +204,17 @@ fn power(x: f64, exponent: f64) -> f64 {
     }
 }
 
-/// Renders hypotheses of one recipe.
 pub struct Studio {
     recipe: Recipe,
     fast: CpuRenderer,
-    /// The right picture and its number of samples.
+    /// The right picture and its sample count.
     right: Option<(u64, Vec<[f64; 3]>)>,
 }
 
-/// The book's 400 x 225 pixels.
+/// The size of the book's pictures: 400 x 225.
 const PIXELS: u64 = 90_000;
 
 impl Studio {
-    /// For pictures of `recipe`, `size` wide and high.
-    ///
-    /// # Errors
-    /// If no thread can be started.
     pub fn new(recipe: Recipe, [width, height]: [u32; 2]) -> Result<Studio> {
         let settings = RenderSettings {
             sampler: SamplerKind::Independent,
@@ -238,13 +227,12 @@ impl Studio {
         Ok(Studio { recipe, fast: CpuRenderer::new(CpuOptions::default())?, right: None })
     }
 
-    /// The recipe of the right picture.
     pub fn recipe(&self) -> &Recipe {
         &self.recipe
     }
 
-    /// The picture of a hypothesis, with so many samples per pixel up to [`PIXELS`]; larger ones get as many paths, and the
-    /// plain tracer fewer. Linear RGB in the layout of the file.
+    /// Renders a hypothesis: linear RGB in the layout of the file. Pictures larger than [`PIXELS`] get the same number
+    /// of paths, and the plain tracer gets fewer.
     pub fn render(&mut self, hypothesis: &Hypothesis, samples: u64) -> Result<Vec<[f64; 3]>> {
         let RenderSettings { width, height, .. } = self.recipe.settings;
         let is_exact = !self.recipe.rules.antialiasing && self.recipe.samples_per_pixel == 1;
@@ -276,15 +264,14 @@ fn means(fast: &mut CpuRenderer, recipe: &Recipe, samples: u64) -> Result<Vec<[f
     Ok(film.means().into_iter().map(|pixel| pixel.map(f64::from)).collect())
 }
 
-/// My picture next to that of a hypothesis.
+/// The reader's picture compared with a hypothesis.
 #[derive(Clone, Debug)]
 pub struct Compared {
     pub hypothesis: Hypothesis,
-    /// Mean squared error beyond noise, of blocks as they are displayed.
+    /// Mean squared error beyond noise over blocks, in display values.
     pub misfit: f64,
-    /// Whether the rest is noise.
+    /// Whether the remaining difference is noise.
     pub is_noise: bool,
-    /// The rendered picture.
     pub expected: Vec<[f64; 3]>,
 }
 
@@ -314,7 +301,7 @@ pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> 
     Compared { hypothesis, misfit, is_noise, expected }
 }
 
-/// Mean over blocks and channels of the squared error beyond noise, as displayed.
+/// Mean squared error beyond noise over blocks and channels, in display values.
 fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: usize) -> f64 {
     let mut sum = 0.0;
     for block in &test.blocks {
@@ -325,7 +312,7 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &[[f64; 3]], width: u
             let bright = pixels().map(|pixel| expected[pixel][channel]).sum::<f64>() / count;
             let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
             let noise = spread / (count * (count - 1.0).max(1.0));
-            // The derivative of the square root takes linear errors to displayed ones.
+            // The derivative of the square root converts linear errors to displayed ones.
             sum += (mean * mean - noise) / (4.0 * bright.max(0.02));
         }
     }

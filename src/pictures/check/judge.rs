@@ -7,59 +7,55 @@ use crate::job::recipe::Recipe;
 use crate::stages::Stage;
 use anyhow::Result;
 
-/// Samples per pixel of the right picture and of those that are decided between.
+/// Samples per pixel of the right picture and of the final candidates.
 const FINE: u64 = 256;
 
-/// Samples per pixel of each mistake at first.
+/// Samples per pixel of the first comparison with each mistake.
 const COARSE: u64 = 32;
 
-/// Samples per pixel for each stage when the stage is not known.
+/// Samples per pixel when the stage is unknown.
 const SMALL: u64 = 64;
 
-/// Mistakes that are rendered again with more samples.
+/// Mistakes rendered again with more samples.
 const REFINED: usize = 4;
 
-/// A mistake explains a picture if it leaves less than this part of the squared error of the right picture.
+/// A mistake explains a picture if it leaves less than this share of the right picture's squared error.
 const EXPLAINED: f64 = 0.3;
 
-/// How many stages are judged if the stage is not known.
+/// Stages judged when the stage is unknown.
 const CANDIDATES: usize = 5;
 
-/// The width of the small pictures that are compared with all stages, pixels.
+/// Width of the thumbnails compared with all stages, pixels.
 const SMALL_WIDTH: u32 = 64;
 
-/// A root mean square difference below which a stage is taken for found, display values.
+/// Root mean square difference below which a stage counts as recognised, display values.
 const FOUND: f64 = 0.03;
 
-/// Least difference of a pixel's neighbours at an edge, linear radiance.
+/// Least difference between a pixel's neighbours at an edge, linear radiance.
 const EDGE: f64 = 0.1;
 
-/// A mistake must leave less than this part of the squared error at edges.
+/// A mistake must leave less than this share of the squared error at edges.
 const BETTER: f64 = 0.8;
 
-/// The finding about a picture.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// The stage that it shows.
     pub stage: &'static Stage,
-    /// The right picture.
     pub right: Compared,
-    /// The likeliest mistake, if it is not right.
+    /// The likeliest mistake; `None` if the picture is right.
     pub mistake: Option<Compared>,
 }
 
 impl Finding {
-    /// Whether the picture differs by noise only.
+    /// Whether the picture differs only by noise.
     pub fn is_right(&self) -> bool {
         self.mistake.is_none() && self.right.is_noise
     }
 
-    /// The mistake that was found.
     pub fn named(&self) -> Option<&'static Mistake> {
         self.mistake.as_ref()?.hypothesis.mistake
     }
 
-    /// How far the picture is from what was found, for the choice among stages.
+    /// Ranks findings of different stages: lower is closer.
     fn rank(&self) -> (u8, f64) {
         match &self.mistake {
             None if self.right.is_noise => (0, self.right.misfit),
@@ -70,10 +66,7 @@ impl Finding {
     }
 }
 
-/// Judges a picture; `stage` is the one that it shows, if known.
-///
-/// # Errors
-/// If a picture cannot be rendered.
+/// Judges a picture, of `stage` if it is known.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
     let stages = match stage {
         Some(stage) => vec![stage],
@@ -104,7 +97,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
     }
 }
 
-/// A picture next to the right one of a stage.
+/// A picture compared with the right one of a stage.
 struct Trial<'a> {
     mine: &'a Mine,
     stage: &'static Stage,
@@ -125,13 +118,13 @@ impl<'a> Trial<'a> {
         Finding { stage: self.stage, right: self.right, mistake }
     }
 
-    /// The finding if blocks differ by noise only: what blocks cannot show is looked for.
+    /// The finding when blocks differ only by noise: looks for mistakes that blocks cannot show.
     fn of_right(mut self) -> Result<Finding> {
         let mistake = at_edges(self.mine, &mut self.studio, &self.right, FINE)?.or_else(|| self.in_bytes());
         Ok(self.finding(mistake))
     }
 
-    /// The finding if blocks differ by more than noise.
+    /// The finding when blocks differ by more than noise.
     fn of_wrong(mut self) -> Result<Finding> {
         if let Some(found) = self.in_bytes() {
             return Ok(self.finding(Some(found)));
@@ -158,7 +151,6 @@ impl<'a> Trial<'a> {
         Ok(self.finding(explains.then_some(best)))
     }
 
-    /// The first mistake that shows in the bytes.
     fn in_bytes(&self) -> Option<Compared> {
         let shows = |mistake: &&Mistake| match mistake.change {
             Change::InBytes(test, _) => test(self.mine, &self.right),
@@ -170,7 +162,7 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// Decides pixel by pixel among the right picture and those that differ from it at edges only.
+/// Decides, pixel by pixel, between the right picture and mistakes that only show at edges.
 pub(super) fn at_edges(
     mine: &Mine,
     studio: &mut Studio,
@@ -200,7 +192,7 @@ pub(super) fn at_edges(
     Ok(best.1.map(|(hypothesis, expected)| compare(mine, hypothesis, expected)))
 }
 
-/// Pixels and channels with an edge.
+/// Pixels and channels at an edge.
 fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<(usize, usize)> {
     let inside = |index: &usize| {
         let (column, row) = (index % width, index / width);
@@ -218,13 +210,12 @@ fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
     applying_to(recipe).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
-/// The stages that can be checked. The small balls of the final picture are placed at random, so every program's picture
-/// of it is another.
+/// The stages that can be checked. The final picture places its small balls at random, so every program's differs.
 pub fn stages() -> impl Iterator<Item = &'static Stage> {
     Stage::ALL.iter().filter(|stage| stage.id != "book")
 }
 
-/// The stages that the picture looks like most: right or written wrongly, and only if it looks like none of them, with any
+/// The stages that the picture resembles most: first as rendered right or written wrongly and, if none match, with any
 /// mistake.
 fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>> {
     let factor = (mine.width / SMALL_WIDTH).clamp(1, mine.height.max(1));
@@ -243,7 +234,7 @@ fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>> {
             }
             ranked.push((least, stage));
         }
-        // Of stages that show the same, the one whose width is nearer comes first.
+        // Of stages with equal pictures, prefer the one with the closer width.
         let distance = |stage: &Stage| stage.setup.width.abs_diff(mine.width);
         ranked.sort_by(|(a, stage_a), (b, stage_b)| {
             a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
@@ -255,7 +246,7 @@ fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>> {
     Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect())
 }
 
-/// Root mean square difference of reduced pictures, display values.
+/// Root mean square difference of the thumbnails, display values.
 fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected: &[[f64; 3]]) -> f64 {
     let [width, height] = [mine.width, mine.height].map(|side| side / factor);
     let shown = hypothesis.written.bytes_of(expected, [width, height]);

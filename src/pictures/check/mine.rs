@@ -1,4 +1,4 @@
-//! Reads 8-bit pictures that readers' programs wrote, also those with damages that can be repaired.
+//! Reads the reader's 8-bit picture, repairing common damage to the file.
 
 use crate::job::output::{Encoding, ReadPicture, decode_picture};
 use crate::stages::Transfer;
@@ -8,42 +8,36 @@ use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Longest file that is read, bytes.
+/// Largest file read, bytes.
 const LENGTH_LIMIT: u64 = 256 << 20;
 
-/// Least width and height, pixels: those of the book's first picture. In fewer pixels, almost any picture could be right.
+/// Minimum width and height, pixels: the book's first picture. With fewer pixels, almost any picture could pass.
 const SIZE_MIN: [u32; 2] = [16, 9];
 
-/// Most pixels of a picture.
 const PIXEL_LIMIT: u64 = 4_000_000;
 
-/// A picture of 8 bits, as a program of the book wrote it.
+/// An 8-bit picture, as the reader's program wrote it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mine {
     pub width: u32,
     pub height: u32,
     /// RGB, row by row from the top.
     pub bytes: Vec<[u8; 3]>,
-    /// The format of the file, for the reader.
+    /// Name of the file format, for messages.
     pub format: &'static str,
-    /// What is wrong with the file, although the picture could be read.
+    /// Damage that was repaired to read the picture.
     pub damages: Vec<Damage>,
 }
 
-/// A damage of a file that could be repaired.
+/// A repaired fault of the file.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Damage {
-    /// What is wrong.
     pub title: String,
-    /// What to change.
     pub remedy: &'static str,
 }
 
 impl Mine {
-    /// Reads a file; its first bytes tell the format.
-    ///
-    /// # Errors
-    /// What is wrong, and what to do.
+    /// Reads a file and detects its format from the first bytes.
     pub fn read(path: &Path) -> Result<Mine> {
         let bytes = files::read(path, "a picture", LENGTH_LIMIT)?;
         let unreadable = |reason| anyhow!("{} cannot be read: {reason}", path.display());
@@ -61,10 +55,7 @@ impl Mine {
         }
     }
 
-    /// The same from the bytes of a file of any size.
-    ///
-    /// # Errors
-    /// What is wrong, and what to do.
+    /// Reads the picture from the bytes of a file.
     pub fn decode(bytes: &[u8]) -> Result<Mine, String> {
         let (file, format, damages) = repaired(bytes)?;
         let picture = decoded(&file).map_err(|reason| {
@@ -79,7 +70,7 @@ impl Mine {
         Ok(Mine { width: picture.width, height: picture.height, bytes, format, damages })
     }
 
-    /// Why there is nothing to check if all pixels have the same value.
+    /// Why a picture of a single colour cannot be checked.
     fn blank(&self) -> Option<String> {
         let first @ [r, g, b] = *self.bytes.first()?;
         if self.bytes.iter().any(|pixel| *pixel != first) {
@@ -98,11 +89,11 @@ impl Mine {
 }
 
 fn decoded(file: &[u8]) -> std::io::Result<ReadPicture> {
-    // Bytes are wanted, so their curve does not matter.
+    // The transfer does not matter, because only bytes are used.
     decode_picture(Cursor::new(file), file.len() as u64, Encoding::Book(Transfer::Linear))
 }
 
-/// A well-formed file with the same picture, its original format, and what was wrong.
+/// A well-formed file with the same picture, its original format, and the damage.
 type Repaired<'a> = (Cow<'a, [u8]>, &'static str, Vec<Damage>);
 
 fn repaired(bytes: &[u8]) -> Result<Repaired<'_>, String> {
@@ -151,7 +142,7 @@ fn repaired(bytes: &[u8]) -> Result<Repaired<'_>, String> {
     Ok((bytes, format, damages))
 }
 
-/// The bytes of a text that is encoded as UTF-16, if it is.
+/// Decodes a text in UTF-16; `None` if it is not UTF-16.
 fn from_utf16(bytes: &[u8]) -> Option<Vec<u8>> {
     let (rest, is_little) = match bytes {
         [0xFF, 0xFE, rest @ ..] => (rest, true),
@@ -177,7 +168,7 @@ fn check_size(width: u64, height: u64) -> Result<(), String> {
     }
 }
 
-/// How many pixels of a PNG are not opaque. 0 if it cannot be read, which is reported when the picture is.
+/// Number of pixels of a PNG that are not opaque; 0 if it cannot be read, which is reported when decoding fails.
 fn transparent_pixels(bytes: &[u8]) -> usize {
     image::load_from_memory_with_format(bytes, image::ImageFormat::Png)
         .map_or(0, |image| image.to_rgba8().pixels().filter(|pixel| pixel.0[3] < 255).count())
@@ -185,14 +176,14 @@ fn transparent_pixels(bytes: &[u8]) -> usize {
 
 const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
 
-/// The bytes before a program on Windows wrote them as text, if it did: the lines of the header then end in 13 and 10.
+/// Undoes Windows text mode, which turned every byte 10 into 13 10; `None` if the header lines do not end so.
 fn without_added_bytes(bytes: &[u8]) -> Option<Vec<u8>> {
     let is_added = |index: usize| bytes[index] == b'\r' && bytes.get(index + 1) == Some(&b'\n');
     let kept = || (0..bytes.len()).filter(|index| !is_added(*index)).map(|index| bytes[index]);
     bytes.starts_with(b"P6\r\n").then(|| kept().collect())
 }
 
-/// A P3 as P6, without what does not belong to it.
+/// Converts P3 to P6, dropping anything that does not belong.
 fn repaired_text(bytes: &[u8], mut damaged: impl FnMut(String, &'static str)) -> Result<Vec<u8>, String> {
     let text = String::from_utf8_lossy(bytes);
     let begin = text.find("P3").ok_or_else(|| format!("it is neither a PNG nor a PPM file; {HEADER}"))?;

@@ -1,5 +1,5 @@
-//! The mistakes that readers of the book are known to make: what is said about each, when it can show, and how to render
-//! it. A mistake is one entry of the table.
+//! The table of mistakes that readers of the book are known to make: explanation, where each can show, and how to
+//! render it.
 
 use super::bytes::{is_times_255, is_truncated};
 use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
@@ -306,7 +306,6 @@ pub static MISTAKES: [Mistake; 34] = [
     },
 ];
 
-/// The mistakes that can show in `recipe`.
 pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
     MISTAKES.iter().filter(|mistake| (mistake.applies)(recipe))
 }
@@ -318,7 +317,7 @@ fn swapped(recipe: &Recipe, order: [usize; 3]) -> Hypothesis {
     Hypothesis { note: Some(format!("the channels seem to be {names}")), ..picture }
 }
 
-/// Paths that are cut off at `limit` rays, if they are longer.
+/// Cuts paths off at `limit` rays; `None` if they are no longer than that.
 fn limited(recipe: &Recipe, limit: u32) -> Option<Hypothesis> {
     let settings = RenderSettings { max_depth: limit, ..recipe.settings };
     let making = Making::Fast(Box::new(Recipe { settings, ..recipe.clone() }));
@@ -373,7 +372,7 @@ fn has_lens(recipe: &Recipe) -> bool {
     recipe.camera.defocus_angle_degrees > 0.0
 }
 
-/// The index of a sphere of air inside a sphere of glass.
+/// Index of the air bubble inside a glass sphere.
 pub(super) fn bubble(scene: &Scene) -> Option<usize> {
     let index = |material: usize| match scene.materials.get(material).map(|named| named.material) {
         Some(Material::Dielectric { refraction_index }) => Some(refraction_index),

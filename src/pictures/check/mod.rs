@@ -1,8 +1,8 @@
-//! `weekender check`: finds the mistake in a picture that a reader's own program has rendered. (All chapters of book 1.)
+//! `weekender check`: finds the mistake in a picture rendered by a reader's own program. (All chapters of book 1.)
 //!
-//! Each mistake that readers are known to make is rendered: by the program's own tracer where a rule, the scene or the
-//! camera can express it, otherwise by a plain tracer that follows the book. A picture is right if it differs from ours
-//! by noise only; otherwise the mistake whose picture comes nearest is named.
+//! Renders every known mistake: with the program's own tracer where a rule, the scene or the camera can express it,
+//! otherwise with a plain tracer that follows the book. A picture is right if it differs from ours only by noise;
+//! otherwise the mistake with the closest picture is named.
 
 mod bytes;
 mod hypothesis;
@@ -30,10 +30,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Checks a picture. The exit code is 0 if it is right and 1 if there is a mistake.
-///
-/// # Errors
-/// [`Failure::Input`] if it could not be checked.
+/// Checks a picture. Exit code 0 means right, 1 wrong, and 2 ([`Failure::Input`]) that it could not be checked.
 pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
     checked(options).map_err(Failure::Input)
 }
@@ -68,13 +65,13 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
 }
 
 impl Finding {
-    /// A picture in a damaged file is not right for other programs.
+    /// A right picture in a damaged file still counts as different, because other programs cannot read it.
     pub fn verdict(&self, mine: &Mine) -> Verdict {
         if self.is_right() && mine.damages.is_empty() { Verdict::Same } else { Verdict::Different }
     }
 }
 
-/// The reader's picture, ours and a heat map of their difference, 8-bit RGB, row by row from the top.
+/// The reader's picture, ours, and a heat map of the difference: 8-bit RGB, row by row from the top.
 pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     let right = &finding.right;
     let ours = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
@@ -86,7 +83,7 @@ pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     [mine.bytes.clone(), ours, difference]
 }
 
-/// The finding for people; `files` were written.
+/// The report for people; `files` lists the pictures written.
 pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> String {
     let stage = finding.stage;
     let mut text = vec![
@@ -130,7 +127,7 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
     lines(text)
 }
 
-/// The finding for other programs.
+/// The report as JSON.
 fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> serde_json::Value {
     let mistake = finding.named().zip(finding.mistake.as_ref()).map(|(mistake, found)| {
         json!({

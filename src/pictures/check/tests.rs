@@ -1,4 +1,4 @@
-//! Mistakes, their pictures, what blocks cannot show, and what is said.
+//! Mistakes and their pictures, mistakes that blocks cannot show, and the report.
 
 use super::bytes::{is_times_255, is_truncated};
 use super::hypothesis::{Compared, Curve, Hypothesis, Making, Mistake, Studio, compare};
@@ -42,7 +42,7 @@ fn compared(
 }
 
 #[test]
-fn every_mistake_has_its_own_id_and_shows_in_some_stage() {
+fn mistakes_have_unique_ids_and_apply_somewhere() {
     let mut ids: Vec<&str> = MISTAKES.iter().map(|mistake| mistake.id).collect();
     ids.sort_unstable();
     ids.dedup();
@@ -62,7 +62,7 @@ fn every_mistake_has_its_own_id_and_shows_in_some_stage() {
 }
 
 #[test]
-fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() {
+fn bubble_is_air_inside_glass() {
     let (glass, air) = (1.5, 1.0 / 1.5);
     let found = |spheres: &[(f64, f64, f64)]| {
         let mut recipe = recipe("metal");
@@ -83,8 +83,8 @@ fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() 
 }
 
 #[test]
-fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
-    // Acne depends on the precision, and the gradient has no rays.
+fn plain_tracer_matches_fast_tracer() {
+    // Acne depends on the precision, and the gradient traces no rays.
     let is_traced = |stage: &&Stage| {
         let rules = stage.setup.rules;
         rules.shading != Shading::ImageGradient && rules.surface != SurfaceRule::Acne
@@ -94,7 +94,7 @@ fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
         let right = Hypothesis::right(studio.recipe());
         let plain = Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..right.clone() };
         let [right, plain] = [right, plain].map(|hypothesis| studio.render(&hypothesis, 256).unwrap());
-        // The grid of one sample per pixel meets edges where the precisions may differ.
+        // A one-sample grid hits edges exactly, where precisions may differ.
         let values: Vec<[f64; 3]> =
             right.iter().zip(&plain).map(|(a, b)| [0, 1, 2].map(|i| b[i] - a[i])).collect();
         let (noise, steps, tolerance) = (Noise::Spread, None, 2e-3);
@@ -105,7 +105,7 @@ fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
 }
 
 #[test]
-fn bytes_and_linear_values_belong_together() {
+fn bytes_and_linear_values_correspond() {
     for id in ["sky", "metal", "gamut"] {
         let recipe = recipe(id);
         let others = ["no-gamma", "gamma-early", "gamma-twice", "scale-255"].map(mistake);
@@ -115,7 +115,7 @@ fn bytes_and_linear_values_belong_together() {
                 let [linear, half_step] = written.linear(byte, 3, 9);
                 assert_eq!(written.byte_of(linear, 3, 9), byte, "{id}, {mistake:?}");
                 assert!(half_step > 0.0);
-                // Of a value times 255, cut off, the upper half of all bytes is one less.
+                // Scaling by 255 and truncating makes the upper half of all bytes one less.
                 let less = written.byte_of(written.times_255(linear, 3, 9), 3, 9);
                 assert_eq!(less, byte - u8::from(byte >= 128), "{id}, {mistake:?}");
             }
@@ -130,8 +130,8 @@ fn bytes_and_linear_values_belong_together() {
 }
 
 #[test]
-fn a_picture_is_laid_out_as_it_was_written() {
-    // Three columns and two rows; each pixel has the number of its place.
+fn layout_follows_mistake() {
+    // Three columns and two rows; each pixel holds its index.
     let linear: Vec<[f64; 3]> = (0..6).map(|place| [0.0, 0.1, 0.2].map(|c| f64::from(place) + c)).collect();
     let laid_out = |id| mistake(id).pictures(&recipe("metal"))[0].written.laid_out(&linear, 3);
     let places = |of: Vec<[f64; 3]>| of.iter().map(|pixel| pixel[0] as u32).collect::<Vec<_>>();
@@ -142,26 +142,26 @@ fn a_picture_is_laid_out_as_it_was_written() {
 }
 
 #[test]
-fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
+fn misfit_is_displayed_error_beyond_noise() {
     let misfit = |bytes: &dyn Fn(u32, u32) -> [u8; 3], linear: &dyn Fn(u32, u32) -> [f64; 3]| {
         compared([16, 8], Transfer::Linear, bytes, linear).1.misfit
     };
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
     let middle = |byte: f64| (byte + 0.5) / 256.0;
     close(misfit(&|_, _| [153; 3], &|_, _| [0.5; 3]), (middle(153.0) - 0.5).powi(2) / 2.0);
-    // In the dark, errors count as at 0.02.
+    // Dark values count errors as at 0.02.
     close(misfit(&|_, _| [2; 3], &|_, _| [0.01; 3]), (middle(2.0) - 0.01).powi(2) / 0.08);
-    // The mean of 64 pixels has a 64th of their variance.
+    // The mean of 64 pixels has 1/64 of their variance.
     let chequers = |x: u32, y: u32| [[140, 160][((x + y) % 2) as usize]; 3];
     let (mean, apart) = (middle(150.0) - 0.5, 10.0_f64 / 256.0);
     close(misfit(&chequers, &|_, _| [0.5; 3]), (mean * mean - apart * apart / 63.0) / 2.0);
-    // What is brighter or darker than bytes can tell is no error.
+    // Values beyond the range of bytes are no error.
     close(misfit(&|_, _| [255, 0, 255], &|_, _| [2.0, 0.0, 1.0]), 0.0);
-    // Each row has its own curve.
+    // Each row has its own transfer.
     let halves = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
     let (_, found) = compared([16, 16], Transfer::LinearAboveGamma2, halves, |_, _| [0.25; 3]);
     assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
-    // Noise is no error, and more than noise is one.
+    // Noise is no error; more than noise is.
     let noise = |x: u32, y: u32, c: u32| (crate::kernel::sampling::pcg4d([x, y, c, 5])[0] >> 27) as u8;
     for (more, is_noise) in [(0, true), (12, false)] {
         let bytes = |x: u32, y: u32| [0, 1, 2].map(|c| 100 + more + noise(x, y, c));
@@ -171,7 +171,7 @@ fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
 }
 
 #[test]
-fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
+fn pixel_mistakes_show_only_at_edges() {
     let found = |id: &str, size: [u32; 2], planted: &'static Mistake| {
         let mut studio = Studio::new(recipe(id), size).unwrap();
         let right = Hypothesis::right(studio.recipe());
@@ -187,13 +187,13 @@ fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
     for planted in MISTAKES.iter().filter(|mistake| mistake.is_at_edges()) {
         assert_eq!(found("antialiased", [64, 36], planted), [Some(planted.id), None]);
     }
-    // The sky changes too slowly to tell a shift of half a pixel from another light.
+    // The sky changes too slowly to tell half a pixel's shift from different light.
     assert_eq!(found("sky", [32, 18], mistake("half-pixel-up")), [None, None]);
 }
 
 #[test]
-fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
-    // Of three hundred values, so many are ends, and so many should be; others are white though they should be dark.
+fn truncated_picture_is_mostly_ends() {
+    // Of 300 values: how many are 0 or 255, how many should be, and how many are white though they should be dark.
     let is_found = |ends: u32, expected_ends: u32, too_bright: u32| {
         let byte = |index: u32| match index {
             index if index < too_bright => [254, 255][index as usize % 2],
@@ -211,14 +211,14 @@ fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
 }
 
 #[test]
-fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_255() {
+fn scaling_by_255_needs_clear_loss() {
     let right = Hypothesis::right(&recipe("lambertian-gamma"));
     let found = |pixels: u32, loss: f64, noise: f64, [from, to]: [f64; 2]| {
         let value = |index: u32| from + (to - from) * f64::from(index * 7919 % 12_289) / 12_289.0;
         let picture = |of: &dyn Fn(u32) -> f64| -> Vec<[f64; 3]> {
             (0..pixels).map(|pixel| [0, 1, 2].map(|channel| of(3 * pixel + channel))).collect()
         };
-        // The displayed value is the root of the linear one.
+        // The displayed value is the square root of the linear one.
         let darker = picture(&|index| {
             let noise = if index.is_multiple_of(2) { noise } else { -noise };
             value(index) * (1.0 - loss / 256.0_f64).powi(2) + noise
@@ -232,15 +232,15 @@ fn only_a_loss_of_about_a_256th_in_a_thousand_values_is_blamed_on_a_factor_of_25
         losses.map(|loss| found(4096, loss, 0.0, [0.25, 0.65])),
         [false, false, false, true, true, true, false, false]
     );
-    // Noise of which a mean over all values cannot be told from no loss.
+    // With this noise, a mean over all values cannot rule out a loss.
     assert_eq!([0.02, 0.2].map(|noise| found(4096, 1.0, noise, [0.25, 0.65])), [true, false]);
     assert!(!found(333, 1.0, 0.0, [0.1, 0.9]) && found(334, 1.0, 0.0, [0.1, 0.9]));
-    // What is too dark or cut off tells nothing.
+    // Values that are too dark or clipped carry no information.
     assert!(!found(2000, 1.0, 0.0, [0.0, 0.049]) && !found(2000, 1.0, 0.0, [0.981, 1.2]));
 }
 
 #[test]
-fn a_mistake_of_our_own_is_found_with_its_picture_and_told() {
+fn planted_mistake_is_found_and_reported() {
     let stage = Stage::find("metal-fuzzy").unwrap();
     let size = [48, 27];
     for planted in ["flipped-rows", "sky-reversed"].map(mistake) {
@@ -256,15 +256,15 @@ fn a_mistake_of_our_own_is_found_with_its_picture_and_told() {
         let json = figures(path, &mine, &finding, &[]);
         assert_eq!(json["mistake"]["id"], planted.id);
         assert_eq!((&json["is_right"], &json["mistake"]["explains_all"]), (&false.into(), &true.into()));
-        let told = text(path, &mine, &finding, &[]);
+        let report = text(path, &mine, &finding, &[]);
         for part in [planted.title, planted.remedy, planted.section, &stage.url()] {
-            assert!(told.contains(part), "{told} should say {part}");
+            assert!(report.contains(part), "{report} should say {part}");
         }
     }
 }
 
 #[test]
-fn what_is_said_depends_on_damages_shape_and_how_much_is_explained() {
+fn report_covers_damage_shape_and_mistake() {
     let stage = Stage::find("metal").unwrap();
     let right = |is_noise| Compared {
         hypothesis: Hypothesis::right(&stage.recipe()),
@@ -278,33 +278,35 @@ fn what_is_said_depends_on_damages_shape_and_how_much_is_explained() {
     };
     let finding = Finding { stage, right: right(true), mistake: None };
     let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
-    let (told, verdict) = said([40, 20], vec![damage], &finding);
-    assert!(told.contains("\nfile     it is torn\nchange   mend it\n"), "{told}");
+    let (report, verdict) = said([40, 20], vec![damage], &finding);
+    assert!(report.contains("\nfile     it is torn\nchange   mend it\n"), "{report}");
     assert_eq!(verdict, Verdict::Different, "a damaged file is not right for other programs");
-    let (told, verdict) = said([40, 40], Vec::new(), &finding);
-    assert!(told.contains("noise only") && told.contains("the picture is square"), "{told}");
+    let (report, verdict) = said([40, 40], Vec::new(), &finding);
+    assert!(report.contains("noise only") && report.contains("the picture is square"), "{report}");
     assert_eq!(verdict, Verdict::Same);
     let hypothesis = mistake("swapped-channels").pictures(&stage.recipe()).remove(0);
     let found = Compared { hypothesis, ..right(false) };
-    let (told, _) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
+    let (report, _) =
+        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
     for part in
         ["most likely a mistake: ", "seen     the channels seem to be blue, green, red", "second mistake"]
     {
-        assert!(told.contains(part), "{told}");
+        assert!(report.contains(part), "{report}");
     }
-    let (told, verdict) = said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
-    assert!(told.contains("none of the known mistakes explains it"), "{told}");
+    let (report, verdict) =
+        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
+    assert!(report.contains("none of the known mistakes explains it"), "{report}");
     assert_eq!(verdict, Verdict::Different);
 }
 
 #[test]
-fn the_difference_is_the_root_mean_square_of_the_channels() {
+fn rough_difference_is_rms_of_channels() {
     let bytes = [[64, 64, 64], [64, 79, 64], [128, 128, 128], [0, 255, 128]];
     let of = |x: u32, y: u32| bytes[(2 * y + x) as usize];
     let (mine, right) = compared([2, 2], Transfer::LinearAboveGamma2, of, |_, _| [0.25; 3]);
     let stage = Stage::find("sky").unwrap();
     let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None });
-    // The upper row is linear, the lower row the square root.
+    // The upper row is linear, the lower the square root.
     assert_eq!((shown, ours), (bytes.to_vec(), vec![[64; 3], [64; 3], [128; 3], [128; 3]]));
     let colour = |squares: f64| HeatScale::ERROR.colour((squares / 3.0).sqrt() / 255.0);
     let squares = [0.0, 15.0_f64.powi(2), 0.0, 128.0_f64.powi(2) + 127.0_f64.powi(2)];

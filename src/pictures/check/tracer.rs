@@ -1,6 +1,6 @@
-//! A plain tracer that follows the book's chapters step by step, in `f64` and without any of this program's speed. The
-//! steps that readers get wrong are functions, which a mistake replaces. What the book leaves to a rule of the stage is a
-//! rule here, too.
+//! A plain `f64` tracer that follows the book step by step, without any of this program's optimisations. Steps that
+//! readers get wrong are functions that a mistake can replace; what the book leaves to a stage's rules is a rule here,
+//! too.
 
 use crate::job::recipe::Recipe;
 use crate::kernel::sampling::pcg4d;
@@ -9,30 +9,29 @@ use crate::stages::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The steps of the book's program.
+/// The replaceable steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
-    /// Aspect ratio of width and height.
     pub aspect: fn(u32, u32) -> f64,
-    /// Number of pixel spacings on a side of so many pixels.
+    /// Number of pixel spacings along a side of this many pixels.
     pub spacings: fn(f64) -> f64,
-    /// Place of the first pixel's centre, in pixels from the corner.
+    /// Centre of the first pixel, in pixels from the corner.
     pub first_pixel: f64,
-    /// Least distance of a hit; `None` is the stage's.
+    /// Least distance of a hit; `None` for the stage's.
     pub t_min: Option<f64>,
-    /// Largest distance of a hit, from that of the closest one so far.
+    /// Upper limit on a hit's distance, given the closest hit so far.
     pub t_max: fn(f64) -> f64,
-    /// Both roots of the quadratic formula, from `a`, `h` and the root of the discriminant.
+    /// Both roots of the quadratic, from `a`, `h` and the square root of the discriminant.
     pub roots: fn(f64, f64, f64) -> [f64; 2],
-    /// Outward normal, from the vector to the point and the radius.
+    /// Outward normal, from the vector centre to point and the radius.
     pub normal: fn(DVec3, f64) -> DVec3,
-    /// Whether a ray in a direction meets the front of a surface with an outward normal.
+    /// Whether a ray with this direction meets the front of a surface with this outward normal.
     pub is_front: fn(DVec3, DVec3) -> bool,
-    /// What is added to the normal of a matte surface.
+    /// Offset added to the normal of a matte surface.
     pub diffuse: fn(&mut Random) -> DVec3,
-    /// The reflected direction before fuzz is added.
+    /// Transforms the reflected direction before fuzz is added.
     pub before_fuzz: fn(DVec3) -> DVec3,
-    /// The direction that glass refracts or reflects.
+    /// Transforms the incoming direction before glass refracts or reflects it.
     pub before_glass: fn(DVec3) -> DVec3,
 }
 
@@ -52,7 +51,7 @@ impl Steps {
     };
 }
 
-/// A ray. As in the book, its direction has any length.
+/// As in the book, the direction need not be normalised.
 #[derive(Clone, Copy)]
 struct Ray {
     origin: DVec3,
@@ -80,7 +79,6 @@ impl Random {
         [a, b].map(|bits| f64::from(bits) / 4_294_967_296.0)
     }
 
-    /// A point on the unit sphere.
     fn unit_vector(&mut self) -> DVec3 {
         let [u, v] = self.pair();
         let z = 1.0 - 2.0 * u;
@@ -89,13 +87,11 @@ impl Random {
         DVec3::new(radius * cos, radius * sin, z)
     }
 
-    /// A point in the unit sphere.
     pub fn in_unit_sphere(&mut self) -> DVec3 {
         let unit = self.unit_vector();
         self.pair()[0].cbrt() * unit
     }
 
-    /// A point on the unit disk.
     fn in_disk(&mut self) -> [f64; 2] {
         let [u, v] = self.pair();
         let (sin, cos) = (std::f64::consts::TAU * v).sin_cos();
@@ -103,7 +99,6 @@ impl Random {
     }
 }
 
-/// The book's program, with a mistake or none.
 pub struct Tracer<'a> {
     scene: &'a Scene,
     rules: Rules,
@@ -147,7 +142,7 @@ impl<'a> Tracer<'a> {
         }
     }
 
-    /// The means of all pixels, linear RGB, row by row from the top.
+    /// Pixel means: linear RGB, row by row from the top.
     pub fn means(&self, samples: u32) -> Vec<[f64; 3]> {
         let [width, height] = self.size;
         (0..width * height)

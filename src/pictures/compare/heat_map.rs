@@ -7,11 +7,11 @@ use crate::pictures::Picture;
 use image::{ImageFormat, Rgb, RgbImage};
 use std::io::{self, Seek, Write};
 
-/// The colour of the frames, which does not occur in the map.
+/// Frame colour, which does not occur in the map.
 const FRAME: Rgb<u8> = Rgb([0, 220, 255]);
 
-/// Writes a PNG of each pixel's difference, the root mean square of its channels, from dark (1e-4) to bright (1). Frames
-/// mark the blocks that are farthest off. A channel at the largest value of an integer format counts as that value.
+/// Writes a PNG of each pixel's root mean square difference, from dark (1e-4) to bright (1), with frames around the
+/// worst blocks. A clipped integer counts as its format's largest value.
 pub(super) fn write(
     a: &Picture,
     b: &Picture,

@@ -1,4 +1,4 @@
-//! `weekender compare`: whether two pictures are the same except for noise.
+//! `weekender compare`: whether two pictures differ by more than noise.
 
 mod heat_map;
 mod verdict;
@@ -20,14 +20,11 @@ use std::ops::Range;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-/// Number of blocks that the output names.
+/// Number of blocks named in the output.
 const NAMED_BLOCKS: usize = 5;
 
-/// Compares two pictures and prints how they differ. The exit code is 0 if they differ only by noise, 1 if by more, and 2
-/// if that cannot be told.
-///
-/// # Errors
-/// [`Failure::Input`] if they cannot be compared, because exit code 1 means that they differ.
+/// Compares two pictures and prints how they differ. Exit code 0 means equal except for noise, 1 different, and 2
+/// undecided or ([`Failure::Input`]) not comparable.
 pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
     compared(options).map_err(Failure::Input)
 }
@@ -45,10 +42,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     Ok(comparison.verdict().exit_code())
 }
 
-/// Compares two pictures, with a note on their jobs if that explains the result.
-///
-/// # Errors
-/// If their sizes differ.
+/// Compares two pictures. Fails if their sizes differ.
 pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
     let [a, b] = sides;
     if (a.width, a.height) != (b.width, b.height) {
@@ -74,7 +68,7 @@ fn note_on_jobs(a: &Picture, b: &Picture) -> Option<&'static str> {
         .then_some("the recipes differ in scene, camera or rules: these should be different pictures")
 }
 
-/// A side that was read, or a backend that waits for the scene and size of the other side.
+/// A side that was read, or a backend that renders the other side's scene at its size.
 enum Opened {
     Read(Box<Picture>),
     Backend(Rendering),
@@ -103,7 +97,6 @@ fn sides(options: &CompareOptions) -> Result<[Picture; 2]> {
     })
 }
 
-/// A backend that renders a side.
 struct Rendering {
     name: String,
     renderer: Box<dyn Renderer>,
@@ -115,8 +108,8 @@ impl Rendering {
         Ok(Rendering { name: name.to_owned(), renderer })
     }
 
-    /// Renders the counterpart of `read` at its size, and with the same samples if `read` is a film of the same job. Two
-    /// backends render what the options say.
+    /// Renders the counterpart of `read` at its size, with the same samples if `read` is a film of the same job. With
+    /// no file, both backends follow the options.
     fn beside(&mut self, read: Option<&Picture>, options: &CompareOptions) -> Result<Picture> {
         let mut recipe = options.recipe.clone();
         if let Some(read) = read {
@@ -143,7 +136,6 @@ impl Rendering {
     }
 }
 
-/// The full text of a comparison.
 pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
     let Comparison { test, rms, bias, .. } = comparison;
     let side = |side: &Picture| format!("{}: {}", side.name, side.about);
@@ -182,7 +174,7 @@ pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {
     lines(text)
 }
 
-/// The comparison for other programs.
+/// The comparison as JSON.
 fn figures(sides: &[Picture; 2], comparison: &Comparison) -> serde_json::Value {
     let test = &comparison.test;
     let block = |block: &Block| {

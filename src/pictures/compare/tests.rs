@@ -1,4 +1,4 @@
-//! Noise, rounding, channels that are clipped or no numbers, and what a backend renders beside a file.
+//! Noise, rounding, clipping, NaN, and rendering the counterpart of a file.
 
 use super::verdict::Relation;
 use super::*;
@@ -21,7 +21,7 @@ fn random(pixel: u32, half: u32, seed: u32) -> f64 {
     f64::from(pcg4d([pixel, half, seed, 5])[0]) / 4_294_967_296.0
 }
 
-/// A film of 80 x 48 pixels with one sample in each half, of the radiance that `value` returns for half and pixel.
+/// An 80 x 48 film with one sample per half; `value` gives the radiance for half and pixel.
 fn film_of(value: impl Fn(u32, u32) -> f64) -> Picture {
     let mut film = Film::new(80, 48, 2);
     for (half, pixels) in (0..).zip(film.halves_mut()) {
@@ -33,18 +33,18 @@ fn film_of(value: impl Fn(u32, u32) -> f64) -> Picture {
     Picture::of_film(String::new(), String::new(), film)
 }
 
-/// A film of noise, with an offset.
+/// A film of noise around an offset.
 fn noisy(seed: u32, offset: f64) -> Picture {
     film_of(|half, pixel| 0.5 + 0.2 * random(pixel, half, seed) + offset)
 }
 
-/// A picture of floats without halves.
+/// A float picture without halves.
 fn floats(value: impl Fn(u32) -> f64) -> Picture {
     let pixels = (0..PIXELS as u32).map(|pixel| [value(pixel); 3]).collect();
     Picture { film: None, pixels, ..Picture::of_film(String::new(), String::new(), Film::new(80, 48, 1)) }
 }
 
-/// The same in 8 bits of linear values.
+/// An 8-bit linear picture.
 fn bytes(value: impl Fn(u32) -> f64) -> Picture {
     let stored = |x: f64| if x >= 255.0 / 256.0 { f64::NAN } else { ((256.0 * x).floor() + 0.5) / 256.0 };
     let steps = Some(vec![[0.5 / 256.0; 3]; PIXELS]);
@@ -56,7 +56,7 @@ fn both_ways(a: &Picture, b: &Picture) -> [Comparison; 2] {
 }
 
 #[test]
-fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
+fn noise_hides_offset_unless_samples_are_shared() {
     let noise = compare(&noisy(1, 0.0), &noisy(2, 0.0));
     assert!(noise.is_equal(), "{:?}", noise.reasons);
     assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
@@ -73,7 +73,7 @@ fn noise_hides_a_small_offset_but_not_between_the_same_samples() {
 }
 
 #[test]
-fn the_noise_of_a_difference_is_that_of_both_films() {
+fn difference_noise_combines_both_films() {
     let film = |seed: u32, samples: u64, middle: f64| {
         let mut film = Film::new(80, 48, 2);
         for (sample, pixel) in (0..samples).flat_map(|sample| (0..PIXELS).map(move |pixel| (sample, pixel))) {
@@ -100,9 +100,9 @@ fn the_noise_of_a_difference_is_that_of_both_films() {
     );
 }
 
-/// With many samples the noise of the mean is far below what rounding may do to it.
+/// With many samples, the noise of the mean is far below the effect of rounding.
 #[test]
-fn a_mean_that_rounding_moves_is_equal() {
+fn mean_within_rounding_is_equal() {
     let picture = |offset: f64| {
         let samples = 1 << 20;
         let sum = (samples / 2) as f64 * (0.5 + offset) * FIXED_POINT_SCALE;
@@ -118,7 +118,7 @@ fn a_mean_that_rounding_moves_is_equal() {
 }
 
 #[test]
-fn blocks_that_are_nearer_than_noise_allows_are_noted() {
+fn too_similar_blocks_are_noted() {
     let halves = |seed| move |half: u32, pixel: u32| random(pixel, half, seed);
     let [one, other] = [1, 2].map(|seed| film_of(halves(seed)));
     let swapped = film_of(|half, pixel| random(pixel, 1 - half, 1));
@@ -129,7 +129,7 @@ fn blocks_that_are_nearer_than_noise_allows_are_noted() {
 }
 
 #[test]
-fn nan_or_infinity_in_only_one_picture_is_a_difference() {
+fn non_finite_in_one_picture_differs() {
     let with = |value: f64| {
         let mut picture = floats(|pixel| 0.5 + 0.2 * random(pixel, 0, 1));
         picture.pixels[200..260].iter_mut().for_each(|pixel| pixel[1] = value);
@@ -148,17 +148,17 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
         assert!(found.is_equal() && found.is_same, "{a} and {b}: {:?}", found.reasons);
         assert_eq!((found.non_finite.differing, found.non_finite.alike, found.left_out), (0, 60, 60));
     }
-    // Zeros of different signs are equal, but not to the bit.
+    // Zeros of different signs are equal, but not bit for bit.
     let found = compare(&with(0.0), &with(-0.0));
     assert!(found.is_equal() && !found.is_same);
-    // A picture without a finite number equals no picture.
+    // A picture without finite numbers equals no picture.
     let none = floats(|_| nan);
     let found = compare(&none, &none);
     assert_eq!((found.verdict(), found.is_same), (Verdict::Unclear, false), "{found:?}");
 }
 
 #[test]
-fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
+fn clipped_integer_matches_anything_larger() {
     let whole = |value: f64| bytes(move |pixel| if pixel == 7 { value } else { 0.3 });
     let float = |value: f64| floats(move |pixel| if pixel == 7 { value } else { 0.3 });
     for beyond in [1.0, 50.0, f64::INFINITY] {
@@ -169,7 +169,7 @@ fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
         assert!(!compare(&float(other), &whole(1.0)).is_equal(), "{other}");
     }
     assert!(!compare(&whole(0.5), &float(f64::INFINITY)).is_equal());
-    // At or above the limit of the other picture: unknown, and no difference.
+    // At or above the other picture's limit: unknown, so no difference.
     let rows = |value: f64| move |pixel: u32| if pixel < 80 * 8 { value } else { 0.3 };
     for (a, b) in [(1.0, 5.0), (1.0, 255.0 / 256.0)] {
         for found in both_ways(&bytes(rows(a)), &floats(rows(b))) {
@@ -182,7 +182,7 @@ fn the_largest_value_of_an_integer_format_stands_for_any_larger_number() {
 }
 
 #[test]
-fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
+fn clipped_block_differs_only_from_dark() {
     let scene = |seed: u32| move |pixel: u32| 0.2 + 0.4 * random(pixel, 0, seed);
     let is_clipped =
         |found: &Comparison| found.reasons.iter().any(|reason| reason.contains("darker in the other"));
@@ -205,7 +205,7 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
         let found = compare(&other, &bytes(bright(2)));
         assert!(found.is_equal(), "{:?} {:?}", found.reasons, found.unclear);
     }
-    // Noise around the limit: even, or a path of radiance 8 once in a while.
+    // Noise around the limit: even, or an occasional path of radiance 8.
     for (samples, is_rare) in [(2, false), (16, false), (2, true), (16, true)] {
         let mean = move |seed: u32, pixel: u32| {
             let path = |x: f64| if is_rare { if x < 0.08 { 8.0 } else { 0.1 } } else { 0.5 + x };
@@ -217,7 +217,7 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
             assert!(!is_clipped(&found), "{samples} samples: {:?}", found.reasons);
         }
     }
-    // If nearly everything is clipped, nothing can be said.
+    // With nearly everything clipped, there is no verdict.
     let white = |columns: u32| move |pixel: u32| if pixel % 80 < columns { 1.0 } else { 0.5 };
     for (columns, verdict) in [(80, Verdict::Unclear), (48, Verdict::Unclear), (40, Verdict::Same)] {
         let found = compare(&bytes(white(columns)), &floats(white(columns)));
@@ -227,7 +227,7 @@ fn a_clipped_block_differs_from_a_dark_one_and_from_nothing_else() {
 }
 
 #[test]
-fn pictures_are_the_same_to_the_bit_only_in_one_format() {
+fn bit_equality_needs_same_format() {
     let picture = |steps: Option<f64>, limit: f64| {
         let value = |pixel| if pixel == 7 { f64::NAN } else { 0.5 + 0.2 * random(pixel, 0, 1) };
         Picture { steps: steps.map(|step| vec![[step; 3]; PIXELS]), limit, ..floats(value) }
@@ -240,7 +240,7 @@ fn pictures_are_the_same_to_the_bit_only_in_one_format() {
 }
 
 #[test]
-fn a_difference_is_measured_by_the_steps_of_both_pictures() {
+fn difference_is_relative_to_both_steps() {
     let picture = |step: f64, value: f64| {
         let steps = (step > 0.0).then(|| vec![[step; 3]; PIXELS]);
         Picture { steps, limit: 0.99, ..floats(move |_| value) }
@@ -259,7 +259,7 @@ fn a_difference_is_measured_by_the_steps_of_both_pictures() {
 }
 
 #[test]
-fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else() {
+fn fewer_levels_are_no_difference() {
     let directory = tempfile::tempdir().unwrap();
     let read = |most: u32, is_rounded: bool, brighter: f64| {
         let mut file = format!("P6 64 64 {most} ").into_bytes();
@@ -282,7 +282,7 @@ fn a_picture_with_fewer_levels_is_no_difference_unless_it_shows_something_else()
     }
 }
 
-/// A picture next to itself with other values at some columns and rows.
+/// Compares a picture with a copy changed at some columns and rows.
 fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
     let value = |pixel: u32| 0.3 + 0.2 * random(pixel, 0, 1);
     compare(
@@ -292,12 +292,12 @@ fn changed(is_changed: impl Fn(u32, u32) -> bool, by: f64) -> Comparison {
 }
 
 #[test]
-fn in_pictures_that_are_equal_elsewhere_a_hole_differs_and_a_few_pixels_allow_no_verdict() {
+fn few_pixels_allow_no_verdict() {
     let hole = changed(|x, y| (33..37).contains(&x) && (17..20).contains(&y), -0.25);
     assert!(hole.reasons.iter().any(|reason| reason.starts_with("a block is")), "{hole:?}");
     let worst = hole.test.worst(1)[0];
     assert_eq!((worst.x.clone(), worst.y.clone()), (32..40, 16..24));
-    // A thousandth of the pixels are few: 3.84. More of them are noise, as far as can be told.
+    // A thousandth of the pixels, 3.84, counts as few. More of them could be noise.
     let places = [(5, 20), (35, 20), (65, 20), (75, 40)];
     let verdict = |count: usize| changed(|x, y| places[..count].contains(&(x, y)), 0.5).verdict();
     let [same, unclear] = [Verdict::Same, Verdict::Unclear];
@@ -306,14 +306,14 @@ fn in_pictures_that_are_equal_elsewhere_a_hole_differs_and_a_few_pixels_allow_no
         let found = changed(|x, y| (x, y) == (30, 20), by);
         let text =
             format!("only 1 of 3840 pixels differ by more than rounding, most by {:.1e} at 30,20", by.abs());
-        let told: Vec<&String> = found.notes.iter().chain(&found.unclear).collect();
-        assert!(told.iter().any(|told| told.starts_with(&text)), "{told:?}");
+        let messages: Vec<&String> = found.notes.iter().chain(&found.unclear).collect();
+        assert!(messages.iter().any(|message| message.starts_with(&text)), "{messages:?}");
         assert_eq!(found.verdict(), verdict, "{by}");
     }
 }
 
 #[test]
-fn only_channels_of_blocks_that_differ_count_as_tries() {
+fn only_differing_channels_count_as_tries() {
     /// Column, row and channel.
     type Place = (usize, usize, usize);
     let one = floats(|pixel| 0.3 + 0.2 * random(pixel, 0, 1));
@@ -331,10 +331,10 @@ fn only_channels_of_blocks_that_differ_count_as_tries() {
 }
 
 #[test]
-fn a_heat_map_shows_differences_and_frames_the_worst_blocks() {
+fn heat_map_frames_worst_blocks() {
     let nan = f64::NAN;
-    // In turn, in the middle of a block: a difference, an eighth darker than the end of the format, brighter than it, no
-    // number beside it, no number in both.
+    // In turn, in the middle of a block: a difference, a value an eighth below the format's limit, one above it, NaN in
+    // one picture, NaN in both.
     let at = |values: [f64; 5]| {
         move |pixel: u32| match (pixel % 80, pixel / 80) {
             (x, 3) if x % 8 == 3 && x < 40 => values[(x / 8) as usize],
@@ -345,7 +345,7 @@ fn a_heat_map_shows_differences_and_frames_the_worst_blocks() {
     let b = floats(at([0.5, nan, nan, nan, 0.5]));
     let b = Picture { steps: Some(vec![[0.01; 3]; PIXELS]), limit: 0.875, ..b };
     assert_eq!(Relation::of_all(&a, &b)[3 * 80 + 3], [Relation::Difference(0.5 - 0.51); 3]);
-    // Of six blocks in the upper row that differ, the fifth differs least.
+    // Of six differing blocks in the upper row, the fifth differs least.
     let off = [0.0, 6.0, 1.0, 5.0, -4.0, 0.5, 3.0, 2.0, 0.0, 0.0];
     let values: Vec<[f64; 3]> =
         (0..PIXELS).map(|pixel| [if pixel < 640 { off[pixel % 80 / 8] } else { 0.0 }; 3]).collect();
@@ -386,7 +386,7 @@ fn options_of(first: CompareSide, second: CompareSide) -> CompareOptions {
     CompareOptions { sides, recipe, samples: None, encoding, heat_map: None, json: None }
 }
 
-/// The picture of a film of `recipe` that holds the samples of `ranges`.
+/// A film of `recipe` with the samples of `ranges`.
 fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
     let mut film = recipe.job().unwrap().new_film();
     ranges.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
@@ -394,7 +394,7 @@ fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
 }
 
 #[test]
-fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_recipe_says() {
+fn counterpart_sample_count_precedence() {
     let recipe = small();
     let mut seeded = recipe.clone();
     seeded.settings.seed = 7;
@@ -408,7 +408,7 @@ fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_r
         (&picture, None, "0..3"),
         (&picture, Some(9), "0..9"),
     ] {
-        // The recipe's own size and samples are not those of the file.
+        // The recipe's own size and sample count differ from the file's.
         let mut recipe = recipe.clone();
         (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (40, 30, 3);
         let options = CompareOptions { recipe, samples: asked, ..options_of(backend(), backend()) };
@@ -420,7 +420,7 @@ fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_r
 }
 
 #[test]
-fn a_backend_and_a_file_keep_their_order() {
+fn backend_and_file_keep_order() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
     let recipe = small();
@@ -453,7 +453,7 @@ fn two_backends_render_the_same_samples() {
 }
 
 #[test]
-fn jobs_are_noted_if_they_explain_the_result() {
+fn jobs_are_noted_if_relevant() {
     type Change = fn(&mut Recipe);
     let film = |change: Change, samples: Range<u64>| {
         let mut recipe = small();
@@ -463,7 +463,7 @@ fn jobs_are_noted_if_they_explain_the_result() {
     let note = |second: Picture| note_on_jobs(&film(|_| {}, 0..4), &second).map(|note| &note[..6]);
     assert_eq!(note(film(|_| {}, 0..4)), Some("both h"));
     assert_eq!(note(film(|_| {}, 4..8)), None);
-    // Only the job counts, not how many samples the recipe asks for.
+    // Only the job matters, not the recipe's number of samples.
     assert_eq!(note(film(|recipe| recipe.samples_per_pixel = 9, 0..4)), Some("both h"));
     let changes: [(Change, Option<&str>); 4] = [
         (|recipe| recipe.settings.seed = 1, None),

@@ -1,4 +1,4 @@
-//! Decides whether two pictures are the same except for noise and rounding.
+//! Decides whether two pictures differ by more than noise and rounding.
 
 use crate::film::{Film, PixelSum};
 use crate::numbers::statistics::blocks::{Block, BlockTest, CHANCE, Differences, Noise, SUM_DEVIATIONS};
@@ -7,38 +7,38 @@ use crate::pictures::Picture;
 use crate::pictures::answer::Verdict;
 use serde::Serialize;
 
-/// The largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.
+/// Largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.
 pub const ROUNDING_BIAS: f64 = 2e-6;
 
-/// The share of pixels that may differ where all others are equal: as many as rounding may send along a different path.
+/// Share of pixels that may differ where all others are equal: rounding may send this many along a different path.
 const FEW_PIXELS: f64 = 1e-3;
 
-/// A larger difference is not that of a few paths among many.
+/// A difference above this cannot come from a few stray paths among many.
 const LOUD: f64 = 0.1;
 
-/// How two pictures differ, and how much of the difference is noise. Values are linear RGB.
+/// How two pictures differ, and how much of it is noise. Values are linear RGB.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// Whether all pixels are equal to the bit; any NaN is equal to any other.
+    /// Whether all pixels are equal bit for bit; any two NaNs count as equal.
     pub is_same: bool,
     /// Root mean square difference over pixels and channels.
     pub rms: f64,
     /// Mean difference, second less first.
     pub bias: f64,
-    /// Standard deviation of the bias from noise and rounding; `None` if the noise is not known.
+    /// Standard deviation of the bias from noise and rounding; `None` if the noise is unknown.
     pub bias_deviation: Option<f64>,
-    /// Root mean square noise of both pictures together, as if they shared none; `None` if it is not known.
+    /// Root mean square noise of both pictures, as if independent; `None` if unknown.
     pub noise: Option<f64>,
     /// Channels that could not be compared, over all pixels.
     pub left_out: usize,
     pub non_finite: NonFinite,
     #[serde(skip)]
     pub test: BlockTest,
-    /// Why the pictures are not equal; empty if they are.
+    /// Why the pictures differ; empty if they are equal.
     pub reasons: Vec<String>,
-    /// What to know when reading the figures.
+    /// Caveats for reading the figures.
     pub notes: Vec<String>,
-    /// Why nothing can be said, if there is no reason to call the pictures different.
+    /// Why there is no verdict, if no reason says that they differ.
     pub unclear: Option<String>,
 }
 
@@ -51,13 +51,12 @@ impl Comparison {
         }
     }
 
-    /// Whether the pictures differ only by noise and rounding.
     pub fn is_equal(&self) -> bool {
         self.verdict() == Verdict::Same
     }
 
-    /// The difference divided by its noise: 1 for equal pictures that share no random numbers. Measured over pixels if
-    /// the noise of both pictures is known, else over blocks.
+    /// The difference divided by its noise: 1 for equal pictures with independent samples. Measured over pixels if the
+    /// noise of both is known, otherwise over blocks.
     pub fn times_noise(&self) -> f64 {
         match self.noise {
             Some(noise) if noise > 0.0 => self.rms / noise,
@@ -68,7 +67,7 @@ impl Comparison {
     }
 }
 
-/// Compares two pictures of one size.
+/// Compares two pictures of equal size.
 pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     let relations = Relation::of_all(a, b);
     let values: Vec<[f64; 3]> = relations.iter().map(|pixel| pixel.map(Relation::difference)).collect();
@@ -97,7 +96,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     let count = finite().count();
     let mean = |sum: f64| sum / count.max(1) as f64;
     let mut comparison = Comparison {
-        // An integer that is not known is the largest of its format.
+        // An unknown integer is its format's largest value.
         is_same: (count > 0 || a.steps.is_some()) && is_same(a, b),
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
@@ -123,7 +122,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     comparison
 }
 
-/// Whether two pictures hold the same bits in the same format; any NaN is equal to any other.
+/// Whether two pictures hold the same bits in the same format; any two NaNs count as equal.
 fn is_same(a: &Picture, b: &Picture) -> bool {
     let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
     let all_same = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().flatten().zip(b.iter().flatten()).all(same);
@@ -135,7 +134,7 @@ fn is_same(a: &Picture, b: &Picture) -> bool {
     has_same_steps && a.limit.to_bits() == b.limit.to_bits() && all_same(&a.pixels, &b.pixels)
 }
 
-/// The quantisation steps of both pictures together, if either has steps. The largest value has none: it is a bound.
+/// Combined quantisation steps, if either picture has any. The largest value has none, because it is a bound.
 fn steps_of_both(a: &Picture, b: &Picture) -> Option<Vec<[f64; 3]>> {
     let step = |picture: &Picture, pixel: usize, channel: usize| {
         let step = picture.steps.as_ref().map_or(0.0, |steps| steps[pixel][channel]);
@@ -145,15 +144,15 @@ fn steps_of_both(a: &Picture, b: &Picture) -> Option<Vec<[f64; 3]>> {
     (a.steps.is_some() || b.steps.is_some()).then(|| (0..a.pixels.len()).map(of).collect())
 }
 
-/// The largest difference that rounding explains, if `step` is the root of the sum of both squared quantisation errors.
+/// Largest difference that rounding explains, where `step` is the root of the sum of both squared quantisation errors.
 fn rounding(step: f64) -> f64 {
-    // The sum of two numbers is at most the root of two times the root of the sum of their squares. Neighbouring bytes
-    // reach this limit, so it is widened by the rounding of this arithmetic.
+    // The sum of two numbers is at most sqrt(2) times the root of the sum of their squares. Neighbouring bytes reach
+    // this limit, so allow for the rounding of this arithmetic.
     std::f64::consts::SQRT_2 * step * (1.0 + 1e-9) + ROUNDING_BIAS
 }
 
-/// Narrows the limit of a test without known noise: a block in which all differences are within rounding cannot reach it,
-/// so only the others count as tries.
+/// Narrows the limit when noise is unknown: a block whose differences are all within rounding cannot reach it, so only
+/// the others count as tries.
 fn narrow(test: &mut BlockTest, width: u32, is_moved: impl Fn(usize, usize) -> bool) {
     let moved = |block: &Block, channel: usize| {
         let mut pixels = block.y.clone().flat_map(|y| block.x.clone().map(move |x| (y * width + x) as usize));
@@ -163,8 +162,8 @@ fn narrow(test: &mut BlockTest, width: u32, is_moved: impl Fn(usize, usize) -> b
     test.largest_limit = largest_of(tries, CHANCE);
 }
 
-/// Adds the blocks of which all pixels are at the largest value of an integer format in one picture and none in the
-/// other: there, the difference to that value is the least that it can be. Returns their number.
+/// Adds blocks that are clipped throughout in one picture and nowhere in the other: there, the difference to the limit
+/// is a lower bound. Returns their number.
 fn add_clipped(test: &mut BlockTest, a: &Picture, b: &Picture, differences: &Differences) -> usize {
     let limit = a.limit.min(b.limit);
     if limit.is_infinite() {
@@ -191,11 +190,11 @@ fn add_clipped(test: &mut BlockTest, a: &Picture, b: &Picture, differences: &Dif
     count
 }
 
-/// The noise of two films' difference, estimated from their halves.
+/// Noise of the difference of two films, estimated from their halves.
 struct HalvesNoise {
     /// Variance of each pixel's difference. Noise that the films share cancels.
     variances: Vec<[f64; 3]>,
-    /// Root mean square noise of both films, as if they shared none.
+    /// Root mean square noise of both films, as if independent.
     of_both: f64,
     /// Standard deviation of the mean difference over all pixels and channels.
     of_mean: f64,
@@ -213,7 +212,7 @@ impl HalvesNoise {
             of_a.iter().zip(&of_b).map(|(a, b)| [0, 1, 2].map(|channel| b[channel] - a[channel]));
         // Channels of a pixel share their noise.
         let of_mean: f64 = deviations.clone().map(|pixel| (pixel.iter().sum::<f64>() / 3.0).powi(2)).sum();
-        // Both halves may hold the same rare path, which their difference then does not show.
+        // Both halves may contain the same rare path, which their difference does not show.
         let pair = |film: &Film| std::f64::consts::SQRT_2 / film.sample_count() as f64;
         let rare = pair(a).hypot(pair(b));
         Some(HalvesNoise {
@@ -225,7 +224,7 @@ impl HalvesNoise {
     }
 }
 
-/// Half the difference of the halves' means of each pixel. Its square estimates the variance of their mean.
+/// Half the difference between the halves' pixel means; its square estimates the variance of the pixel's mean.
 fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
     let [first, second] = film.halves() else { return None };
     let [count_a, count_b] = [0, 1].map(|half| film.half_sample_count(half) as f64);
@@ -236,16 +235,15 @@ fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
     (count_a > 0.0 && count_b > 0.0).then(|| first.iter().zip(second).map(half).collect())
 }
 
-/// How two values of a channel relate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Relation {
-    /// The second less the first.
+    /// Second minus first.
     Difference(f64),
     /// NaN in both pictures, or infinite with the same sign.
     Alike,
-    /// Finite in only one picture, or NaN in one and infinite in the other, or infinite with different signs.
+    /// Finite in only one picture, NaN in one and infinite in the other, or infinite with different signs.
     Apart,
-    /// At or beyond the largest value of an integer format, which stands for any larger one.
+    /// At or above an integer format's largest value, which stands for any larger one.
     Unknown,
 }
 
@@ -271,16 +269,15 @@ impl Relation {
     }
 }
 
-/// Channels that are NaN or infinite in a picture of floats.
+/// Counts of NaN and infinite channels in float pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NonFinite {
-    /// Pixels with a channel that is `Relation::Apart`.
     pub differing_pixels: usize,
-    /// Channels that are `Relation::Apart`. These are differences.
+    /// Channels that are `Relation::Apart`: these are differences.
     pub differing: usize,
     /// Column and row of the first differing pixel.
     pub first: Option<[u32; 2]>,
-    /// Channels that are `Relation::Alike`. These are equal, and left out of all means.
+    /// Channels that are `Relation::Alike`: equal, and left out of all means.
     pub alike: usize,
 }
 
@@ -298,8 +295,8 @@ impl NonFinite {
     }
 }
 
-/// The number of pixels that differ by more than rounding, the largest of them and its difference, if they are few in
-/// pictures that are equal otherwise, so that their noise is zero.
+/// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): their number, the
+/// worst of them and its difference.
 fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> Option<(usize, usize, f64)> {
     let by = |pixel: usize| {
         let moved = (0..3).filter(|channel| is_moved(pixel, *channel));
@@ -311,7 +308,7 @@ fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> O
     (count as f64 <= (FEW_PIXELS * values.len() as f64).max(1.0)).then_some((count, pixel, largest))
 }
 
-/// Adds the reasons to call the pictures different.
+/// Adds the reasons for calling the pictures different.
 fn judge(comparison: &mut Comparison) {
     let Comparison { test, non_finite, .. } = comparison;
     let mut reason = |is_so: bool, text: String| comparison.reasons.extend(is_so.then_some(text));
@@ -345,7 +342,6 @@ fn judge(comparison: &mut Comparison) {
     );
 }
 
-/// Notes what to know when reading the figures.
 fn note(comparison: &mut Comparison) {
     let Comparison { test, notes, is_same, left_out, non_finite, .. } = comparison;
     let mut note = |is_so: bool, text: &str| notes.extend(is_so.then(|| text.to_owned()));
@@ -375,7 +371,7 @@ fn note(comparison: &mut Comparison) {
     );
 }
 
-/// Withholds the verdict if too little can be judged.
+/// Withholds the verdict if too little can be compared.
 fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, pixels]: [usize; 2]) {
     let known: usize = comparison.test.counts.iter().sum();
     let all = 3 * comparison.test.blocks.len();

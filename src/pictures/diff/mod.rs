@@ -1,4 +1,4 @@
-//! `weekender diff`: shows a path as two backends trace it, side by side, and where the paths part.
+//! `weekender diff`: shows one path as two backends trace it, side by side, and where they diverge.
 
 mod paths;
 mod side;
@@ -16,10 +16,8 @@ use serde_json::json;
 use side::Side;
 use std::process::ExitCode;
 
-/// Compares a path and prints it. The exit code is 0 if the sides agree within the tolerance, otherwise 1.
-///
-/// # Errors
-/// [`Failure::Input`], even if a backend fails on the way, because exit code 1 means that the paths differ.
+/// Compares a path and prints it. Exit code 0 means that the sides agree within the tolerance and 1 that they do not,
+/// so every failure, even of a backend midway, is [`Failure::Input`].
 pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     compared(options).map_err(Failure::Input)
 }
@@ -64,7 +62,6 @@ fn compared(options: &DiffOptions) -> Result<ExitCode> {
     Ok(verdict.exit_code())
 }
 
-/// The lines that say what is compared.
 fn opening(options: &DiffOptions, sides: &[Side; 2], found: Found) -> String {
     let settings = options.job.settings();
     let (width, height, sampler) = (settings.width, settings.height, settings.sampler.name());
@@ -87,15 +84,15 @@ fn opening(options: &DiffOptions, sides: &[Side; 2], found: Found) -> String {
     lines(text)
 }
 
-/// The path that is compared, and the result of the search for it.
+/// The path to compare, with the result of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Found {
     /// Column and row.
     pixel: [u32; 2],
     sample: u64,
-    /// Number of samples per pixel that were searched.
+    /// Samples per pixel searched.
     searched: u64,
-    /// Number of samples, over all pixels, that differ by more than the tolerance.
+    /// Samples, over all pixels, that differ by more than the tolerance.
     differing: u64,
 }
 

@@ -10,47 +10,44 @@ use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A ray that misses a sphere by less than this fraction of the radius grazes it.
+/// A ray that misses a sphere by less than this share of the radius grazes it.
 const GRAZING_SHARE: f64 = 0.01;
 
-/// A quantity of a ray or of the whole path, in the order in which they are computed.
+/// A quantity of a ray or of the whole path, in order of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
     Origin,
     Direction,
-    /// Throughput of the path before the ray hits anything.
+    /// Before the hit.
     Throughput,
-    /// The sphere that the ray hits, or the sky.
+    /// The sphere hit, or the sky.
     Object,
-    /// Distance to the hit.
     Distance,
     /// How the path continues, or why it ends.
     Departure,
-    /// Radiance of the sample.
     Radiance,
 }
 
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Index of the ray among the path's rays, 0 for the camera's.
+    /// Index of the ray in the path; 0 is the camera's.
     pub ray: usize,
     pub quantity: Quantity,
-    /// The difference relative to the larger value; infinite if the quantity has no magnitude.
+    /// Relative to the larger value; infinite if the quantity has no magnitude.
     pub amount: f64,
 }
 
-/// How two paths differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PathComparison {
-    /// The first difference above the tolerance.
+    /// First difference above the tolerance.
     pub first: Option<Difference>,
-    /// The first difference after which the paths are not the same. Their numbers may drift apart before that.
+    /// First difference after which the paths are no longer the same. Their numbers may drift apart before that.
     pub parting: Option<Difference>,
-    /// Largest difference of any quantity before the paths part.
+    /// Largest difference before the paths part.
     pub largest: f64,
-    /// Difference of the radiances, relative to the larger one.
+    /// Relative difference of the radiances.
     pub radiance: f64,
 }
 
@@ -60,24 +57,23 @@ pub struct Row {
     pub label: &'static str,
     /// `None` where a side has none.
     pub values: [Option<String>; 2],
-    /// Difference relative to the larger value.
+    /// Relative difference.
     pub amount: f64,
 }
 
-/// Two records of the same path, with what is needed to compare and describe them.
+/// Two records of the same path, with the context for comparing and describing them.
 #[derive(Clone, Copy)]
 pub struct Pair<'a> {
-    /// The job that was rendered.
     pub job: &'a RenderJob,
     /// Short names of the sides.
     pub names: [&'a str; 2],
     pub paths: [&'a PathRecord; 2],
-    /// Largest difference that does not count.
+    /// Largest difference that is ignored.
     pub tolerance: f64,
 }
 
 impl Pair<'_> {
-    /// Number of rays of the longer path.
+    /// Length of the longer path.
     pub fn rays(&self) -> usize {
         self.paths.iter().map(|path| path.rays.len()).max().unwrap_or(0)
     }
@@ -105,10 +101,10 @@ impl Pair<'_> {
         comparison
     }
 
-    /// The quantities of the rays with this index.
+    /// The quantities of the ray at `index`.
     pub fn rows(&self, index: usize) -> [Row; 6] {
         let rays = self.paths.map(|path| path.rays.get(index));
-        // If only one side has a ray, the paths have parted.
+        // If only one side has this ray, the paths have parted.
         let amount = |of: &dyn Fn(&RecordedRay, &RecordedRay) -> f64| match rays {
             [Some(a), Some(b)] => of(a, b),
             _ => f64::INFINITY,
@@ -117,7 +113,7 @@ impl Pair<'_> {
         let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
         let departures = self.paths.map(|path| self.departure(path, index));
         let row = |quantity, label, values, amount| Row { quantity, label, values, amount };
-        // Positions are only as exact as the largest coordinate that the path has passed through.
+        // Positions are only as exact as the largest coordinate the path has passed through.
         let length = |ray: &RecordedRay| DVec3::from(ray.origin).length();
         let extent = self.paths[0].rays.iter().take(index + 1).map(length).fold(0.0, f64::max);
         let origins = |a: &RecordedRay, b: &RecordedRay| {
@@ -153,7 +149,7 @@ impl Pair<'_> {
         ]
     }
 
-    /// What happens to a path after the ray with this index, in a word that can follow "is"; `None` if that ray hits no
+    /// What happens to a path after the ray at `index`, as a word that can follow "is"; `None` if the ray hits no
     /// sphere.
     fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
         let ray = path.rays.get(index)?;
@@ -168,16 +164,16 @@ impl Pair<'_> {
             }
             (Some(_), Look::Matte) => "scattered",
             (Some(_), Look::Mirror { .. }) => "reflected",
-            // The stage follows no further rays.
+            // Such a stage traces no further rays.
             (None, _) if self.job.rules().shading != Shading::Path => "shown",
             (None, _) if is_last => "cut off",
-            // The fuzzy reflection went into the surface.
+            // The fuzzy reflection points into the surface.
             (None, Look::Mirror { .. }) => "absorbed",
             (None, _) => "shown",
         })
     }
 
-    /// The result in one or two sentences.
+    /// The verdict in one or two sentences.
     pub fn verdict(&self, comparison: &PathComparison) -> String {
         match (comparison.first, comparison.parting) {
             (None, _) if comparison.largest == 0.0 && comparison.radiance == 0.0 => {
@@ -195,7 +191,7 @@ impl Pair<'_> {
         }
     }
 
-    /// A difference in a sentence: `ray 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`. Rays are counted
+    /// A difference as a sentence: `ray 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`. Rays count
     /// from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
         let Difference { ray: index, quantity, amount } = *difference;
@@ -243,14 +239,14 @@ impl Pair<'_> {
         }
     }
 
-    /// Name (printable) and kind of a sphere's material.
+    /// Name (made printable) and kind of a sphere's material.
     fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
         let scene = self.job.scene();
         let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
         Some((printable(&named.name), named.material.kind()))
     }
 
-    /// A note if one side only just misses the sphere that the other hits, so that rounding decided.
+    /// A note if one side barely misses the sphere that the other hits, so rounding decided.
     fn near_miss(&self, a: Option<&RecordedRay>, b: Option<&RecordedRay>) -> Option<String> {
         let (a, b) = (a?, b?);
         [(a, b, self.names[1]), (b, a, self.names[0])].into_iter().find_map(|(hitting, missing, name)| {
@@ -264,12 +260,12 @@ impl Pair<'_> {
     }
 }
 
-/// Relative difference of two radiances. The last unit of the film in either direction does not count.
+/// Relative difference of two radiances, ignoring the film's last unit either way.
 pub fn radiance_amount(a: [f64; 3], b: [f64; 3]) -> f64 {
     vector_share(a, b, 2.0 / FIXED_POINT_SCALE)
 }
 
-/// Difference of the largest component beyond `forgiven`, relative to the largest component.
+/// Largest component difference beyond `forgiven`, relative to the largest component.
 fn vector_share(a: [f64; 3], b: [f64; 3], forgiven: f64) -> f64 {
     let (a, b) = (DVec3::from(a), DVec3::from(b));
     let difference = (a - b).abs().max_element() - forgiven;
@@ -288,7 +284,7 @@ pub fn vector(v: [f64; 3]) -> String {
     v.map(number).join(" ")
 }
 
-/// Nine characters, with as many digits as fit.
+/// Exactly nine characters, with as many digits as fit.
 fn number(x: f64) -> String {
     let text = match x.abs() {
         0.0 => "0".to_owned(),

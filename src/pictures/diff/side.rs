@@ -1,4 +1,4 @@
-//! A backend that can record what it does along a path.
+//! A backend that can record a path.
 
 use crate::backends::BackendChoice;
 use crate::film::Film;
@@ -9,26 +9,23 @@ use crate::render_gpu::GpuRenderer;
 use anyhow::{Result, anyhow, bail};
 use std::sync::atomic::AtomicBool;
 
-/// One of the two backends that are compared.
+/// One of the two backends compared.
 pub struct Side {
     /// Short name for sentences: `cpu avx2`.
     pub name: String,
-    /// Long name, with adapter and precision.
+    /// Full name, with adapter and precision.
     pub about: String,
     tracer: Tracer,
 }
 
 enum Tracer {
-    /// The level is that of the recorder; `None` is the reference.
+    /// With the recorder's level; `None` for the reference.
     Cpu(Box<CpuRenderer>, Option<Isa>),
     Gpu(Box<GpuRenderer>),
 }
 
 impl Side {
-    /// Starts a side.
-    ///
-    /// # Errors
-    /// If it is not available; the message says what is available instead.
+    /// Starts a backend. If it is unavailable, the error lists the alternatives.
     pub fn open(choice: &BackendChoice) -> Result<Self> {
         let (name, about, tracer) = match choice {
             BackendChoice::Cpu(options) => {
@@ -71,7 +68,6 @@ impl Side {
         }
     }
 
-    /// Renders one sample of every pixel.
     pub fn film(&mut self, job: &RenderJob, sample: u64) -> Result<Film, RenderError> {
         let settings = job.settings();
         let mut film = Film::try_new(settings.width, settings.height, settings.half_count())?;

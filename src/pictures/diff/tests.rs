@@ -1,4 +1,4 @@
-//! Two paths: where they differ, how they leave a sphere, what is said, and the search.
+//! Two paths: where they differ, how they leave a sphere, the sentences, and the search.
 
 use super::*;
 use crate::backends::BackendChoice;
@@ -17,7 +17,7 @@ fn ray(origin: [f64; 3], direction: [f64; 3], sphere: Option<usize>) -> Recorded
     RecordedRay { origin, direction, throughput: [1.0; 3], hit }
 }
 
-/// A path that meets a matte sphere and then the sky.
+/// A path that hits a matte sphere, then the sky.
 fn path() -> PathRecord {
     let rays = vec![ray([0.0; 3], [0.0, 0.0, -1.0], Some(1)), ray([0.0; 3], [0.0, 1.0, 0.0], None)];
     PathRecord { rays, radiance: [0.25, 0.5, 1.0] }
@@ -28,7 +28,7 @@ fn pair<'a>(job: &'a RenderJob, paths: [&'a PathRecord; 2], tolerance: f64) -> P
 }
 
 #[test]
-fn the_first_difference_is_found_and_told() {
+fn first_difference_is_found_and_described() {
     type Change = fn(&mut PathRecord);
     let cases: [(usize, Quantity, Change, &str); 7] = [
         (0, Quantity::Direction, |p| p.rays[0].direction[0] = 1e-3, "ray 1: the directions differ by 1.0e-3"),
@@ -65,14 +65,14 @@ fn the_first_difference_is_found_and_told() {
         ),
     ];
     let job = job();
-    for (ray, quantity, change, told) in cases {
+    for (ray, quantity, change, expected) in cases {
         let mut changed = path();
         change(&mut changed);
         for paths in [[&path(), &changed], [&changed, &path()]] {
             let pair = pair(&job, paths, 1e-4);
             let first = pair.compare().first.unwrap();
             assert_eq!((first.ray, first.quantity), (ray, quantity));
-            assert!(pair.sentence(&first).contains(told), "{}", pair.sentence(&first));
+            assert!(pair.sentence(&first).contains(expected), "{}", pair.sentence(&first));
         }
     }
     let original = path();
@@ -82,14 +82,14 @@ fn the_first_difference_is_found_and_told() {
     let mut changed = path();
     changed.rays[1].direction[0] = 3e-5;
     let near = pair(&job, [&original, &changed], 1e-4);
-    let told = "the paths agree: the largest difference is 3.0e-5, and up to 1e-4 is allowed";
-    assert_eq!(near.verdict(&near.compare()), told);
+    let expected = "the paths agree: the largest difference is 3.0e-5, and up to 1e-4 is allowed";
+    assert_eq!(near.verdict(&near.compare()), expected);
     let unit = 1.0 / crate::film::FIXED_POINT_SCALE;
     assert_eq!(radiance_amount([0.0, unit, unit], [unit, 0.0, unit]), 0.0);
 }
 
 #[test]
-fn what_comes_after_the_paths_have_parted_does_not_count() {
+fn nothing_counts_after_paths_part() {
     let job = job();
     let mut changed = path();
     changed.rays[0].direction[0] = 1e-3;
@@ -101,17 +101,17 @@ fn what_comes_after_the_paths_have_parted_does_not_count() {
     let place = |difference: Difference| (difference.ray, difference.quantity);
     assert_eq!(found.first.map(place), Some((0, Quantity::Direction)));
     assert_eq!(found.parting.map(place), Some((1, Quantity::Object)));
-    // The origin of the second ray is the path's largest coordinate, so all of it differs.
+    // The second ray's origin is the path's largest coordinate, so the difference is all of it.
     assert_eq!((found.largest, found.radiance), (1.0, 0.0));
-    let told = pair.verdict(&found);
+    let verdict = pair.verdict(&found);
     assert!(
-        told.starts_with("ray 1: the directions")
-            && told.contains(". Then ray 2: the paths part: cpu meets the sky")
+        verdict.starts_with("ray 1: the directions")
+            && verdict.contains(". Then ray 2: the paths part: cpu meets the sky")
     );
 }
 
 #[test]
-fn positions_are_as_exact_as_the_largest_that_the_path_has_passed() {
+fn positions_allow_for_largest_coordinate() {
     let job = job();
     let path = |z: f64| {
         let rays =
@@ -125,12 +125,12 @@ fn positions_are_as_exact_as_the_largest_that_the_path_has_passed() {
 }
 
 #[test]
-fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
+fn departure_follows_material_and_next_ray() {
     let of = |job: &RenderJob, test: fn(&Material) -> bool| {
         let scene = job.scene();
         scene.spheres.iter().position(|sphere| test(scene.material_of(sphere))).unwrap()
     };
-    // A ray downwards meets the top of the sphere; the next one starts there.
+    // A downward ray hits the top of the sphere, where the next one starts.
     let found = |job: &RenderJob, sphere: usize, next: Option<[f64; 3]>, index: usize| {
         let Sphere { center, radius, .. } = job.scene().spheres[sphere];
         let top = (center + radius * glam::DVec3::Y).to_array();
@@ -157,14 +157,14 @@ fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
     ] {
         assert_eq!(found(&job, sphere, next, index).as_deref(), Some(word), "{sphere} {next:?}");
     }
-    // A stage that follows no rays shows what the first one hits.
+    // A stage without bounces shows the first hit.
     let mut recipe = Recipe::find("three-spheres").unwrap();
     recipe.rules.shading = Shading::Normals;
     assert_eq!(found(&recipe.job().unwrap(), metal, None, 0).as_deref(), Some("shown"));
 }
 
 #[test]
-fn a_ray_that_just_misses_what_the_other_hits_is_told() {
+fn near_miss_is_reported() {
     let job = job();
     let sphere = job.scene().spheres[1];
     let path = |beside: f64, hit| {
@@ -172,7 +172,7 @@ fn a_ray_that_just_misses_what_the_other_hits_is_told() {
         PathRecord { rays: vec![ray(origin.to_array(), [0.0, 0.0, -1.0], hit)], radiance: [0.0; 3] }
     };
     let hitting = path(0.999, Some(1));
-    let told = |beside: f64, is_swapped: bool| {
+    let sentence = |beside: f64, is_swapped: bool| {
         let missing = path(beside, None);
         let paths = if is_swapped { [&missing, &hitting] } else { [&hitting, &missing] };
         pair(&job, paths, 1e-3).sentence(&Difference {
@@ -181,15 +181,15 @@ fn a_ray_that_just_misses_what_the_other_hits_is_told() {
             amount: f64::INFINITY,
         })
     };
-    assert!(told(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
-    assert!(told(1.005, true).contains("cpu meets the sky, gpu sphere 1 (center); cpu misses"));
+    assert!(sentence(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
+    assert!(sentence(1.005, true).contains("cpu meets the sky, gpu sphere 1 (center); cpu misses"));
     for beside in [0.5, 1.011, 3.0] {
-        assert!(!told(beside, false).contains("misses"), "{beside}");
+        assert!(!sentence(beside, false).contains("misses"), "{beside}");
     }
 }
 
 #[test]
-fn rays_that_only_one_path_has_are_shown() {
+fn unpaired_rays_are_shown() {
     let job = job();
     let path = |rays: &[RecordedRay]| PathRecord { rays: rays.to_vec(), radiance: [0.5; 3] };
     let [first, second] = [1.0, 2.0].map(|z| ray([0.0, 0.0, z], [0.0, 0.0, -1.0], None));
@@ -206,7 +206,7 @@ fn rays_that_only_one_path_has_are_shown() {
 }
 
 #[test]
-fn the_sample_that_differs_most_is_found_in_its_pixel() {
+fn search_finds_worst_sample() {
     let mut recipe = Recipe::find("three-spheres").unwrap();
     (recipe.settings.width, recipe.settings.height) = (12, 7);
     let job = recipe.job().unwrap();

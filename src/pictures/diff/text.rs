@@ -2,16 +2,13 @@
 
 use super::paths::{Difference, Pair, PathComparison, Row, vector};
 
-/// Width of a line in characters.
 const WIDTH: usize = 78;
 
-/// Width of the label column in characters.
 const LABEL: usize = 13;
 
-/// Width of each side's column in characters.
 const COLUMN: usize = 31;
 
-/// All rays of both paths with the first difference marked, both radiances, their difference and the verdict.
+/// All rays of both paths with the first difference marked, both radiances, their difference, and the verdict.
 pub fn text(pair: &Pair, comparison: &PathComparison) -> String {
     let [a, b] = pair.names.map(|name| cut(name, COLUMN));
     let mut lines = vec![format!("{:LABEL$}{a:COLUMN$}   {b}", "")];
@@ -24,12 +21,12 @@ pub fn text(pair: &Pair, comparison: &PathComparison) -> String {
     lines.iter().map(|line| line.trim_end().to_owned() + "\n").collect()
 }
 
-/// A quantity on both sides; the first difference and the parting get a sentence below.
+/// A quantity on both sides, followed by a sentence at the first difference and where the paths part.
 fn lines_of(row: &Row, index: usize, pair: &Pair, comparison: &PathComparison) -> Vec<String> {
     let sign = match &row.values {
         [None, None] => return Vec::new(),
         [Some(_), Some(_)] => sign(row.amount, pair.tolerance),
-        // The row of what the other side hit says why it has no value.
+        // The other side's object row explains the missing value.
         _ => " ",
     };
     let is_here = |found: &Difference| (found.ray, found.quantity) == (index, row.quantity);
@@ -61,7 +58,7 @@ fn closing(pair: &Pair, comparison: &PathComparison) -> Vec<String> {
     lines
 }
 
-/// Equal to the bit, equal within the tolerance, or different.
+/// A mark for bit-identical, within tolerance, or different.
 fn sign(difference: f64, tolerance: f64) -> &'static str {
     match difference {
         0.0 => "=",
@@ -77,7 +74,7 @@ fn cut(text: &str, width: usize) -> String {
     text.chars().take(width - 1).chain(['…']).collect()
 }
 
-/// Lines of at most `width` characters, broken between words.
+/// Wraps at spaces to at most `width` characters.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {

@@ -1,4 +1,4 @@
-//! Tests of the top-down builder, and of what it is for.
+//! The top-down builder, and the scenes it is for.
 
 use super::*;
 use crate::scene::Sphere;
@@ -16,12 +16,12 @@ fn nested(spheres: &[Sphere]) -> bool {
     has_nested_runs(&bounded, &along_a_curve(&bounded))
 }
 
-/// So many shells around the origin, the largest first.
+/// Shells around the origin, largest first.
 fn shells(count: u32) -> impl Iterator<Item = Sphere> {
     (0..count).map(|index| ball(0.0, 1.0 - 1e-5 * f64::from(index)))
 }
 
-/// So many balls here and there, away from the origin.
+/// Scattered balls, away from the origin.
 fn strewn(count: u32) -> impl Iterator<Item = Sphere> {
     (0..count).map(|index| {
         let [x, y, z, _] = crate::kernel::sampling::pcg4d([index, 0, 0, 0]).map(|k| f64::from(k >> 8));
@@ -29,13 +29,13 @@ fn strewn(count: u32) -> impl Iterator<Item = Sphere> {
     })
 }
 
-/// So many balls beside each other, which are nested in nothing.
+/// Balls beside each other, none nested.
 fn row(count: u32) -> impl Iterator<Item = Sphere> {
     (1..=count).map(|place| ball(3.0 * f64::from(place), 0.1))
 }
 
 #[test]
-fn a_thousand_spheres_in_runs_of_nested_ones_are_a_crowd() {
+fn nested_runs_are_crowded() {
     // The first 31 pairs of a run do not count.
     let spheres = |shell: u32, apart: u32| shells(shell).chain(row(apart)).collect::<Vec<_>>();
     assert!(nested(&spheres(1056, 1000)) && !nested(&spheres(1055, 1001)));
@@ -54,7 +54,7 @@ fn a_thousand_spheres_in_runs_of_nested_ones_are_a_crowd() {
 }
 
 #[test]
-fn spheres_that_pair_one_by_one_are_a_crowd() {
+fn slow_pairing_is_crowded() {
     let over_decades = |decades: f64, share: f64, count: u32| -> Vec<Sphere> {
         let share_of = |index: u32| f64::from(index) / f64::from(count) - 0.5;
         let along = (0..count).map(|index| 10_f64.powf(decades * share_of(index)));
@@ -67,14 +67,14 @@ fn spheres_that_pair_one_by_one_are_a_crowd() {
         }
     }
     assert!(crowded(&row(4096).collect::<Vec<_>>()));
-    // In an order that no longer follows their size.
+    // In an order unrelated to their size.
     let mut mixed = over_decades(24.0, 0.3, 4096);
     mixed.sort_by_key(|ball| ball.center.x.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15));
     assert!(crowded(&mixed));
 }
 
 #[test]
-fn spheres_that_pair_at_once_are_no_crowd() {
+fn fast_pairing_is_not_crowded() {
     assert!(!crowded(&strewn(20_000).collect::<Vec<_>>()));
     let lattice = |i: u32| Sphere {
         center: DVec3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256)),
@@ -103,7 +103,7 @@ fn neighbours_in_space_have_neighbouring_codes() {
     assert_eq!(morton_code([1.0; 3]), (1 << 63) - 1);
     let unit = 1.0 / f64::from((1 << 21) - 1);
     for (number, code) in [(1, 0b1), (2, 0b1000), (3, 0b1001), (5, 0b100_0001), (1 << 20, 1 << 60)] {
-        // A little more, so that rounding does not take the number below.
+        // A little more, so that the number does not round down.
         let x = (f64::from(number) + 0.5) * unit;
         for axis in 0..3 {
             let mut place = [0.0; 3];
@@ -126,7 +126,7 @@ fn sides(spheres: &[Sphere]) -> Option<[Vec<u32>; 2]> {
 }
 
 #[test]
-fn a_split_pays_most_where_area_times_spheres_is_least() {
+fn split_minimises_area_times_spheres() {
     // One ball in each of the sixteen bins.
     let even: Vec<Sphere> = (0..16).map(|place| ball(f64::from(place), 0.25)).collect();
     let all: Vec<u32> = (0..16).collect();
@@ -141,14 +141,14 @@ fn a_split_pays_most_where_area_times_spheres_is_least() {
     let heavy: Vec<Sphere> = even.iter().copied().chain([even[1]; 30]).collect();
     let [left, _] = sides(&heavy).unwrap();
     assert_eq!(left, [0, 1].into_iter().chain(16..46).collect::<Vec<u32>>());
-    // Balls around the same place are parted by size, the small ones first.
+    // Balls around the same place are split by size, the small ones first.
     let nested: Vec<Sphere> = (0..6).map(|index| ball(0.0, [8.0, 1.0][index % 2])).collect();
     assert_eq!(sides(&nested), Some([vec![1, 3, 5], vec![0, 2, 4]]));
     assert_eq!(sides(&[ball(1.0, 2.0); 5]), None, "copies cannot be parted");
 }
 
 #[test]
-fn a_half_is_taken_along_the_widest_key() {
+fn halving_uses_widest_key() {
     let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
     let spheres: Vec<Sphere> =
         (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();
@@ -156,7 +156,7 @@ fn a_half_is_taken_along_the_widest_key() {
     let left = part_in_the_middle(&Bounded::all(&spheres, &DVec3::ZERO), &mut part);
     part[..left].sort_unstable();
     assert_eq!((left, &part[..left]), (3, &[4, 5, 6][..]));
-    // Of equal keys, the first of the scene come first.
+    // Equal keys keep the scene's order.
     let mut part: Vec<u32> = (0..4).rev().collect();
     let left = part_in_the_middle(&Bounded::all(&[ball(0.0, 1.0); 4], &DVec3::ZERO), &mut part);
     part[..left].sort_unstable();
@@ -164,7 +164,7 @@ fn a_half_is_taken_along_the_widest_key() {
 }
 
 #[test]
-fn a_tree_holds_every_sphere_once_in_leaves_that_are_not_too_full() {
+fn tree_holds_every_sphere_once() {
     let spheres: Vec<Sphere> = row(100).chain(shells(30)).collect();
     let bounded = Bounded::all(&spheres, &DVec3::ZERO);
     let trees = [(1, false), (1, true), (4, false), (4, true), (130, false)];

@@ -1,30 +1,28 @@
 //! Cameras between keyframes.
 //!
-//! Positions and the up direction follow a Catmull-Rom spline: a cubic between two keyframes, whose slope at each keyframe
-//! is that of the parabola through it and its neighbours. Field of view, defocus and focus distance follow a monotone
-//! cubic (Fritsch and Butland 1984), which never leaves the range between two keyframes. They are interpolated where equal
-//! steps look equal: the field of view as the logarithm of the picture's height at distance 1, the focus distance as a
-//! logarithm, the defocus angle as the radius of the lens at focus distance 1.
+//! Positions and the up direction follow a Catmull-Rom spline: cubics whose slope at each keyframe is that of the
+//! parabola through it and its neighbours. Field of view, defocus and focus distance follow a monotone cubic (Fritsch
+//! and Butland 1984), which never leaves the range of two keyframes. They are interpolated where equal steps look
+//! equal: the field of view as the logarithm of the picture's height at distance 1, the focus distance as a logarithm,
+//! the defocus angle as the radius of the lens at focus distance 1.
 
 use super::turntable::unit;
 use crate::scene::Camera;
 use glam::DVec3;
 
-/// A camera at a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe {
-    /// Number of the frame, below `FRAME_LIMIT`.
+    /// Below `FRAME_LIMIT`.
     pub frame: u32,
-    /// The camera at this frame.
     pub camera: Camera,
 }
 
-/// The camera at a frame. `keyframes` must have rising frame numbers; `None` if there are none.
+/// `keyframes` must have rising frame numbers; `None` if there are none.
 pub(super) fn camera(keyframes: &[Keyframe], frame: u32) -> Option<Camera> {
-    // The index of the first keyframe after this frame.
+    // Index of the first keyframe after this frame.
     let next = keyframes.partition_point(|keyframe| keyframe.frame <= frame);
     let Some(last) = next.checked_sub(1) else { return Some(keyframes.first()?.camera) };
-    // A keyframe has its own camera, to the bit.
+    // At a keyframe, return its own camera bit for bit.
     if next == keyframes.len() || keyframes[last].frame == frame {
         return Some(keyframes[last].camera);
     }
@@ -50,12 +48,11 @@ pub(super) fn camera(keyframes: &[Keyframe], frame: u32) -> Option<Camera> {
     })
 }
 
-/// Tangent of half an angle.
 fn half_tangent(degrees: f64) -> f64 {
     libm::tan(degrees.to_radians() / 2.0)
 }
 
-/// The angle whose half has this tangent, degrees.
+/// The angle whose half has this tangent.
 fn angle_degrees(half_tangent: f64) -> f64 {
     (2.0 * libm::atan(half_tangent)).to_degrees()
 }
@@ -63,17 +60,17 @@ fn angle_degrees(half_tangent: f64) -> f64 {
 /// How a number bends at a keyframe.
 #[derive(Clone, Copy, PartialEq)]
 enum Bend {
-    /// As the parabola through three keyframes, so the path may swing beyond a keyframe. Not at all where the point stays
-    /// until the next keyframe.
+    /// Like the parabola through three keyframes, so the path may overshoot a keyframe. Flat where the point stays
+    /// until the next one.
     Smooth,
-    /// No further than the keyframes.
+    /// Never beyond the keyframes.
     Monotone,
 }
 
 /// One number of the camera over time.
 struct Channel<'a> {
     keyframes: &'a [Keyframe],
-    /// The point of the camera whose coordinate this is.
+    /// The point of the camera that this is a coordinate of.
     point: &'a dyn Fn(&Camera) -> DVec3,
     axis: usize,
     bend: Bend,
@@ -103,14 +100,13 @@ impl Channel<'_> {
         (self.value(index + 1) - self.value(index)) / self.length(index)
     }
 
-    /// Slope at a keyframe.
     fn slope(&self, index: usize) -> f64 {
         let end = self.keyframes.len() - 1;
         match (index, self.bend) {
             _ if end == 1 => self.secant(0),
             (0, Bend::Monotone) => self.secant(0),
             (_, Bend::Monotone) if index == end => self.secant(end - 1),
-            // The curvature is 0 at both ends.
+            // Zero curvature at both ends.
             (0, Bend::Smooth) => 1.5 * self.secant(0) - 0.5 * self.slope(1),
             (_, Bend::Smooth) if index == end => 1.5 * self.secant(end - 1) - 0.5 * self.slope(end - 1),
             _ => self.inner_slope(index),
@@ -128,7 +124,7 @@ impl Channel<'_> {
         }
     }
 
-    /// The number at a frame between keyframe `index` and the next.
+    /// The value at a frame between keyframe `index` and the next.
     fn at(&self, index: usize, frame: u32) -> f64 {
         let length = self.length(index);
         let t = f64::from(frame - self.keyframes[index].frame) / length;

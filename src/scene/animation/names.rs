@@ -1,14 +1,13 @@
-//! The names of frames.
+//! File names of frames.
 
 use std::path::{Path, PathBuf};
 
-/// Where the frames of an animation are: a directory, and a name in which the number is filled in.
+/// Where an animation's frames are: a directory, and a name with a place for the number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameNames {
-    /// The directory of the frames.
     pub directory: PathBuf,
     before: String,
-    /// Least number of digits.
+    /// Minimum number of digits.
     digits: usize,
     after: String,
 }
@@ -20,8 +19,8 @@ impl FrameNames {
         FrameNames { directory: directory.to_owned(), before, digits: 4, after }
     }
 
-    /// Names from a pattern such as `shots/turn-####.png`, where the number takes the place of the signs `#` and has at
-    /// least as many digits. `None` if the file name does not have a single row of them.
+    /// Names from a pattern such as `shots/turn-####.png`, whose `#` signs stand for the number and its minimum digits.
+    /// `None` unless the file name has exactly one run of them.
     pub fn of_pattern(pattern: &Path) -> Option<FrameNames> {
         let name = pattern.file_name()?.to_str()?;
         let (before, rest) = name.split_once('#')?;
@@ -37,7 +36,6 @@ impl FrameNames {
         })
     }
 
-    /// The file of a frame.
     pub fn path(&self, frame: u32) -> PathBuf {
         let FrameNames { directory, before, digits, after } = self;
         directory.join(format!("{before}{frame:0digits$}{after}"))

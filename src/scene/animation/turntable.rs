@@ -1,25 +1,25 @@
-//! A turntable: the camera circles around the point that it looks at.
+//! A turntable: the camera circles around the point it looks at.
 
 use crate::scene::Camera;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// Frames of a turn by default: four seconds at 30 frames a second.
+/// Default frames per turn: four seconds at 30 frames a second.
 pub const FRAMES_PER_TURN: u32 = 120;
 
 /// The speed of a turntable. Seen from above, the camera circles counterclockwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Turn {
-    /// Frames of a whole turn, at least 1.
+    /// Frames per turn, at least 1.
     FramesPerTurn(u32),
-    /// Degrees from frame to frame; if negative, the camera circles clockwise.
+    /// Degrees between frames; negative for clockwise.
     DegreesPerFrame(f64),
 }
 
 impl Turn {
-    /// The angle of a frame in turns, from -1 to 1, both exclusive. Whole turns are exactly 0.
+    /// The angle of a frame in turns, exclusively between -1 and 1. Whole turns are exactly 0.
     fn angle(self, frame: u32) -> f64 {
         match self {
             Turn::FramesPerTurn(frames) => f64::from(frame % frames.max(1)) / f64::from(frames.max(1)),
@@ -33,7 +33,7 @@ impl Turn {
         if angle == 0.0 {
             return *start;
         }
-        // From libm: sines of the system's library differ from machine to machine.
+        // From libm, because the system's sines differ between machines.
         let (sine, cosine) = libm::sincos(angle * TAU);
         let axis = unit(start.vup);
         let arm = start.look_from - start.look_at;
@@ -45,7 +45,7 @@ impl Turn {
     }
 }
 
-/// Normalises `v`, also where its square would overflow or underflow.
+/// Normalises `v`, even where its square would overflow or underflow.
 pub(super) fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }

@@ -4,8 +4,8 @@ use super::random::{Draws, to_four_decimals};
 use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 
-/// With this seed, three of the 22 x 22 small spheres fall where the metal sphere stands and are left out. This leaves
-/// 485 spheres, the same number as the book's own generator.
+/// This seed leaves out three of the 22 x 22 small spheres where the metal sphere stands. That gives 485 spheres, as
+/// many as the book's own generator.
 const SEED: u64 = 1;
 
 pub const BOOK_CAMERA: Camera = Camera {

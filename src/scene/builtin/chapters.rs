@@ -4,7 +4,7 @@ use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Radius of the ground sphere in the small scenes; its top is at `y = -0.5`.
+/// Radius of the ground in the small scenes; its top is at `y = -0.5`.
 const GROUND_RADIUS: f64 = 100.0;
 
 const GREY: DVec3 = DVec3::splat(0.5);
@@ -29,12 +29,12 @@ pub fn matte_on_ground() -> Scene {
     scene
 }
 
-/// The sphere on the left of [`three_spheres`].
+/// The left sphere of [`three_spheres`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LeftSphere {
     /// Solid glass with this refraction index relative to its surroundings.
     Glass(f64),
-    /// A shell of glass of index 1.5 around a ball of air of radius 0.4. (Section 11.5.)
+    /// A glass shell of index 1.5 around a ball of air of radius 0.4. (Section 11.5.)
     HollowGlass,
 }
 
@@ -91,8 +91,7 @@ pub fn touching_spheres() -> Scene {
     scene
 }
 
-/// A camera that looks at the three spheres from above and from their left. `vfov_degrees` is the vertical
-/// field of view. (Section 12.2.)
+/// A camera above and to the left of the three spheres. `vfov_degrees` is the vertical field of view. (Section 12.2.)
 pub fn view_from_the_side(vfov_degrees: f64) -> Camera {
     Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), vfov_degrees, ..Camera::BOOK }
 }

@@ -1,21 +1,21 @@
-//! A field with any number of spheres, for measuring how render time scales.
+//! A field of any number of spheres, for measuring how render time scales.
 
 use super::random::{Draws, to_four_decimals};
 use crate::scene::{Camera, Material, Scene, Sphere};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// Limits on the number of small spheres in a field.
+/// Limits on a field's small spheres.
 pub const FIELD_COUNT_LIMITS: RangeInclusive<u64> = 1..=10_000_000;
 
 const SEED: u64 = 20;
 
-/// Number of matte materials. Spheres share materials: the palette and the ground's, however many spheres there are.
+/// Number of matte materials: the palette and the ground's, shared by all spheres.
 const MATTE_COUNT: usize = 44;
 const METAL_COUNT: usize = 15;
 const GLASS_COUNT: usize = 4;
 
-/// Side of the square cell of each sphere, scene units.
+/// Side of each sphere's square cell, scene units.
 const CELL: f64 = 1.0;
 
 /// `count` small spheres on a large one, with a camera that looks across them.
@@ -31,7 +31,7 @@ pub fn field(count: u64) -> (Scene, Camera) {
     scene.spheres.extend((0..count).map(|index| ground.sphere(index)));
 
     let half_width = ground.half_width;
-    // Keeps the middle ground in view as the far edge recedes.
+    // Keep the middle ground in view as the far edge recedes.
     let height = 3.0 * (half_width / 16.0).sqrt().max(0.5);
     let camera = Camera {
         look_from: DVec3::new(0.35 * half_width, height, half_width + 2.0 * height),
@@ -42,7 +42,7 @@ pub fn field(count: u64) -> (Scene, Camera) {
     (scene, camera)
 }
 
-/// Whether a scene equals the [`field`] of `count` spheres, to the bit. Allocates no memory.
+/// Whether a scene equals the [`field`] of `count` spheres, bit for bit. Allocates no memory.
 pub fn is_field(scene: &Scene, count: u64) -> bool {
     if !FIELD_COUNT_LIMITS.contains(&count) || scene.spheres.len() as u64 != count + 1 {
         return false;
@@ -53,7 +53,6 @@ pub fn is_field(scene: &Scene, count: u64) -> bool {
         && scene.spheres[1..].iter().copied().eq((0..count).map(|index| ground.sphere(index)))
 }
 
-/// The ground of a field.
 struct Ground {
     columns: u64,
     /// Half the field's side, scene units.
@@ -66,7 +65,7 @@ impl Ground {
     fn of(count: u64) -> Self {
         let columns = (count as f64).sqrt().ceil() as u64;
         let half_width = 0.5 * CELL * columns as f64;
-        // The ground is so large that the field is only a gently curved part of it.
+        // So large that the field is only a gently curved part of it.
         let radius = (100.0 * half_width).max(1000.0);
         Ground { columns, half_width, radius, center: DVec3::new(0.0, -radius, 0.0) }
     }
@@ -81,7 +80,7 @@ impl Ground {
         scene
     }
 
-    /// The small sphere in the cell `index`.
+    /// The small sphere in cell `index`.
     fn sphere(&self, index: u64) -> Sphere {
         let mut draws = Draws::new(SEED, index);
         let radius = to_four_decimals(draws.within(0.18, 0.42));
@@ -113,7 +112,7 @@ fn add_palette(scene: &mut Scene) {
 /// Index of a palette material for a sphere at `(x, z)`; nearby spheres have similar hues.
 fn palette_index(x: f64, z: f64, draws: &mut Draws) -> usize {
     let pick = |turn: f64, count: usize| ((turn.rem_euclid(1.0) * count as f64) as usize).min(count - 1);
-    // Triangle waves instead of sines, because they give the same bits on every machine.
+    // Triangle waves, because sines differ between machines.
     let wave = |position: f64, length: f64| (2.0 * (position / length).rem_euclid(1.0) - 1.0).abs();
     let patch = 0.6 * wave(x + 0.3 * z, 29.0) + 0.6 * wave(z - 0.4 * x, 41.0) + draws.within(-0.07, 0.07);
     match draws.unit() {
@@ -138,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_field_has_its_count_and_few_materials() {
+    fn field_has_count_and_few_materials() {
         for count in [1, 2, 3, 17, 1000, 100_000] {
             let (scene, camera) = field(count);
             assert_eq!(scene.spheres.len() as u64, count + 1);
@@ -149,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn spheres_of_a_field_touch_the_ground_and_not_each_other() {
+    fn field_spheres_touch_only_ground() {
         let (scene, _) = field(900);
         let (ground, small) = scene.spheres.split_first().expect("a ground");
         for (index, sphere) in small.iter().enumerate() {
@@ -163,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_with_a_changed_part_is_no_longer_the_field() {
+    fn changed_field_is_not_field() {
         let (scene, _) = field(17);
         assert!(is_field(&scene, 17) && !is_field(&scene, 16));
         let mut other = scene.clone();

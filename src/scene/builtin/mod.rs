@@ -15,24 +15,24 @@ pub use field::{FIELD_COUNT_LIMITS, field, is_field};
 use super::{Camera, Scene};
 use std::fmt;
 
-/// A scene that is generated on demand, with default render settings.
+/// A generated scene with default render settings.
 #[derive(Clone, Copy)]
 pub struct BuiltinScene {
-    /// The name on the command line and in the window.
+    /// Name on the command line and in the window.
     pub name: &'static str,
-    /// A description in one line.
+    /// One line.
     pub about: &'static str,
     pub width: u32,
     pub height: u32,
     pub samples_per_pixel: u64,
     /// Default limit on rays per path, including the camera ray.
     pub max_depth: u32,
-    /// Creates the scene and its camera; the result is always the same.
+    /// Always gives the same scene and camera.
     pub build: fn() -> (Scene, Camera),
 }
 
 impl BuiltinScene {
-    /// A [`field`] with the default number of spheres.
+    /// A [`field`] of the default size.
     pub const FIELD: BuiltinScene = BuiltinScene {
         name: "field",
         about: "ten thousand small spheres on a wide ground; field:N has N of them",
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_scene_is_valid_and_the_same_each_time() {
+    fn scenes_are_valid_and_deterministic() {
         for builtin in BuiltinScene::ALL {
             let (scene, camera) = (builtin.build)();
             scene.validate().expect(builtin.name);

@@ -2,8 +2,8 @@
 
 /// The draws for one thing in a scene, such as a grid cell.
 ///
-/// SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators"), with a starting state
-/// that depends on the seed and the thing's index.
+/// SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators"), seeded with the scene's
+/// seed and the thing's index.
 pub(super) struct Draws {
     state: u64,
 }
@@ -13,13 +13,13 @@ impl Draws {
         Draws { state: mix(mix(seed) ^ index) }
     }
 
-    /// The next number, in `[0, 1)`.
+    /// The next number in `[0, 1)`.
     pub(super) fn unit(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         (mix(self.state) >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// The next number, in `[low, high)`.
+    /// The next number in `[low, high)`.
     pub(super) fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -31,7 +31,7 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// Rounds `x` to four decimals, so that a saved scene is short and readable.
+/// Rounds to four decimals, to keep saved scenes short and readable.
 pub(super) fn to_four_decimals(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn draws_are_uniform_and_belong_to_their_index() {
+    fn draws_are_uniform_and_indexed() {
         let first = |index| Draws::new(1, index).unit();
         let numbers: Vec<f64> = (0..10_000).map(first).collect();
         let mean = numbers.iter().sum::<f64>() / 1e4;

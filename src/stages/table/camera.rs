@@ -10,7 +10,7 @@ const CHAPTER_12: &str = "Positionable Camera";
 const CHAPTER_13: &str = "Defocus Blur";
 const CHAPTER_14: &str = "Where Next?";
 
-/// A view of the three spheres from above and from the left.
+/// The three spheres from above and from the left.
 const SIDE_VIEW: Camera = Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), ..Camera::BOOK };
 
 const CLOSE_SIDE_VIEW: Camera = Camera { vfov_degrees: 20.0, ..SIDE_VIEW };

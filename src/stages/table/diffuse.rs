@@ -10,7 +10,7 @@ const CHAPTER_9: &str = "Diffuse Materials";
 const HEMISPHERE: Rules = Rules { diffuse: Diffuse::Hemisphere, ..LINEAR };
 const HALF_ENERGY_LIMITED: Setup = Setup { rules: HEMISPHERE, max_depth: 5, ..PATHS };
 
-/// From here the ground reaches above the middle of the picture on all its width, and the ball still stands out.
+/// Raises the ground above the middle of the picture across its width, while the ball still stands out.
 const FROM_A_LITTLE_HIGHER: Camera = Camera {
     look_from: DVec3::new(0.0, 0.6, 0.4),
     look_at: DVec3::new(0.0, -0.2, -1.0),

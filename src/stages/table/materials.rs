@@ -7,7 +7,7 @@ use crate::stages::{DielectricLaws, Means, Rules, Setup, Sight, Stage};
 const CHAPTER_10: &str = "Metal";
 const CHAPTER_11: &str = "Dielectrics";
 
-/// The glass ball, which the left edge of the picture cuts.
+/// The glass ball, cut by the left edge of the picture.
 const GLASS_BALL: Option<[f64; 4]> = Some([0.0, 0.17, 0.4, 0.83]);
 
 /// Its upper right, with the rim.

@@ -1,4 +1,4 @@
-//! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
+//! The stages in the book's order. Section numbers and scene values follow v4.0.2.
 
 mod camera;
 mod diffuse;
@@ -8,7 +8,7 @@ mod setups;
 
 use super::Stage;
 
-/// All stages, file by file.
+/// All stages by file.
 const FILES: [&[Stage]; 4] = [rays::STAGES, diffuse::STAGES, materials::STAGES, camera::STAGES];
 
 pub(super) const STAGES: &[Stage] = &chained::<{ count() }>();

@@ -15,28 +15,25 @@ const SIZE: [u32; 2] = [24, 16];
 /// Samples per pixel of most pictures.
 const SAMPLES: u64 = 32;
 
-/// A sky that is 1 everywhere: a path returns the product of the reflectances that it met.
+/// A sky of 1 everywhere: a path returns the product of the reflectances along it.
 pub const WHITE_SKY: Sky = Sky { bottom: DVec3::ONE, top: DVec3::ONE };
 
-/// A sphere's centre, radius and material.
+/// Centre, radius and material.
 pub type Ball = (DVec3, f64, Material);
 
-/// A matte material with this reflectance in all channels.
 pub fn matte(albedo: f64) -> Material {
     Material::Lambertian { albedo: DVec3::splat(albedo) }
 }
 
-/// A metal with this reflectance in all channels.
 pub fn metal(albedo: f64, fuzz: f64) -> Material {
     Material::Metal { albedo: DVec3::splat(albedo), fuzz }
 }
 
-/// Glass with this refraction index.
 pub fn glass(refraction_index: f64) -> Material {
     Material::Dielectric { refraction_index }
 }
 
-/// A scene of these balls. Balls with equal materials share one.
+/// Balls with equal materials share one.
 pub fn scene(balls: impl IntoIterator<Item = Ball>, sky: Sky) -> Scene {
     let mut scene = Scene { sky, ..Scene::default() };
     for (center, radius, material) in balls {
@@ -50,19 +47,18 @@ pub fn scene(balls: impl IntoIterator<Item = Ball>, sky: Sky) -> Scene {
     scene
 }
 
-/// A camera with a vertical field of view in degrees.
 pub fn eye(look_from: DVec3, look_at: DVec3, vfov_degrees: f64) -> Camera {
     let view = look_at - look_from;
     let vup = if view.x == 0.0 && view.z == 0.0 { DVec3::X } else { DVec3::Y };
     Camera { look_from, look_at, vup, vfov_degrees, ..Camera::BOOK }
 }
 
-/// A small picture of these balls under a white sky, with paths of up to 50 rays.
+/// A small picture under a white sky, with paths of up to 50 rays.
 pub fn picture(balls: impl IntoIterator<Item = Ball>, camera: Camera) -> Recipe {
     of_scene(scene(balls, WHITE_SKY), camera)
 }
 
-/// A small picture of a scene, with paths of up to 50 rays.
+/// A small picture, with paths of up to 50 rays.
 pub fn of_scene(scene: Scene, camera: Camera) -> Recipe {
     let [width, height] = SIZE;
     Recipe {
@@ -76,24 +72,22 @@ pub fn of_scene(scene: Scene, camera: Camera) -> Recipe {
     }
 }
 
-/// The recipe with another maximum depth.
 pub fn deep(mut recipe: Recipe, max_depth: u32) -> Recipe {
     recipe.settings.max_depth = max_depth;
     recipe
 }
 
-/// The recipe with another size and number of samples per pixel.
 pub fn sized(mut recipe: Recipe, [width, height]: [u32; 2], samples: u64) -> Recipe {
     (recipe.settings.width, recipe.settings.height) = (width, height);
     Recipe { samples_per_pixel: samples, ..recipe }
 }
 
-/// The recipe with another name, which the tables show.
+/// The recipe with another name for the tables.
 pub fn named(recipe: Recipe, name: &str) -> Recipe {
     Recipe { name: name.to_owned(), ..recipe }
 }
 
-/// Everything multiplied by `factor` and then moved by `offset`: spheres, eye and focus.
+/// Everything scaled by `factor`, then moved by `offset`: spheres, eye and focus.
 pub fn moved(recipe: &Recipe, factor: f64, offset: DVec3) -> Recipe {
     let place = |point: DVec3| factor * point + offset;
     let mut scene = Scene::clone(&recipe.scene);
@@ -127,12 +121,12 @@ pub fn one_ball() -> Recipe {
     named(picture([(DVec3::ZERO, 1.0, matte(0.5))], in_front()), "one-ball")
 }
 
-/// A camera that sees nothing but the unit ball at the origin.
+/// A camera that sees only the unit ball at the origin.
 pub fn in_front() -> Camera {
     eye(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 20.0)
 }
 
-/// A camera that sees nothing but a unit ball at `center`.
+/// A camera that sees only a unit ball at `center`.
 pub fn around(center: DVec3) -> Camera {
     let camera = in_front();
     Camera { look_from: camera.look_from + center, look_at: camera.look_at + center, ..camera }

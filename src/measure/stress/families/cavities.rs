@@ -1,4 +1,4 @@
-//! Closed rooms, which no light may leave or enter, and the eye on a surface or next to it.
+//! Closed rooms, which no light enters or leaves, and eyes on or near a surface.
 
 use super::build::{Ball, deep, eye, glass, matte, metal, moved, picture, sized};
 use crate::job::recipe::Recipe;
@@ -6,7 +6,6 @@ use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::Material;
 use glam::DVec3;
 
-/// The eye in a closed room.
 pub const CAVITIES: Family = Family {
     id: "cavity",
     title: "The eye in a closed ball",
@@ -16,7 +15,7 @@ pub const CAVITIES: Family = Family {
 
 const WHY: &str = "the room is closed: no path leaves it";
 
-/// Alone, touching the ground, and cut by the ground; near the origin and far from it.
+/// Alone, touching the ground, and cut by it; near the origin and far from it.
 pub fn cavities() -> Vec<Case> {
     let materials = [
         ("white", matte(1.0)),
@@ -26,12 +25,12 @@ pub fn cavities() -> Vec<Case> {
     ];
     let mut cases = Vec::new();
     for (material_name, material) in materials {
-        let words = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
+        let phrase = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
         for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
             let stiff = match place {
-                "alone" => format!("the eye in a closed {words} ball"),
-                "touching" => format!("the eye in a {words} ball that stands on the ground"),
-                _ => format!("the eye in a {words} ball that the ground cuts"),
+                "alone" => format!("the eye in a closed {phrase} ball"),
+                "touching" => format!("the eye in a {phrase} ball that stands on the ground"),
+                _ => format!("the eye in a {phrase} ball that the ground cuts"),
             };
             let name = format!("{material_name}-{place}");
             let case = Case::new(&CAVITIES, name, stiff, room(material, ground)).every(0.0, WHY);
@@ -66,14 +65,13 @@ pub fn cavities() -> Vec<Case> {
     cases
 }
 
-/// A ball of radius 1 at the origin with the eye in it, and a ground of radius 1000 centred at this height.
+/// A unit ball at the origin around the eye, and a ground of radius 1000 centred at this height.
 fn room(material: Material, ground: Option<f64>) -> Recipe {
     let ground = ground.map(|y| (DVec3::new(0.0, y, 0.0), 1000.0, matte(1.0)));
     let balls: Vec<Ball> = [(DVec3::ZERO, 1.0, material)].into_iter().chain(ground).collect();
     picture(balls, eye(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.3, -1.0, -0.2), 90.0))
 }
 
-/// The eye near surfaces.
 pub const EYE: Family = Family {
     id: "eye",
     title: "The eye on a surface",
@@ -81,12 +79,12 @@ pub const EYE: Family = Family {
              leave it like any other rays.",
 };
 
-/// The eye at several heights above several surfaces, looking away and down.
+/// Eyes at several heights above several surfaces, looking away and down.
 pub fn eye_near_a_surface() -> Vec<Case> {
     let mut cases = Vec::new();
     let heights = [("0", 0.0), ("1e-12", 1e-12), ("1e-9", 1e-9), ("1e-6", 1e-6), ("1e-3", 1e-3)];
     let ball = DVec3::new(0.2, -0.3, 0.1);
-    // Its length is exactly 1 in f64.
+    // Exactly unit length in f64.
     let tilted = DVec3::new(0.48, 0.6, 0.64);
     let surfaces: [(&str, &str, DVec3, f64, DVec3, Material); 4] = [
         ("ball", "a matte ball", ball, 1.0, tilted, matte(0.5)),
@@ -94,18 +92,18 @@ pub fn eye_near_a_surface() -> Vec<Case> {
         ("glass", "a glass ball", ball, 1.0, tilted, glass(1.5)),
         ("metal", "a metal ball", ball, 1.0, tilted, metal(0.5, 0.0)),
     ];
-    for (surface, words, center, radius, up, material) in surfaces {
+    for (surface, phrase, center, radius, up, material) in surfaces {
         for (name, height) in heights {
             let look_from = center + (radius + height) * up;
             let away = picture([(center, radius, material)], eye(look_from, look_from + up, 90.0));
             let place = if height == 0.0 { "on".to_owned() } else { format!("{height:e} above") };
-            let stiff = format!("the eye {place} {words}, looking away from it");
+            let stiff = format!("the eye {place} {phrase}, looking away from it");
             let why = "nothing but a sky of 1 is in view";
             let case = Case::new(&EYE, format!("{surface}-{name}-away"), stiff, away).every(1.0, why);
             cases.push(case.quick_if(surface == "ball"));
             if height > 0.0 && surface != "glass" {
                 let down = picture([(center, radius, material)], eye(look_from, center, 90.0));
-                let stiff = format!("the eye {place} {words}, looking at it");
+                let stiff = format!("the eye {place} {phrase}, looking at it");
                 let why = "a convex surface that reflects half the light fills the view, and each path bounces once";
                 cases.push(Case::new(&EYE, format!("{surface}-{name}-down"), stiff, down).every(0.5, why));
             }

@@ -9,7 +9,6 @@ use crate::scene::{Material, Scene, Sky};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Identical spheres.
 pub const COPIES: Family = Family {
     id: "copies",
     title: "Many spheres at the same place",
@@ -17,7 +16,6 @@ pub const COPIES: Family = Family {
              and must not hit it.",
 };
 
-/// Two spheres that almost coincide.
 pub const SHIFTS: Family = Family {
     id: "shifts",
     title: "A copy, moved imperceptibly",
@@ -36,7 +34,7 @@ pub fn copies() -> Vec<Case> {
             "{} identical balls: no plane separates them, and every hit is a tie between all of them",
             grouped(count)
         );
-        // Large counts test how the hierarchy is built and how deep it gets, which few samples show.
+        // Large counts test the build and depth of the hierarchy, so few samples suffice.
         let (size, samples) = match count {
             0..=1000 => ([24, 16], 32),
             1001..=20_000 => ([24, 16], 4),
@@ -81,7 +79,7 @@ fn scattered(index: u32, half_width: f64) -> Ball {
     (half_width * place, 0.004 + 0.004 * d, matte(0.5))
 }
 
-/// The same number of balls, each at its own place.
+/// The same number of balls, each in its own place.
 fn spread(count: usize) -> Recipe {
     let balls = (0..count as u32).map(|index| scattered(index, 0.9));
     named(picture(balls, in_front()), "as many apart")
@@ -105,7 +103,7 @@ pub fn shifts() -> Vec<Case> {
     cases
 }
 
-/// Twenty overlapping balls, far from the origin.
+/// Twenty overlapping balls far from the origin.
 fn overlapping() -> Case {
     let offset = DVec3::new(1e4, 1e4, 1e4);
     let ball = |index: u32| {

@@ -1,17 +1,16 @@
-//! Scene files that are worth looking at.
+//! Scene files worth looking at.
 
 use super::build::sized;
 use crate::job::recipe::file;
 use crate::measure::stress::case::{Case, Expected, Family};
 
-/// Scenes in files.
 pub const FILES: Family = Family {
     id: "file",
     title: "Scenes to look at",
     lesson: "Whole pictures in which several of these difficulties meet.",
 };
 
-/// Name, text, what is stiff about it, title, and what to look for.
+/// Name, text, what makes it hard, title, and what to look for.
 const SCENES: [[&str; 5]; 6] = [
     [
         "soap-bubbles",
@@ -60,7 +59,7 @@ const SCENES: [[&str; 5]; 6] = [
     ],
 ];
 
-/// The scenes of the files, as small pictures.
+/// The files' scenes as small pictures.
 pub fn files() -> Vec<Case> {
     let case = |[name, text, stiff, title, look_for]: [&'static str; 5]| {
         let recipe = sized(file::parse(text, name).ok()?, [24, 16], 32);

@@ -1,4 +1,4 @@
-//! Indices near 1 and far from it, trapped light, the longest paths, and spheres inside spheres.
+//! Extreme refraction indices, trapped light, the longest paths, and nested spheres.
 
 use super::build::{
     Ball, WHITE_SKY, around, counted, deep, eye, glass, in_front, matte, metal, named, of_scene, picture,
@@ -9,7 +9,6 @@ use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::Sky;
 use glam::DVec3;
 
-/// Refraction indices.
 pub const INDICES: Family = Family {
     id: "index",
     title: "Refraction indices from 1.000001 to a million",
@@ -17,7 +16,6 @@ pub const INDICES: Family = Family {
              of a degree, whose sine cannot be computed from 1 - cos^2.",
 };
 
-/// Total internal reflection.
 pub const TRAPPED: Family = Family {
     id: "trapped",
     title: "Light that runs along the wall of a glass ball",
@@ -25,7 +23,6 @@ pub const TRAPPED: Family = Family {
              angle, even in ten thousand reflections.",
 };
 
-/// Maximum depths and sample counts.
 pub const DEPTHS: Family = Family {
     id: "depth",
     title: "Long paths and many samples",
@@ -61,7 +58,7 @@ pub fn indices() -> Vec<Case> {
     cases
 }
 
-/// The eye in a glass ball, so far from the centre that much of the light that it sees is trapped.
+/// The eye in a glass ball, far enough from the centre that much of the light it sees is trapped.
 pub fn trapped() -> Vec<Case> {
     let within = |look_at: DVec3, vfov: f64| {
         picture([(DVec3::ZERO, 1.0, glass(1.5))], eye(DVec3::new(0.9, 0.0, 0.0), look_at, vfov))
@@ -102,7 +99,7 @@ pub fn depths() -> Vec<Case> {
         })
         .collect();
     let well = |depth: u32| {
-        // A white ball, open at the top: its lid is a little too small.
+        // A white ball, open at the top: its lid is slightly too small.
         let balls = [(DVec3::ZERO, 1.0, matte(0.9)), (DVec3::new(0.0, -101.0, 0.0), 100.0, matte(0.5))];
         deep(picture(balls, eye(DVec3::new(0.0, 0.2, 2.0), DVec3::new(0.0, -1.0, 0.0), 30.0)), depth)
     };
@@ -120,7 +117,6 @@ pub fn depths() -> Vec<Case> {
     cases
 }
 
-/// Nested spheres.
 pub const SHELLS: Family = Family {
     id: "shells",
     title: "Spheres inside spheres",
@@ -128,7 +124,6 @@ pub const SHELLS: Family = Family {
              can become as deep as there are shells.",
 };
 
-/// Thin coats.
 pub const COATS: Family = Family {
     id: "coats",
     title: "A coat of glass over matte",
@@ -136,7 +131,6 @@ pub const COATS: Family = Family {
              origin, the fewer of its digits remain.",
 };
 
-/// One to ten thousand shells.
 pub fn shells() -> Vec<Case> {
     let nested = |count: usize| -> Vec<Ball> {
         (0..count).map(|index| (DVec3::ZERO, 1.0 - 0.9 * index as f64 / count as f64, matte(0.5))).collect()

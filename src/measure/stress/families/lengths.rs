@@ -6,7 +6,6 @@ use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::{Camera, Material, Sky};
 use glam::DVec3;
 
-/// Translations.
 pub const MOVED: Family = Family {
     id: "moved",
     title: "The whole scene far from the origin",
@@ -14,14 +13,12 @@ pub const MOVED: Family = Family {
              lengths below 1, unless its coordinates are measured from near the eye.",
 };
 
-/// Scalings.
 pub const SCALED: Family = Family {
     id: "scaled",
     title: "The whole scene larger or smaller",
     lesson: "A picture does not depend on the unit of length; a threshold that is a length does.",
 };
 
-/// Extreme cameras.
 pub const LENSES: Family = Family {
     id: "lens",
     title: "Extreme angles, lenses and focus",
@@ -37,7 +34,7 @@ pub fn moved_scenes() -> Vec<Case> {
             let distance = 10.0_f64.powi(exponent);
             let offset = distance * DVec3::new(0.6, -0.48, 0.64);
             let stiff = format!("three balls on a ground, moved by 1e{exponent} units");
-            // Positions at 1e9 have only seven digits after the point, even in f64.
+            // At 1e9, even f64 positions have only seven decimal places.
             let tolerance = 2e-6 + 1e-15 * distance;
             let why = "a picture does not depend on where the origin is";
             let expected = Expected::Same(Box::new(tame()));
@@ -56,7 +53,7 @@ pub fn moved_scenes() -> Vec<Case> {
         .collect()
 }
 
-/// The tame scene, scaled from a picometre to a light second or so.
+/// The tame scene, scaled from about a picometre to a light second.
 pub fn scaled_scenes() -> Vec<Case> {
     [-12, -6, -3, 3, 6, 12]
         .into_iter()
@@ -142,7 +139,6 @@ pub fn lenses() -> Vec<Case> {
     cases
 }
 
-/// Distant balls.
 pub const FAR: Family = Family {
     id: "far",
     title: "A ball that is tiny for its distance",

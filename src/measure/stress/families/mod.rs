@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 /// A family and the function that lists its cases.
 type Entry = (&'static Family, fn() -> Vec<Case>);
 
-/// All families, in the order of the table.
+/// In the table's order.
 const ENTRIES: [Entry; 15] = [
     (&copies::COPIES, copies::copies),
     (&copies::SHIFTS, copies::shifts),
@@ -32,12 +32,11 @@ const ENTRIES: [Entry; 15] = [
     (&files::FILES, files::files),
 ];
 
-/// All families, in the order of the table.
 pub fn families() -> impl Iterator<Item = &'static Family> {
     ENTRIES.iter().map(|(family, _)| *family)
 }
 
-/// The cases that the window shows. They are listed separately, so that it need not build the largest scenes.
+/// The cases shown in the window, listed separately so that it need not build the largest scenes.
 pub fn shown_cases() -> &'static [Case] {
     static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
     SHOWN.get_or_init(|| {
@@ -52,7 +51,7 @@ pub fn shown_cases() -> &'static [Case] {
     })
 }
 
-/// All cases, in the order of the table. They are built once: the largest scenes have a hundred thousand spheres.
+/// All cases in the table's order, built once: the largest scenes have a hundred thousand spheres.
 pub fn cases() -> &'static [Case] {
     static CASES: OnceLock<Vec<Case>> = OnceLock::new();
     CASES.get_or_init(|| ENTRIES.iter().flat_map(|(_, list)| list()).collect())
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_are_unique_and_say_the_family() {
+    fn ids_are_unique_with_family_prefix() {
         let ids: HashSet<&str> = cases().iter().map(|case| case.id.as_str()).collect();
         assert_eq!(ids.len(), cases().len());
         for case in cases() {
@@ -92,9 +91,9 @@ mod tests {
         }
     }
 
-    /// Otherwise their times could not be compared.
+    /// Otherwise their times would not be comparable.
     #[test]
-    fn a_tame_twin_has_as_many_paths_of_the_same_length() {
+    fn tame_twins_are_comparable() {
         let twins: Vec<_> = cases().iter().filter_map(|case| Some((case, case.tame.as_ref()?))).collect();
         assert!(twins.len() > 40, "{}", twins.len());
         for (case, tame) in twins {

@@ -1,4 +1,4 @@
-//! Noise, shifts of blocks, and what is known or not known of a difference.
+//! Noise, shifts of blocks, and unknown values.
 
 use super::*;
 use crate::kernel::sampling::pcg4d;
@@ -27,7 +27,7 @@ fn test(width: u32, values: &[[f64; 3]], noise: Noise) -> BlockTest {
 }
 
 #[test]
-fn noise_passes_as_often_as_it_should() {
+fn noise_passes_at_expected_rate() {
     let (mut failed_by_halves, mut failed_by_spread) = (0, 0);
     for seed in 0..200 {
         let (values, variances) = noise(96, 64, seed);
@@ -41,7 +41,7 @@ fn noise_passes_as_often_as_it_should() {
 }
 
 #[test]
-fn a_shift_of_one_block_and_a_faint_shift_of_all_are_found() {
+fn strong_local_and_faint_global_shifts_are_found() {
     let (values, variances) = noise(96, 64, 1);
     let noises = [Noise::Variances(&variances), Noise::Spread];
     let mut one = values.clone();
@@ -59,7 +59,7 @@ fn a_shift_of_one_block_and_a_faint_shift_of_all_are_found() {
 }
 
 #[test]
-fn steps_and_tolerance_excuse_what_they_explain() {
+fn steps_and_tolerance_excuse_differences() {
     let shifted = vec![[0.004; 3]; 64 * 64];
     let none = vec![[0.0; 3]; 64 * 64];
     let with = |steps, tolerance| {
@@ -74,7 +74,7 @@ fn steps_and_tolerance_excuse_what_they_explain() {
 }
 
 #[test]
-fn what_is_known_counts_as_endless_freedom() {
+fn known_variance_has_infinite_freedom() {
     // One pixel has all the noise, with one degree of freedom, and half the variance is known: 4 degrees by Welch
     // and Satterthwaite. Student's two-sided quantile at 5 % is then 2.7764; that of a normal number is 1.960.
     let share = 8.0 * 8.0;
@@ -93,7 +93,7 @@ fn what_is_known_counts_as_endless_freedom() {
 }
 
 #[test]
-fn a_rare_path_that_both_halves_hold_is_no_difference() {
+fn rare_path_in_both_halves_is_no_difference() {
     let none = vec![[0.0; 3]; 64];
     let mut values = none.clone();
     values[9] = [-1.0 / 32.0; 3];
@@ -106,7 +106,7 @@ fn a_rare_path_that_both_halves_hold_is_no_difference() {
 }
 
 #[test]
-fn one_channel_is_enough_for_pictures_that_are_too_near_or_too_far() {
+fn one_channel_decides() {
     let (values, variances) = noise(96, 64, 3);
     for channel in 0..3 {
         let scaled = |of: &[[f64; 3]], by: f64| -> Vec<[f64; 3]> {
@@ -127,13 +127,13 @@ fn one_channel_is_enough_for_pictures_that_are_too_near_or_too_far() {
 }
 
 #[test]
-fn without_noise_any_difference_is_infinitely_far_off_in_its_direction() {
+fn noiseless_difference_is_infinite() {
     let none = vec![[0.0; 3]; 64];
     let found = test(8, &[[-0.5, 0.0, 0.5]; 64], Noise::Variances(&none));
     assert_eq!(found.blocks[0].z, [f64::NEG_INFINITY, 0.0, f64::INFINITY]);
     assert_eq!((found.blocks[0].means, found.blocks[0].largest()), ([-0.5, 0.0, 0.5], f64::INFINITY));
     assert!(!found.is_within() && (0..3).all(|channel| found.blocks[0].is_known(channel)), "{found:?}");
-    // A block of a single pixel has no spread: what is known of its error is all that there is.
+    // A block of a single pixel has no spread, so only its known error counts.
     let single = BlockTest::of(&Differences {
         width: 1,
         values: &[[2.0, -1.0, 0.0]],
@@ -146,7 +146,7 @@ fn without_noise_any_difference_is_infinitely_far_off_in_its_direction() {
 }
 
 #[test]
-fn a_channel_that_is_not_known_counts_neither_as_block_nor_as_try() {
+fn unknown_channel_is_not_counted() {
     // Two of four blocks have an unknown value in the second channel.
     let (mut values, variances) = noise(32, 8, 4);
     values[3][1] = f64::NAN;
