@@ -3,8 +3,8 @@
 
 use super::answers::Answers;
 use super::kept::Subject;
-use super::model::crop::Crop;
 use super::model::document::Document;
+use super::scene_file::SceneFile;
 use crate::film::{Film, key};
 use crate::job::output::{Description, OutputFormat, write_image, write_part};
 use crate::job::recipe::file;
@@ -41,6 +41,13 @@ pub struct NotOpened {
 /// Files being read and written. The answers are the path, or why it failed.
 #[derive(Default)]
 pub struct Files {
+    pub scene_file: SceneFile,
+    /// The film of the command line, to go on with.
+    pub pending_resume: Option<(PathBuf, RenderJob)>,
+    /// To be saved once there are samples.
+    pub pending_save: Option<(OutputFormat, PathBuf)>,
+    /// To be copied once there are samples.
+    pub pending_copy: bool,
     /// Files that were written.
     pub saved: Answers<Result<PathBuf, String>>,
     /// Files that were opened.
@@ -54,6 +61,24 @@ pub struct Files {
 }
 
 impl Files {
+    /// Whether the film is needed at the size that it has.
+    pub fn needs_film(&self) -> bool {
+        self.pending_save.is_some() || self.pending_copy
+    }
+
+    /// Saves and copies what was asked for, once there are samples.
+    pub fn follow(&mut self, context: &Context, subject: &Subject<'_>) {
+        if !subject.has_samples() {
+            return;
+        }
+        if let Some(named) = self.pending_save.take() {
+            self.save(context, subject, named);
+        }
+        if std::mem::take(&mut self.pending_copy) {
+            self.copy(context, subject);
+        }
+    }
+
     /// Writes the film on the screen at the next end of a pass.
     pub fn save(&self, context: &Context, subject: &Subject<'_>, (format, path): (OutputFormat, PathBuf)) {
         let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
@@ -71,37 +96,14 @@ impl Files {
         });
     }
 
-    /// Writes a part of the picture on the screen as PNG.
-    pub fn save_crop(&self, context: &Context, subject: &Subject<'_>, crop: Crop, path: PathBuf) {
-        let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
-        let answer = self.saved.answer_or(context, Err);
-        subject.inspect(move |film| {
-            let mut description = describe(film);
-            description.set(key::CROP, crop.words());
-            let part = crop.within([film.width(), film.height()]);
-            answer.give(match part {
-                Some(part) => write_part(&path, film, transfer, [part.first, part.size], &description)
-                    .map(|()| path)
-                    .map_err(|error| error.to_string()),
-                None => Err(format!("the crop, {}, is outside of the picture", crop.words())),
-            });
-        });
-    }
-
     /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
-    pub fn copy(&self, context: &Context, subject: &Subject<'_>, crop: Option<Crop>) {
+    pub fn copy(&self, context: &Context, subject: &Subject<'_>) {
         let transfer = subject.document().rules().transfer;
         let answer = self.copied.answer(context);
         subject.inspect(move |film| {
-            let whole = [film.width(), film.height()];
-            let part = crop.and_then(|crop| crop.within(whole));
-            let (what, (first, size)) = match part {
-                Some(part) => (format!("crop: {}", part.words()), (part.first, part.size)),
-                None => (format!("picture: {}x{}", whole[0], whole[1]), ([0, 0], whole)),
-            };
-            let rgb8 = film.part_rgb8(transfer, first, size);
-            let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &rgb8);
-            answer.give((picture, format!("{what}, {} samples per pixel", film.sample_count())));
+            let size = [film.width(), film.height()];
+            let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
+            answer.give((picture, format!("picture, {} × {}", size[0], size[1])));
         });
     }
 

@@ -5,20 +5,20 @@ use super::facts::Facts;
 use super::menu::item;
 use super::model::document::Document;
 use super::model::show::Show;
-use super::model::view::With;
+use super::model::view::{With, is_of_cameras, partner};
 use super::tips::{self, Side};
 use super::widgets::{About, control};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{self, RichText, Ui};
 
-/// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.
-pub fn ui(ui: &mut Ui, is_with_next: &mut bool, facts: &Facts, commands: &mut Vec<Command>) {
+/// Draws the panel except for the pixel.
+pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let document = facts.document();
     match (document.stage(), document.case()) {
         (Some(stage), _) => {
             stage_ui(ui, stage, facts, commands);
-            compare_ui(ui, stage, is_with_next, facts, commands);
+            compare_ui(ui, stage, facts, commands);
         }
         (None, Some(case)) => case_ui(ui, case, facts, commands),
         (None, None) => recipe_ui(ui, document, facts, commands),
@@ -106,9 +106,9 @@ fn changed_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         tips::beside(ui, label, "The spheres are not those of the stage");
         let button = egui::Button::new("Reset").small();
         let response = ui.add(button);
-        let response = tips::beside(ui, response, Command::ResetSpheres.help());
+        let response = tips::beside(ui, response, Command::ResetAll.help());
         if response.accessible_name("Reset the scene").clicked() {
-            commands.push(Command::ResetSpheres);
+            commands.push(Command::ResetAll);
         }
     });
 }
@@ -162,34 +162,24 @@ fn view_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     }
 }
 
-fn compare_ui(
-    ui: &mut Ui,
-    stage: &'static Stage,
-    is_with_next: &mut bool,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+fn compare_ui(ui: &mut Ui, stage: &'static Stage, facts: &Facts, commands: &mut Vec<Command>) {
     let view = &facts.model.view;
     let weak = ui.visuals().weak_text_color();
     ui.label(RichText::new("Compare").small().color(weak));
     if view.with() == With::Book {
         ui.add(egui::Label::new("with the book's arithmetic, same camera").wrap());
-    } else if let Some(other) = view.other_of(stage) {
-        let whose = if view.is_of_cameras(stage) { ", each with its own camera" } else { ", same camera" };
+    } else if let Some(other) = partner(stage) {
+        let whose = if is_of_cameras(stage) { ", each with its own camera" } else { ", same camera" };
         let with = format!("with {} {}{whose}", other.section, other.title);
         ui.add(egui::Label::new(with).wrap());
     }
     ui.horizontal_wrapped(|ui| {
-        for (command, name) in [(Command::Wipe, "Wipe"), (Command::WipeDifference, "Difference")] {
+        for (command, name) in [(Command::Wipe, "Wipe"), (Command::Difference, "Difference")] {
             let is_on = facts.is_on(command);
             let response = ui.add(egui::Button::new(name).selected(is_on));
             if tips::beside(ui, response, command.help()).clicked() {
                 commands.push(command);
             }
-        }
-        if stage.pair.is_some() && stage.next().is_some_and(|next| Some(next.id) != stage.pair) {
-            let response = ui.checkbox(is_with_next, "Next stage");
-            tips::beside(ui, response, "Compare with the next stage of the book instead of its pair");
         }
     });
 }

@@ -1,10 +1,9 @@
 //! Keyboard input, dropped files, and flying.
 
-use super::command::{Command, SlotCommand};
-use super::model::show::Show;
+use super::command::{Command, ROWS};
 use super::navigation;
 use crate::scene::Camera;
-use eframe::egui::{self, Key, Modifiers};
+use eframe::egui::{self, Key, KeyboardShortcut, Modifiers};
 use glam::DVec3;
 use std::path::PathBuf;
 
@@ -13,32 +12,6 @@ const FLY_SHARE_PER_SECOND: f64 = 0.7;
 
 /// Speed factor while Shift is held.
 const FAST: f64 = 4.0;
-
-/// What had the keyboard before this frame.
-pub struct Keyboard {
-    /// A control, a menu or a dialog had the keyboard focus.
-    pub had_focus: bool,
-    /// The window with the stage's code is open.
-    pub has_code: bool,
-    /// The window shows something other than the picture.
-    pub is_other_view: bool,
-    /// A part of the picture is being marked.
-    pub is_cropping: bool,
-    /// Paths are listed and drawn over the live picture.
-    pub has_paths: bool,
-    /// A slot is shown instead of the live picture.
-    pub is_at_slot: bool,
-    /// A sphere is selected.
-    pub has_selection: bool,
-    /// The window is in full-screen mode.
-    pub is_full_screen: bool,
-    /// The card with the first steps is shown.
-    pub has_first_steps: bool,
-    /// The stage's sight is shown.
-    pub has_sight: bool,
-    /// There is a presentation.
-    pub is_presenting: bool,
-}
 
 /// What the keys of a presenter's remote control do in a presentation, besides Page Up, Page Down and B.
 const REMOTE: [(Key, Command); 5] = [
@@ -50,21 +23,20 @@ const REMOTE: [(Key, Command); 5] = [
 ];
 
 /// Turns keys into commands. Returns whether held keys may move the camera.
-pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Vec<Command>) -> bool {
+pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Vec<Command>) -> bool {
     if context.text_edit_focused() {
         return false;
     }
     context.input_mut(name_digits_by_place);
     // An open menu or list has the keys that are pressed alone.
     let has_popup = egui::Popup::is_any_open(context);
-    for (key, command) in REMOTE.into_iter().filter(|_| keyboard.is_presenting && !has_popup) {
+    for (key, command) in REMOTE.into_iter().filter(|_| is_presenting && !has_popup) {
         let presses = context.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
         (0..presses).for_each(|_| commands.push(command));
     }
     let is_focused = context.memory(|memory| memory.focused().is_some());
     let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
-    for command in by_modifiers() {
-        let Some(shortcut) = command.shortcut() else { continue };
+    for (command, shortcut) in by_modifiers() {
         // In a focused control, Tab moves on, Space presses it and arrows change it.
         let is_plain = shortcut.modifiers == Modifiers::NONE;
         let is_of_control = is_focused && keys_of_controls.contains(&shortcut.logical_key);
@@ -104,29 +76,6 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     }
     // Escape first leaves a control, then closes the code, the first steps, then a crop, then clears the paths, then
     // deselects, then leaves a sight, a comparison or another view, then a slot, then a presentation, then full-screen mode.
-    if !keyboard.had_focus && also(Key::Escape) {
-        if keyboard.has_code {
-            commands.push(Command::Code);
-        } else if keyboard.has_first_steps && !keyboard.is_presenting {
-            commands.push(Command::FirstSteps);
-        } else if keyboard.is_cropping {
-            commands.push(Command::Crop);
-        } else if keyboard.has_paths && !keyboard.is_at_slot {
-            commands.push(Command::ClearPaths);
-        } else if keyboard.has_selection && !keyboard.is_at_slot {
-            commands.push(Command::Deselect);
-        } else if keyboard.has_sight {
-            commands.push(Command::ShowMe);
-        } else if keyboard.is_other_view {
-            commands.push(Command::Show(Show::Picture));
-        } else if keyboard.is_at_slot {
-            commands.push(Command::Slot(SlotCommand::LookLive));
-        } else if keyboard.is_presenting {
-            commands.push(Command::Present);
-        } else if keyboard.is_full_screen {
-            commands.push(Command::FullScreen);
-        }
-    }
     true
 }
 
@@ -211,16 +160,14 @@ pub fn dropped(context: &egui::Context) -> Vec<PathBuf> {
     context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
-/// Commands with more modifiers come first, because Ctrl+Shift+S also matches Ctrl+S.
-fn by_modifiers() -> Vec<Command> {
-    let mut commands: Vec<Command> = Command::all().into_iter().filter(|c| c.shortcut().is_some()).collect();
-    commands.sort_by_key(|command| {
-        let modifiers = command.shortcut().map_or(Modifiers::NONE, |shortcut| shortcut.modifiers);
-        std::cmp::Reverse(
-            [modifiers.command, modifiers.shift, modifiers.alt].map(u8::from).iter().sum::<u8>(),
-        )
+/// All keys of commands, those with the most modifiers first: a shortcut without Shift would take the one with it.
+fn by_modifiers() -> Vec<(Command, KeyboardShortcut)> {
+    let mut keys: Vec<_> = ROWS.iter().filter_map(|row| Some((row.command, row.keys?))).collect();
+    keys.sort_by_key(|(_, shortcut)| {
+        let Modifiers { command, shift, alt, .. } = shortcut.modifiers;
+        std::cmp::Reverse([command, shift, alt].map(u8::from).iter().sum::<u8>())
     });
-    commands
+    keys
 }
 
 #[cfg(test)]

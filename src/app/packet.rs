@@ -3,6 +3,7 @@
 use super::answers::Answers;
 use super::command::Command;
 use super::model::document::Document;
+use super::model::remembered::Dock;
 use super::theme;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
@@ -110,7 +111,7 @@ impl Packet {
                         ui.label(RichText::new(name).small().color(weak));
                     }
                     if ui.small_button("Close").clicked() {
-                        commands.push(Command::Packet);
+                        commands.push(Command::Dock(Dock::Lanes));
                     }
                 });
                 let words = match self.traced.as_ref().map(|traced| &traced.timelines) {

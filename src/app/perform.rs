@@ -1,379 +1,614 @@
-//! Carries out commands.
+//! What commands do that need more than one part of the window.
 
 use super::command::Command;
-use super::dialogs::{Dialog, Palette, PathBox, Purpose};
-use super::facts::neighbour;
-use super::model::Model;
+use super::dialogs::{Dialog, PathBox, Purpose};
 use super::model::companion;
-use super::model::device::Device;
+use super::model::device::{self, Device};
+use super::model::document::Document;
+use super::model::edit::Edit;
 use super::model::first_steps::Step;
-use super::model::origin::Origin;
-use super::model::remembered::Bookmark;
+use super::model::origin::{Origin, Source};
+use super::model::presentation::Presentation;
+use super::model::remembered::{Bookmark, Dock, Remembered, Tab, Theme};
 use super::model::show::Show;
-use super::model::tone::Tone;
-use super::model::view::{Mode, With};
+use super::model::sizing::Sizing;
+use super::model::view::{Mode, ViewState, With};
+use super::model::viewpoint::Viewpoint;
+use super::navigation;
 use super::places;
-use super::plot;
+use super::sight::Sighted;
+use super::spheres::grip::{new_body, to_copy};
+use super::spheres::neighbour;
 use super::theme;
-use super::title_bar;
 use super::window::Window;
 use super::wording::lower_first;
+use crate::film::Film;
 use crate::job::output::OutputFormat;
-use eframe::egui::{self, ViewportCommand};
-use std::path::{Path, PathBuf};
-use std::time::Duration;
+use crate::measure::stress::Case;
+use crate::stages::{BOOK_URL, Stage};
+use eframe::egui::{self, Context, ViewportCommand};
+use std::path::Path;
+use std::sync::Arc;
 
 /// Where the companion is written, from the working directory.
 const COMPANION: &str = "companion/index.html";
 
-/// Longer than the time between two pictures.
-const PICTURES_APART: Duration = Duration::from_millis(300);
-
 impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
-    pub fn perform(&mut self, context: &egui::Context, command: Command) {
-        self.performed = Some(command);
-        if let Some(log) = &mut self.frame_log {
-            log.command(&command.name());
+    pub fn perform(&mut self, context: &Context, command: Command) {
+        self.shell.performed = Some(command);
+        let facts = self.facts();
+        if let Some(log) = &mut self.shell.frame_log {
+            log.command(&facts.name(command));
         }
         self.changes.end_move();
-        if command != Command::Blank {
-            self.end_blank();
+        if command != Command::Blank
+            && let Some(presentation) = &mut self.model.presentation
+        {
+            presentation.is_blank = false;
         }
-        if let Some(reason) = self.disabled_reason(command) {
-            self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
-            return;
-        }
-        // What the user looks at by now stays.
-        self.recovery.shown_slots = None;
-        match command {
-            Command::Fresh => self.start_fresh(),
-            Command::Open => self.ask_path(Purpose::Open),
-            Command::Recent(place) => self.open_recent(context, place),
-            Command::Reload => self.scene_file.reload(context, &self.model.document.origin),
-            // While a part of the picture is marked, it is what is saved.
-            Command::Save(OutputFormat::Png) if self.model.view.crop.flatten().is_some() => {
-                self.ask_path(Purpose::SaveCrop)
+        match facts.disabled_reason(command) {
+            Some(reason) => {
+                let name = facts.name(command);
+                self.shell.toasts.good(format!("{}: {}", name.trim_end_matches('…'), lower_first(&reason)));
             }
-            Command::Save(format) => self.ask_path(Purpose::Save(format)),
-            Command::SaveScene => self.ask_path(Purpose::SaveScene),
-            Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
-            Command::SavePlot => self.ask_path(Purpose::SavePlot),
-            Command::SaveFlight => self.ask_path(Purpose::SaveFlight),
-            Command::CopyPicture | Command::CopyCrop => self.pending_copy = true,
-            Command::CopyCommand => self.copy_command(context),
-            Command::CopyPlot => {
-                context.copy_text(plot::csv(&self.main.status().history));
-                self.toasts.good("Copied the plot's points");
-            }
-            Command::Quit => context.send_viewport_cmd(ViewportCommand::Close),
-            Command::Undo => {
-                self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
-            }
-            Command::Redo => {
-                self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
-            }
-            Command::Home => self.model.document.camera = self.document().origin.recipe.camera,
-            Command::ResetAll => self.keep_selection_after(|window| window.model.document.reset()),
-            Command::AddBookmark => {
-                let bookmarks = &mut self.model.remembered.bookmarks;
-                let document = &self.model.document;
-                let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-                // Of a stage, the section is enough.
-                let place =
-                    document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
-                let mut names = (1..).map(|number| format!("{place} view {number}"));
-                let name = names.find(is_free).unwrap_or_default();
-                bookmarks.push(Bookmark::new(name, &document.camera));
-                self.toasts.good("Bookmarked; see the Camera panel");
-            }
-            Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => {
-                self.perform_flight(context, command);
-            }
-            Command::Flights | Command::Gizmo => self.switch(command),
-            Command::ReferenceSize => {
-                self.take_size(self.model.view.reference.as_ref().map(|film| [film.width, film.height]))
-            }
-            Command::AddSphere
-            | Command::DuplicateSphere
-            | Command::DeleteSphere
-            | Command::NextSphere
-            | Command::PreviousSphere
-            | Command::Deselect
-            | Command::FocusSphere
-            | Command::LookAtSphere
-            | Command::ResetSpheres => self.perform_on_spheres(command),
-            Command::NextRay => self.paths.step(true),
-            Command::PreviousRay => self.paths.step(false),
-            Command::ClearPaths => self.paths.forget(),
-            Command::Show(show) => self.model.view.choose(show),
-            Command::Wipe => {
-                let with = if self.document().stage().is_none() { With::Book } else { With::Stage };
-                self.model.view.toggle(Mode::Wipe, with);
-            }
-            Command::WipeDifference => {
-                let view = &mut self.model.view;
-                // A comparison with the book's arithmetic that is shown changes only its form.
-                let with = if view.with() == With::Book { With::Book } else { With::Stage };
-                view.toggle(Mode::Difference, with);
-            }
-            Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, With::Book),
-            Command::Slot(command) => self.perform_on_slots(context, command),
-            Command::Crop => {
-                let crop = &mut self.model.view.crop;
-                *crop = if crop.is_none() { Some(None) } else { None };
-            }
-            Command::SaveCrop => self.ask_path(Purpose::SaveCrop),
-            Command::Brighter => self.model.view.tone.expose(Tone::STEP),
-            Command::Darker => self.model.view.tone.expose(-Tone::STEP),
-            Command::NoExposure => self.model.view.tone.exposure = 0.0,
-            Command::Fit => self.viewport.placement.fit(),
-            Command::ActualSize => self.viewport.placement.actual_size(),
-            Command::ZoomIn => self.viewport.placement.zoom_by(1.25),
-            Command::ZoomOut => self.viewport.placement.zoom_by(0.8),
-            Command::Panels if self.model.presentation.is_some() => self.toggle_captions(),
-            Command::Panels => {
-                let has_panels = &mut self.model.remembered.has_panels;
-                *has_panels = !*has_panels;
-                if !*has_panels {
-                    self.toasts.good("Tab brings the panels back");
-                }
-            }
-            Command::Controls | Command::Info | Command::Plot | Command::Packet | Command::Code => {
-                self.toggle_panel(command)
-            }
-            Command::NextPanel => self.panel = places::next(context, self.panel, &self.model),
-            Command::ListPaths => {
-                if let Some(pixel) = self.inspector.hovered() {
-                    self.paths.list(&self.model.document, pixel, context);
-                }
-            }
-            Command::FullScreen => {
-                self.model.is_full_screen = !self.model.is_full_screen;
-                context.send_viewport_cmd(ViewportCommand::Fullscreen(self.model.is_full_screen));
-            }
-            Command::Theme(theme) => {
-                self.model.remembered.theme = theme;
-                theme::choose(context, theme);
-            }
-            Command::Pause => self.toggle_pause(context),
-            Command::GoOn => {
-                if let Some(further) = self.facts().further() {
-                    self.model.document.stop = further.stop;
-                }
-            }
-            Command::Restart => {
-                self.seconds_before = Some(0.0);
-                if std::mem::take(&mut self.model.is_paused) {
-                    self.second.resume();
-                }
-                self.main.restart();
-                self.recovery.autosave.holds(None);
-            }
-            Command::SwitchDevice => {
-                let device = &mut self.model.remembered.device;
-                *device = if *device == Device::Gpu { Device::Cpu } else { Device::Gpu };
-            }
-            Command::Device(device) => self.model.remembered.device = device,
-            Command::Size(sizing) => {
-                self.model.remembered.sizing = sizing;
-                self.model.document.has_own_size = false;
-                self.sizer.ask();
-            }
-            Command::PreviousStage => {
-                self.note_step(Step::Leaf);
-                if let Some(stage) = neighbour(self.document(), false) {
-                    self.show_origin(Origin::of_stage(stage));
-                }
-            }
-            Command::NextStage => {
-                self.note_step(Step::Leaf);
-                if let Some(stage) = neighbour(self.document(), true) {
-                    self.show_origin(Origin::of_stage(stage));
-                }
-            }
-            Command::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
-            Command::Extreme(case) => self.show_origin(Origin::of_case(case)),
-            Command::Book => {
-                let url = self.document().stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
-                self.open_page(context, url);
-            }
-            Command::Companion => {
-                self.open_companion(context, &std::path::absolute(COMPANION).unwrap_or_default());
-            }
-            Command::Stages => {
-                self.model.remembered.has_panels = true;
-                title_bar::open_stage_list(context);
-            }
-            Command::ShowMe => self.toggle_sight(),
-            Command::Present => self.toggle_presentation(context),
-            Command::Blank => self.toggle_blank(),
-            Command::Palette => self.dialogs.open(Dialog::Palette(Palette::typed(context))),
-            Command::Help => self.dialogs.open(Dialog::Help),
-            Command::FirstSteps => self.toggle_first_steps(),
+            None => command.run(self, context),
         }
     }
 
-    /// Returns to the picture if the current view is no longer available, and says why.
-    pub(super) fn leave_useless_show(&mut self) {
-        let show = self.show();
-        // The picture itself is always available, and it is the usual view.
-        if show == Show::Picture {
+    /// Leaves the innermost thing that can be left.
+    pub(super) fn escape(&mut self) {
+        let Window { model, tools, display, shell, commands, .. } = self;
+        if model.presentation.is_some() {
+            commands.push(Command::Present);
+        } else if display.kept.verdict.is_open() {
+            display.kept.verdict.close();
+        } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
+            tools.paths.forget();
+        } else if display.sight.is_some() {
+            commands.push(Command::ShowMe);
+        } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
+            model.view.choose(Show::Picture);
+        } else if model.view.kept.looked().is_some() {
+            model.view.look(None);
+        } else if model.selected.is_some() {
+            model.selected = None;
+        } else if model.has_first_steps {
+            commands.push(Command::FirstSteps);
+        } else if model.remembered.dock.is_some() {
+            model.remembered.dock = None;
+        } else if model.is_full_screen {
+            commands.push(Command::FullScreen);
+        }
+        shell.panel = None;
+    }
+
+    // The picture that is shown
+
+    /// Shows another picture. The user's own way to stop stays, unless the picture has its own.
+    pub(super) fn show_origin(&mut self, origin: Origin) {
+        let before = self.document();
+        let (stop, usual) = (before.stop, before.origin.usual_stop());
+        let mut document = Document::new(origin);
+        if stop != usual && document.stop.samples.is_none() {
+            document.stop = stop;
+        }
+        self.show_document(document);
+    }
+
+    pub(super) fn show_document(&mut self, document: Document) {
+        self.end_sight();
+        self.model.document = document;
+        self.model.selected = None;
+        self.tools.forget();
+    }
+
+    pub(super) fn show_stage(&mut self, stage: &'static Stage) {
+        self.show_origin(Origin::of_stage(stage));
+    }
+
+    pub(super) fn show_case(&mut self, case: &'static Case) {
+        self.show_origin(Origin::of_case(case));
+    }
+
+    pub(super) fn step_stage(&mut self, is_next: bool) {
+        self.note_step(Step::Leaf);
+        if let Some(stage) = self.facts().neighbour(is_next) {
+            self.show_stage(stage);
+        }
+    }
+
+    pub(super) fn start_fresh(&mut self) {
+        let kept = std::mem::take(&mut self.model.view.kept);
+        self.model.view = ViewState::default();
+        self.model.view.kept = kept;
+        self.model.view.look(None);
+        self.display.viewport.placement.fit();
+        self.model.is_paused = false;
+        self.show_document(Document::new(Origin::usual()));
+    }
+
+    // Undo
+
+    pub(super) fn undo(&mut self) {
+        self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
+    }
+
+    pub(super) fn redo(&mut self) {
+        self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
+    }
+
+    pub(super) fn reset_all(&mut self) {
+        self.keep_selection_after(|window| window.model.document.reset());
+    }
+
+    /// Selects the sphere that `change` brings back or alters.
+    fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
+        let (checked, origin) = (Arc::clone(&self.document().checked), Arc::clone(&self.document().origin));
+        change(self);
+        let after = self.document();
+        if Arc::ptr_eq(&checked, &after.checked) {
             return;
         }
-        if let Some(reason) = self.facts().useless_show(show) {
-            self.toasts.good(format!("No {} here: {}", show.name(), lower_first(&reason)));
+        let is_same_origin = Arc::ptr_eq(&origin, &after.origin);
+        let [old, new] = [&checked, &after.checked].map(|checked| checked.scene().spheres.len());
+        let first = super::model::edit::first_difference(checked.scene(), after.scene());
+        self.model.selected = first.filter(|_| is_same_origin && new >= old);
+    }
+
+    // Camera and spheres
+
+    pub(super) fn home(&mut self) {
+        self.model.document.camera = self.document().origin.recipe.camera;
+    }
+
+    /// Lets the focus follow the point looked at, or keeps it where it is now.
+    pub(super) fn toggle_focus_on_look_at(&mut self) {
+        let camera = &mut self.model.document.camera;
+        camera.focus_distance = match camera.focus_distance {
+            Some(_) => None,
+            None => Some(camera.effective_focus_distance()),
+        };
+    }
+
+    pub(super) fn view_from(&mut self, side: Viewpoint) {
+        let up = self.document().origin.recipe.camera.vup;
+        self.model.document.camera = side.camera(&self.document().camera, up);
+    }
+
+    pub(super) fn add_bookmark(&mut self) {
+        let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
+        let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
+        let place = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
+        let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
+        bookmarks.push(Bookmark::new(name, &document.camera));
+        self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
+    }
+
+    pub(super) fn jump_to_bookmark(&mut self, place: usize) {
+        if let Some(bookmark) = self.model.remembered.bookmarks.get(place) {
+            self.model.document.camera = bookmark.camera();
+        }
+    }
+
+    pub(super) fn edit(&mut self, edit: Edit) {
+        match self.spheres.edit(&mut self.model, edit) {
+            Ok(()) => self.note_step(Step::Change),
+            Err(reason) => self.shell.toasts.bad(reason),
+        }
+    }
+
+    pub(super) fn add_sphere(&mut self) {
+        let (document, place) = (self.document(), self.display.viewport.aim());
+        let body =
+            new_body(document.pick(&document.camera, place), &document.camera, document.aspect(), place);
+        self.edit(Edit::Add(body));
+    }
+
+    pub(super) fn duplicate_sphere(&mut self) {
+        let document = self.document();
+        if let Some(sphere) = self.model.selected {
+            let by = to_copy(document.scene(), &document.camera, document.aspect(), sphere);
+            self.edit(Edit::Duplicate(sphere, by));
+        }
+    }
+
+    pub(super) fn delete_sphere(&mut self) {
+        if let Some(sphere) = self.model.selected {
+            self.edit(Edit::Delete(sphere));
+        }
+    }
+
+    pub(super) fn step_sphere(&mut self, is_next: bool) {
+        self.model.selected = neighbour(self.document().scene(), self.model.selected, is_next);
+    }
+
+    pub(super) fn look_at_sphere(&mut self) {
+        if let Some(selected) = self.spheres.selected(&self.model) {
+            let camera = navigation::recentre(&self.document().camera, selected.body.center);
+            self.model.document.camera = camera;
+        }
+    }
+
+    pub(super) fn focus_sphere(&mut self) {
+        let Some(selected) = self.spheres.selected(&self.model) else { return };
+        let camera = self.document().camera;
+        let towards = (camera.look_from - selected.body.center).normalize_or_zero();
+        let nearest = selected.body.center + selected.body.radius * towards;
+        let is_ahead = camera.depth_of(nearest) > 0.0;
+        let point = if is_ahead { nearest } else { selected.body.center };
+        self.model.document.camera = navigation::focus(&camera, point);
+        if camera.defocus_angle_degrees == 0.0 {
+            self.shell.toasts.good("A pinhole is sharp everywhere; set a defocus angle");
+        }
+    }
+
+    // View
+
+    pub(super) fn show_as(&mut self, context: &Context, show: Show) {
+        if show == Show::Difference && self.model.view.reference.is_none() {
+            self.ask_path(context, Purpose::ReferenceFilm);
+        } else {
+            self.model.view.choose(show);
+        }
+    }
+
+    /// Compares with the other stage; a picture that is no stage, with the book's arithmetic.
+    pub(super) fn compare(&mut self, mode: Mode) {
+        let is_by_book = self.document().stage().is_none() || self.model.view.with() == With::Book;
+        self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
+    }
+
+    pub(super) fn compare_kept(&mut self, mode: Mode) {
+        if let Some(place) = self.model.view.kept.chosen() {
+            self.model.view.toggle(mode, With::Kept(place));
+        }
+    }
+
+    /// Leaves views and comparisons that the picture of now cannot have.
+    pub(super) fn leave_useless_views(&mut self) {
+        let show = self.model.view.show();
+        if let Some(reason) = self.facts().useless_show(show).filter(|_| show != Show::Picture) {
+            self.shell.toasts.good(format!(
+                "{}: {}",
+                show.name().trim_end_matches('…'),
+                lower_first(&reason)
+            ));
             self.model.view.leave_show();
         }
-    }
-
-    /// Opens the companion at the stage's figure, if the page has been written.
-    fn open_companion(&mut self, context: &egui::Context, page: &Path) {
-        if page.is_file() {
-            self.open_page(context, companion::url(page, self.document().stage()));
-        } else {
-            let message = "write it with: weekender companion --out companion";
-            self.toasts.bad(format!("There is no {COMPANION} here; {message}"));
+        let is_kept_difference =
+            self.model.view.mode() == Some(Mode::Difference) && self.model.view.compared_kept().is_some();
+        if let Some(reason) = self.facts().not_subtractable().filter(|_| is_kept_difference) {
+            self.shell.toasts.good(reason);
+            self.model.view.end_comparison();
+        }
+        let Some(sight) = &self.display.sight else { return };
+        if sight.is_of_another(&self.model.document) {
+            self.end_sight();
+        } else if !sight.lasts(&self.model.document, &self.model.view) {
+            self.display.sight = None;
         }
     }
 
-    fn open_page(&mut self, context: &egui::Context, url: String) {
-        self.toasts.good(format!("Opening {url}"));
-        context.open_url(egui::OpenUrl::new_tab(url));
+    pub(super) fn toggle_sight(&mut self) {
+        if self.display.sight.is_some() {
+            self.end_sight();
+            return;
+        }
+        let Some(stage) = self.document().stage() else { return };
+        let (document, view) = (&mut self.model.document, &mut self.model.view);
+        self.display.sight =
+            Some(Sighted::begin(stage, document, view, &mut self.display.viewport.placement));
     }
 
-    fn toggle_panel(&mut self, command: Command) {
+    pub(super) fn end_sight(&mut self) {
+        if let Some(sight) = self.display.sight.take() {
+            let (document, view) = (&mut self.model.document, &mut self.model.view);
+            sight.end(document, view, &mut self.display.viewport.placement);
+        }
+    }
+
+    pub(super) fn list_paths(&mut self, context: &Context) {
+        if let Some(pixel) = self.tools.inspector.hovered() {
+            self.tools.paths.list(&self.model.document, pixel, context);
+            self.model.remembered.dock = Some(Dock::Path);
+        }
+    }
+
+    // Panels
+
+    /// Shows or hides a panel. If all are hidden, shows them with this one.
+    pub(super) fn toggle(&mut self, panel: impl FnOnce(&mut Remembered) -> &mut bool) {
         let remembered = &mut self.model.remembered;
-        let panel = match command {
-            Command::Controls => &mut remembered.has_controls,
-            Command::Info => &mut remembered.has_info,
-            Command::Packet => &mut remembered.has_packet,
-            Command::Code => &mut remembered.has_code,
-            _ => &mut remembered.has_plot,
-        };
-        // While all panels are hidden, show the requested one.
-        *panel = !*panel || !remembered.has_panels;
+        let had_panels = std::mem::replace(&mut remembered.has_panels, true);
+        let panel = panel(remembered);
+        *panel = !*panel || !had_panels;
+    }
+
+    pub(super) fn toggle_dock(&mut self, dock: Dock) {
+        let remembered = &mut self.model.remembered;
+        let is_open = remembered.has_panels && remembered.dock == Some(dock);
         remembered.has_panels = true;
+        remembered.dock = if is_open { None } else { Some(dock) };
     }
 
-    /// Turns a setting on or off, and says so if that is not seen.
-    fn switch(&mut self, command: Command) {
+    pub(super) fn toggle_code(&mut self) {
         let remembered = &mut self.model.remembered;
-        let is_seen = match command {
-            Command::Gizmo => {
-                remembered.has_gizmo = !remembered.has_gizmo;
-                self.model.has_panels()
-            }
-            _ => {
-                remembered.has_flights = !remembered.has_flights;
-                false
-            }
-        };
-        if !is_seen {
-            let is_on = self.facts().is_on(command);
-            self.toasts.switched(&command.name(), is_on);
+        let is_open = remembered.has_panels && remembered.has_info && remembered.tab == Tab::Code;
+        remembered.tab = if is_open { Tab::Stage } else { Tab::Code };
+        (remembered.has_panels, remembered.has_info) = (true, true);
+    }
+
+    pub(super) fn toggle_panels(&mut self) {
+        if let Some(presentation) = &mut self.model.presentation {
+            presentation.has_captions = !presentation.has_captions;
+            return;
+        }
+        let has_panels = &mut self.model.remembered.has_panels;
+        *has_panels = !*has_panels;
+        if !*has_panels {
+            self.shell.toasts.good("Tab brings the panels back");
         }
     }
 
-    /// Shows the card with the first steps, or closes it for good.
-    fn toggle_first_steps(&mut self) {
-        let Model { has_first_steps, remembered, .. } = &mut self.model;
-        *has_first_steps = !*has_first_steps;
-        if *has_first_steps {
-            remembered.first_steps.forget();
+    pub(super) fn next_panel(&mut self, context: &Context) {
+        self.shell.panel = places::next(context, self.shell.panel, &self.model);
+    }
+
+    pub(super) fn open_stage_list(&mut self, context: &Context, is_at_end: bool) {
+        self.model.remembered.has_panels = true;
+        super::stage_list::open(context, is_at_end);
+    }
+
+    pub(super) fn choose_theme(&mut self, context: &Context, theme: Theme) {
+        self.model.remembered.theme = theme;
+        theme::choose(context, theme);
+    }
+
+    pub(super) fn toggle_full_screen(&mut self, context: &Context) {
+        self.fill_screen(context, !self.model.is_full_screen);
+    }
+
+    fn fill_screen(&mut self, context: &Context, is_full: bool) {
+        if self.model.is_full_screen != is_full {
+            self.model.is_full_screen = is_full;
+            context.send_viewport_cmd(ViewportCommand::Fullscreen(is_full));
+        }
+    }
+
+    pub(super) fn toggle_presentation(&mut self, context: &Context) {
+        match self.model.presentation.take() {
+            Some(presentation) => self.fill_screen(context, presentation.was_full_screen),
+            None => {
+                let was_full_screen = self.model.is_full_screen;
+                self.model.presentation =
+                    Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
+                self.model.view.look(None);
+                self.display.viewport.placement.fit();
+                self.shell.presenter.begin(context);
+                self.fill_screen(context, true);
+            }
+        }
+    }
+
+    pub(super) fn toggle_blank(&mut self) {
+        if let Some(presentation) = &mut self.model.presentation {
+            presentation.is_blank = !presentation.is_blank;
+        }
+    }
+
+    pub(super) fn toggle_first_steps(&mut self) {
+        let has_card = &mut self.model.has_first_steps;
+        *has_card = !*has_card;
+        if *has_card {
+            self.model.remembered.first_steps.forget();
         } else {
-            remembered.first_steps.is_over = true;
+            self.model.remembered.first_steps.is_over = true;
         }
     }
 
-    /// Ticks a step off while the card is shown.
+    /// Ticks a step of the first-steps card.
     pub(super) fn note_step(&mut self, step: Step) {
         if self.model.has_first_steps {
             self.model.remembered.first_steps.note(step);
         }
     }
 
-    /// Opens a file of the list, or drops it from there if it is gone.
-    fn open_recent(&mut self, context: &egui::Context, place: usize) {
+    // Tracing
+
+    pub(super) fn pause_or_go_on(&mut self, context: &Context) {
+        if let Some(further) = self.facts().further() {
+            self.model.document.stop = further.stop;
+            return;
+        }
+        self.model.is_paused = !self.model.is_paused;
+        if self.model.is_paused {
+            self.tracing.pause(context);
+        } else {
+            self.tracing.resume();
+        }
+    }
+
+    pub(super) fn restart(&mut self) {
+        if std::mem::take(&mut self.model.is_paused) {
+            self.tracing.resume();
+        }
+        self.tracing.restart();
+    }
+
+    pub(super) fn switch_device(&mut self) {
+        let device = &mut self.model.remembered.device;
+        *device = if *device == Device::Gpu { Device::Cpu } else { Device::Gpu };
+    }
+
+    pub(super) fn toggle_reference(&mut self) {
+        let device = &mut self.model.remembered.device;
+        *device = if *device == Device::Reference { Device::Cpu } else { Device::Reference };
+    }
+
+    pub(super) fn take_viewport_size(&mut self) {
+        self.model.remembered.sizing = Sizing::Viewport;
+        self.model.document.has_own_size = false;
+        self.tracing.sizer.ask();
+    }
+
+    // Kept pictures
+
+    pub(super) fn keep(&mut self) {
+        self.display.kept.is_wanted = true;
+    }
+
+    /// Keeps the picture once it has samples.
+    pub(super) fn keep_wanted(&mut self, context: &Context) {
+        let Window { model, tracing, display, shell, .. } = self;
+        if !display.kept.is_wanted || !tracing.main.has_samples(&model.document) {
+            return;
+        }
+        let settings = &model.document.settings;
+        let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
+        match model.view.kept.check_room(bytes) {
+            Ok(()) => {
+                display.kept.copy(context, (&model.document, &tracing.main), tracing.seconds_before);
+            }
+            Err(reason) => {
+                display.kept.is_wanted = false;
+                shell.toasts.bad(format!("Not kept: {reason}"));
+            }
+        }
+    }
+
+    pub(super) fn go_on_from_kept(&mut self, context: &Context) {
+        let kept = &self.model.view.kept;
+        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
+            self.display.kept.reopen(context, &named.kept);
+        }
+    }
+
+    pub(super) fn delete_kept(&mut self) {
+        if let Some(place) = self.model.view.kept.chosen() {
+            self.model.view.delete_kept(place);
+        }
+    }
+
+    /// Tests whether the shown picture and the chosen kept one differ by noise alone.
+    pub(super) fn ask_only_noise(&mut self, context: &Context) {
+        let Window { model, tracing, display, .. } = self;
+        let kept = &model.view.kept;
+        let Some((place, named)) = kept.chosen().and_then(|place| Some((place, kept.get(place)?))) else {
+            return;
+        };
+        let live = (&model.document, &tracing.main);
+        let subject =
+            super::kept::Subject::new(&model.view, live, tracing.seconds_before, &display.kept.thread).live();
+        let names = [kept.title(place), "the picture".to_owned()];
+        display.kept.verdict.ask(context, &named.kept, &subject, names);
+    }
+
+    // Files
+
+    pub(super) fn ask_open(&mut self, context: &Context) {
+        self.ask_path(context, Purpose::Open);
+    }
+
+    pub(super) fn ask_check(&mut self, context: &Context) {
+        self.ask_path(context, Purpose::Check);
+    }
+
+    pub(super) fn ask_save(&mut self, context: &Context, format: OutputFormat) {
+        self.ask_path(context, Purpose::Save(format));
+    }
+
+    pub(super) fn ask_path(&mut self, _: &Context, purpose: Purpose) {
+        let name = self.display.subject(&self.model, &self.tracing).document().name();
+        let path_box = PathBox::new(purpose, &name, self.model.remembered.directory.as_deref());
+        self.shell.dialogs.open(Dialog::Path(path_box));
+    }
+
+    pub(super) fn use_path(&mut self, context: &Context, purpose: Purpose, path: std::path::PathBuf) {
+        match purpose {
+            Purpose::Open => self.files.open(context, path),
+            Purpose::Check => self.tools.check.begin(context, &path, None),
+            Purpose::Save(format) => self.files.pending_save = Some((format, path)),
+            Purpose::SaveScene => {
+                let subject = self.display.subject(&self.model, &self.tracing);
+                self.files.save_scene(context, path, subject.document());
+            }
+            Purpose::SavePlot => {
+                let csv = super::plot::csv(&self.tracing.main.status().history);
+                self.files.save_text(context, &path, &csv);
+            }
+            Purpose::ReferenceFilm => self.files.load_reference(context, path),
+        }
+    }
+
+    pub(super) fn open_recent(&mut self, context: &Context, place: usize) {
         let recent = &mut self.model.remembered.recent;
         let Some(path) = recent.get(place).cloned() else { return };
         if path.exists() {
             self.files.open(context, path);
         } else {
             recent.remove(place);
-            self.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
+            self.shell.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
         }
     }
 
-    fn toggle_pause(&mut self, context: &egui::Context) {
-        if self.model.is_paused {
-            self.model.is_paused = false;
-            self.main.resume();
-            self.second.resume();
-        } else if self.facts().is_working() {
-            self.model.is_paused = true;
-            self.main.pause();
-            self.second.pause();
-            // Also shows what was traced since the last picture.
-            context.request_repaint_after(PICTURES_APART);
+    pub(super) fn reload(&mut self, context: &Context) {
+        self.files.scene_file.reload(context, &self.model.document.origin);
+    }
+
+    pub(super) fn show_in_folder(&mut self, context: &Context) {
+        if let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) {
+            self.open_page(context, format!("file://{}", folder.display()));
         }
     }
 
-    pub(super) fn ask_path(&mut self, purpose: Purpose) {
-        let subject = self.subject();
-        let mut name = subject.document().name();
-        match purpose {
-            Purpose::SaveScene => name = subject.document().scene_name(),
-            Purpose::SaveCrop => name.push_str("-crop"),
-            Purpose::SaveFlight => name.push_str("-path"),
-            _ => {}
-        }
-        let directory = self.model.remembered.directory.as_deref();
-        let mut path_box = PathBox::new(purpose, &name, directory);
-        match (purpose, self.model.view.crop.flatten()) {
-            (Purpose::Save(_), _) => path_box.say(self.size_words()),
-            (Purpose::SaveCrop, Some(crop)) => path_box.say(format!("The crop: {}", crop.words())),
-            _ => {}
-        }
-        self.dialogs.open(Dialog::Path(path_box));
+    pub(super) fn open_book(&mut self, context: &Context) {
+        let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
+        self.open_page(context, url);
     }
 
-    /// What is saved now, in words.
-    fn size_words(&self) -> String {
-        let slots = &self.model.view.slots;
-        if let (Some(number), Some(kept)) = (slots.looked(), slots.shown()) {
-            let [width, height] = kept.size();
-            return format!("{}: {width}x{height}", slots.title(number));
-        }
-        let size = self.document().size_words(self.model.remembered.sizing);
-        match self.sizer.offer() {
-            Some([width, height]) => format!("The picture: {size} when it began (now {width}x{height})"),
-            None => format!("The picture: {size}"),
+    pub(super) fn open_companion(&mut self, context: &Context) {
+        let page = std::path::absolute(COMPANION).unwrap_or_default();
+        if page.is_file() {
+            self.open_page(context, companion::url(&page, self.document().stage()));
+        } else {
+            self.shell.toasts.bad(format!(
+                "There is no {COMPANION} here; write it with: weekender companion --out companion"
+            ));
         }
     }
 
-    /// Uses a file for the purpose for which it was chosen.
-    pub(super) fn use_path(&mut self, context: &egui::Context, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::Open => self.files.open(context, path),
-            Purpose::Save(format) => self.pending_save = Some((format, path)),
-            Purpose::SaveCrop => {
-                self.pending_crop = self.model.view.crop.flatten().map(|crop| (crop, path));
-            }
-            Purpose::SaveScene => {
-                self.files.save_scene(context, path, self.subject().document());
-            }
-            Purpose::SaveFlight => self.save_flight(context, path),
-            Purpose::SavePlot => {
-                self.files.save_text(context, &path, &plot::csv(&self.main.status().history));
-            }
-            Purpose::ReferenceFilm => self.files.load_reference(context, path),
+    fn open_page(&mut self, context: &Context, url: String) {
+        self.shell.toasts.good(format!("Opening {url}"));
+        context.open_url(egui::OpenUrl::new_tab(url));
+    }
+
+    /// Copies the command that renders the picture, and says what it needs.
+    pub(super) fn copy_command(&mut self, context: &Context) {
+        let subject = self.display.subject(&self.model, &self.tracing);
+        let document = subject.document();
+        let samples = match subject.samples() {
+            samples @ 1.. if subject.is_full() => samples,
+            _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
+        };
+        let device = self.model.remembered.device;
+        let is_gpu = matches!(device, Device::Gpu | Device::Both);
+        let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
+        let adapter = adapter.map(|adapter| adapter.name.as_str());
+        context.copy_text(document.command_line(samples.max(1), device.name(), adapter));
+        let needs_file = document.has_changed_scene()
+            || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
+        let is_saved = document.checked.file().is_some();
+        self.shell.toasts.good(if needs_file && !is_saved {
+            "Copied; the scene has no file yet: save it, since the command reads it"
+        } else {
+            "Copied: the command line that renders this picture"
+        });
+    }
+
+    pub(super) fn remember_directory(&mut self, path: &Path) {
+        if let Some(directory) = std::path::absolute(path).ok().as_deref().and_then(Path::parent) {
+            self.model.remembered.directory = Some(directory.to_owned());
         }
     }
 }
-
-#[cfg(test)]
-#[path = "perform/saving/tests.rs"]
-mod saving_tests;
-#[cfg(test)]
-mod tests;

@@ -6,54 +6,27 @@ use eframe::egui::{self, Context, FocusDirection, Id, Rect, Sense, Ui};
 /// A part of the window with controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
-    /// The card with what other windows left.
-    Recovered,
-    /// The card with the first steps.
     FirstSteps,
-    /// The top bar.
-    Menu,
-    /// The left panel.
+    Bar,
     Controls,
     /// The right panel.
     Info,
-    /// The error plot.
-    Plot,
-    /// The code of the stage.
-    Code,
-    /// The lanes of a packet.
-    Packet,
-    /// The strip of slots.
-    Slots,
+    Dock,
 }
 
 impl Place {
-    const ALL: [Place; 9] = [
-        Place::Recovered,
-        Place::FirstSteps,
-        Place::Menu,
-        Place::Controls,
-        Place::Info,
-        Place::Plot,
-        Place::Code,
-        Place::Packet,
-        Place::Slots,
-    ];
+    const ALL: [Place; 5] = [Place::FirstSteps, Place::Bar, Place::Controls, Place::Info, Place::Dock];
 
     fn is_shown(self, model: &Model) -> bool {
         let remembered = &model.remembered;
-        self == Place::Recovered && model.has_recovered
-            || self == Place::FirstSteps && model.has_first_steps && !model.has_recovered
-            || model.has_panels()
-                && match self {
-                    Place::Recovered | Place::FirstSteps => false,
-                    Place::Menu => true,
-                    Place::Controls => remembered.has_controls,
-                    Place::Info => remembered.has_info,
-                    Place::Plot => remembered.has_plot,
-                    Place::Code => remembered.has_code,
-                    Place::Packet => remembered.has_packet,
-                    Place::Slots => model.view.slots.is_listed(),
-                }
+        model.has_panels()
+            && match self {
+                Place::FirstSteps => model.has_first_steps,
+                Place::Bar => true,
+                Place::Controls => remembered.has_controls,
+                Place::Info => remembered.has_info,
+                Place::Dock => remembered.dock.is_some(),
+            }
     }
 
     fn id(self) -> Id {

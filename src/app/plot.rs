@@ -77,13 +77,8 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
                 *target = Some(Stop::NOISE);
             }
         }
-        for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
-            let disabled_reason = facts.disabled_reason(command);
-            let button = ui.add_enabled(disabled_reason.is_none(), egui::Button::new(label).small());
-            let button = button.on_hover_text(command.help());
-            if button.on_disabled_hover_text(disabled_reason.unwrap_or_default()).clicked() {
-                commands.push(command);
-            }
+        if ui.small_button("Copy").clicked() {
+            ui.ctx().copy_text(csv(&facts.status.history));
         }
     });
 }

@@ -41,7 +41,6 @@ impl Sighted {
         match stage.sight.means {
             Means::Luminance(range) => view.tone.range = range,
             Means::Wipe(divider) => {
-                view.is_with_next = false;
                 view.toggle(Mode::Wipe, With::Stage);
                 (view.divider, view.is_divider_unplaced) = (divider, false);
             }
@@ -59,7 +58,7 @@ impl Sighted {
     pub fn lasts(&self, document: &Document, view: &ViewState) -> bool {
         Arc::ptr_eq(&self.origin, &document.origin)
             && self.looks == (view.show(), view.mode())
-            && view.slots.looked().is_none()
+            && view.kept.looked().is_none()
     }
 
     /// Whether another picture is shown.
@@ -76,9 +75,9 @@ impl Sighted {
             document.camera = camera;
         }
         let (exposure, reference) = (view.tone.exposure, view.reference.take());
-        let slots = std::mem::take(&mut view.slots);
+        let kept = std::mem::take(&mut view.kept);
         *view = self.view;
-        (view.slots, view.reference, view.tone.exposure) = (slots, reference, exposure);
+        (view.kept, view.reference, view.tone.exposure) = (kept, reference, exposure);
         *placement = self.placement;
     }
 

@@ -3,7 +3,6 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::theme;
-use super::thumbnails::{SIZE, Thumbnails};
 use super::tips;
 use crate::stages::Stage;
 use eframe::egui::{
@@ -15,6 +14,9 @@ use eframe::egui::{
 pub const WIDTH: f32 = 348.0;
 
 /// Space around the picture in its row, points.
+/// Size of the small pictures, points.
+const SIZE: egui::Vec2 = vec2(64.0, 36.0);
+
 const MARGIN: f32 = 4.0;
 
 /// How many stages Page Up and Page Down go on.
@@ -22,7 +24,7 @@ const PAGE: usize = 8;
 
 /// Draws the list. It opens at the current stage and follows it; arrow keys go through it, typing leaves the stages that
 /// have these words, and Enter chooses.
-pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let here = facts.document().stage();
     let (has_opened, has_moved) = (has_just_opened(ui), has_moved(ui, here));
     // In a menu, the entries above it take room.
@@ -53,7 +55,7 @@ pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mu
                 ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
                 ui.add_space(2.0);
             }
-            let response = row(ui, id.with(stage.id), stage, here == Some(stage), thumbnails);
+            let response = row(ui, id.with(stage.id), stage, here == Some(stage));
             if is_new && here == Some(stage) {
                 response.scroll_to_me(Some(Align::Center));
                 response.request_focus();
@@ -127,7 +129,7 @@ fn found(typed: &str) -> Vec<&'static Stage> {
     if by_name.is_empty() { having(|stage| stage.what_is_new.to_owned()) } else { by_name }
 }
 
-fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &mut Thumbnails) -> Response {
+fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool) -> Response {
     let size = vec2(ui.available_width(), SIZE.y + 2.0 * MARGIN);
     let (_, rect) = ui.allocate_space(size);
     let response = ui.interact(rect, id, Sense::click());
@@ -147,7 +149,6 @@ fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &m
         painter.rect_filled(bar, 1.5, theme::accent(ui));
     }
     let corner = rect.min + vec2(MARGIN + 4.0, MARGIN);
-    thumbnails.paint(ui, stage, Rect::from_min_size(corner, SIZE));
     let left = corner.x + SIZE.x + 12.0;
     let (small, body) = (TextStyle::Small.resolve(ui.style()), TextStyle::Body.resolve(ui.style()));
     let painter = ui.painter();
@@ -186,6 +187,16 @@ fn has_moved(ui: &Ui, here: Option<&'static Stage>) -> bool {
         data.insert_temp(id, now);
         before.is_some_and(|before| before != now)
     })
+}
+
+/// Opens the list in this frame. `is_at_end` shows the extreme scenes, which come last.
+pub fn open(context: &egui::Context, is_at_end: bool) {
+    context.data_mut(|data| data.insert_temp(Id::unique("the list of stages"), is_at_end));
+}
+
+/// Whether the list is to be opened, and if so, whether at its end.
+pub fn take_open(ui: &Ui) -> Option<bool> {
+    ui.data_mut(|data| data.remove_temp(Id::unique("the list of stages")))
 }
 
 #[cfg(test)]

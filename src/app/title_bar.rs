@@ -1,16 +1,14 @@
 //! The bar at the top: menus, stage, devices, pause and save. What has no room gives way: the button that goes on says
 //! less, the devices fold into a menu, and at last there are two rows.
 
-use super::command::{Command, Group};
+use super::command::{Command, Menu};
 use super::facts::Facts;
 use super::menu::{MENU_WIDTH, item, menus};
 use super::model::device::Device;
 use super::model::further::Further;
 use super::stage_list;
 use super::theme;
-use super::thumbnails::Thumbnails;
 use super::tips::{self, Side};
-use crate::job::output::OutputFormat;
 use eframe::egui::{self, Align, Button, Layout, RichText, Shape, Stroke, TextStyle, Ui, vec2};
 
 /// Between the menus and the stage, points.
@@ -79,7 +77,7 @@ impl Widths {
         let further = facts.further().map_or(0.0, |further| button(&go_on_words(&further)));
         let current = facts.model.remembered.device;
         Widths {
-            menus: sum(&Group::ALL.map(|group| text(group.name()) + 2.0 * MENU_PADDING), BETWEEN_MENUS),
+            menus: sum(&Menu::BAR.map(|group| text(group.name()) + 2.0 * MENU_PADDING), BETWEEN_MENUS),
             steps: button("‹") + button("›") + 2.0 * BETWEEN_STEPS,
             go_on: further.max(button(USUAL_GO_ON)),
             devices: sum(&Device::ALL.map(|device| button(device.label())), WITHIN_GROUP),
@@ -105,7 +103,7 @@ impl Widths {
 const BETWEEN_STEPS: f32 = 4.0;
 
 /// Draws the bar.
-pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let frame = theme::panel(egui::Margin::symmetric(10, 6));
     egui::Panel::top("menu").frame(frame).show(ui, |ui| {
         let (room, widths) = (ui.available_width(), Widths::of(ui, facts));
@@ -114,34 +112,34 @@ pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mu
         if let Some(fit) = beside {
             ui.horizontal(|ui| {
                 ui.set_min_height(height);
-                ui.scope(|ui| all_menus(ui, thumbnails, facts, commands));
+                ui.scope(|ui| all_menus(ui, facts, commands));
                 ui.add_space(AFTER_MENUS);
-                parts(ui, fit, thumbnails, facts, commands);
+                parts(ui, fit, facts, commands);
             });
             return;
         }
-        ui.horizontal_wrapped(|ui| all_menus(ui, thumbnails, facts, commands));
+        ui.horizontal_wrapped(|ui| all_menus(ui, facts, commands));
         let fit = [LEAST_STAGE, 0.0].into_iter().find_map(|least| widths.fit(room, least));
         let nothing = Fit { stage: 0.0, says_until_when: false, has_all_devices: false };
-        ui.horizontal(|ui| parts(ui, fit.unwrap_or(nothing), thumbnails, facts, commands));
+        ui.horizontal(|ui| parts(ui, fit.unwrap_or(nothing), facts, commands));
     });
 }
 
-fn all_menus(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+fn all_menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     egui::containers::menu::menu_style(ui.style_mut());
     ui.spacing_mut().item_spacing.x = BETWEEN_MENUS;
     ui.spacing_mut().button_padding.x = MENU_PADDING;
-    menus(ui, thumbnails, facts, commands);
+    menus(ui, facts, commands);
 }
 
 /// The stage, and the buttons at the right.
-fn parts(ui: &mut Ui, fit: Fit, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
-    stage(ui, fit.stage, thumbnails, facts, commands);
+fn parts(ui: &mut Ui, fit: Fit, facts: &Facts, commands: &mut Vec<Command>) {
+    stage(ui, fit.stage, facts, commands);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, fit, facts, commands));
 }
 
 /// The stage between the arrows to its neighbours.
-fn stage(ui: &mut Ui, width: f32, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage(ui: &mut Ui, width: f32, facts: &Facts, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = BETWEEN_STEPS;
     step(ui, facts, commands, Command::PreviousStage, "‹");
     let title = match facts.document().stage() {
@@ -157,26 +155,16 @@ fn stage(ui: &mut Ui, width: f32, thumbnails: &mut Thumbnails, facts: &Facts, co
         ui.set_max_width(width);
         egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_width(stage_list::WIDTH);
-            stage_list::ui(ui, thumbnails, facts, commands);
+            stage_list::ui(ui, facts, commands);
         })
     });
     let response =
         tips::explain(ui, sized.inner.0, Side::Below, &help, None).accessible_name("Choose a stage");
-    if ui.data_mut(|data| data.remove_temp::<bool>(asked())).is_some() {
+    if stage_list::take_open(ui).is_some() {
         egui::Popup::open_id(ui.ctx(), egui::Popup::default_response_id(&response));
         ui.ctx().request_repaint();
     }
     step(ui, facts, commands, Command::NextStage, "›");
-}
-
-/// Where the wish for the list of stages is left.
-fn asked() -> egui::Id {
-    egui::Id::unique("the list of stages")
-}
-
-/// Opens the list of stages in the next frame.
-pub fn open_stage_list(context: &egui::Context) {
-    context.data_mut(|data| data.insert_temp(asked(), true));
 }
 
 fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, label: &str) {
@@ -200,7 +188,7 @@ fn with_keys(ui: &Ui, command: Command) -> String {
 fn buttons(ui: &mut Ui, fit: Fit, facts: &Facts, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = WITHIN_GROUP;
     let further = facts.further();
-    let command = Command::Save(OutputFormat::Png);
+    let command = Command::Save;
     let response = ui.button("Save");
     if tips::explain(ui, response, Side::Below, &with_keys(ui, command), None).clicked() {
         commands.push(command);
@@ -245,7 +233,7 @@ fn go_on(ui: &mut Ui, label: &str, further: &Further, commands: &mut Vec<Command
     let response = ui.add(Button::new(label).min_size(vec2(PAUSE, 0.0)));
     let help = format!("{}; no sample is lost", go_on_words(further));
     if tips::explain(ui, response, Side::Below, &help, None).clicked() {
-        commands.push(Command::GoOn);
+        commands.push(Command::Pause);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The dialog that lists keys and mouse actions.
 
 use super::outcome::Outcome;
-use crate::app::command::{Command, Group, SlotCommand};
+use crate::app::command::{Menu, ROWS};
 use eframe::egui::{self, RichText, Ui};
 
 const MOUSE: [(&str, &str); 17] = [
@@ -27,10 +27,9 @@ const MOUSE: [(&str, &str); 17] = [
 /// Windows narrower than this many points get only one column.
 const TWO_COLUMNS: f32 = 640.0;
 
-/// The groups of each column; `None` stands for the mouse actions.
-const COLUMNS: [&[Option<Group>]; 2] = [
-    &[None, Some(Group::File), Some(Group::Edit), Some(Group::Camera), Some(Group::Spheres)],
-    &[Some(Group::View), Some(Group::Slots), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
+const COLUMNS: [&[Option<Menu>]; 2] = [
+    &[None, Some(Menu::File), Some(Menu::Edit)],
+    &[Some(Menu::View), Some(Menu::Render), Some(Menu::Stage), Some(Menu::Help)],
 ];
 
 pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
@@ -52,8 +51,8 @@ pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
     if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
 }
 
-fn section(ui: &mut Ui, group: Option<Group>) {
-    let title = group.map_or("Mouse and flying", Group::name);
+fn section(ui: &mut Ui, group: Option<Menu>) {
+    let title = group.map_or("Mouse and flying", Menu::name);
     ui.label(RichText::new(title).small().color(ui.visuals().weak_text_color()));
     egui::Grid::new(title).num_columns(2).min_row_height(0.0).spacing([14.0, 2.0]).show(ui, |ui| {
         let context = ui.ctx().clone();
@@ -65,16 +64,9 @@ fn section(ui: &mut Ui, group: Option<Group>) {
         match group {
             None => MOUSE.into_iter().for_each(|(keys, what)| row(keys, what)),
             Some(group) => {
-                for command in Command::all().into_iter().filter(|command| command.group() == group) {
-                    let Some(keys) = command.keys(&context) else { continue };
-                    match command {
-                        // One line for all nine slots.
-                        Command::Slot(SlotCommand::Look(number) | SlotCommand::KeepIn(number)) => {
-                            if number.index() == 0 {
-                                row(&format!("{keys} … 9"), &format!("{} … 9", command.name()));
-                            }
-                        }
-                        _ => row(&keys, command.name().trim_end_matches('…')),
+                for entry in ROWS.iter().filter(|entry| entry.menu == Some(group)) {
+                    if let Some(keys) = entry.command.keys(&context) {
+                        row(&keys, entry.name.trim_end_matches('…'));
                     }
                 }
             }

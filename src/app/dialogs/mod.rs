@@ -24,6 +24,10 @@ pub enum Dialog {
     Palette(Palette),
     /// Keys and mouse.
     Help,
+    /// The colours of the sky.
+    Sky,
+    /// Version and licences.
+    About,
     /// The entry of a file's name.
     Path(PathBox),
 }
@@ -76,6 +80,7 @@ impl Dialogs {
                     palette.ui(ui, (room.y - 140.0).clamp(100.0, 360.0), facts, commands)
                 }
                 Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),
+                Dialog::Sky | Dialog::About => Outcome::Close,
                 Dialog::Path(path_box) => path_box.ui(ui, &self.browsed),
             }
         });

@@ -1,7 +1,7 @@
 //! The command palette: type part of a name, then press Enter.
 
 use super::outcome::Outcome;
-use crate::app::command::Command;
+use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
 use crate::app::menu::line;
 use crate::app::theme;
@@ -70,7 +70,11 @@ fn matching(
 /// All commands, the bookmarks, and the files that were opened or saved last.
 fn listed(facts: &Facts) -> impl Iterator<Item = (Command, String)> {
     let further = facts.bookmarks().chain(facts.recent());
-    Command::all().into_iter().chain(further).map(|command| (command, facts.name(command)))
+    ROWS.iter()
+        .filter(|row| row.is_listed)
+        .map(|row| row.command)
+        .chain(further)
+        .map(|command| (command, facts.name(command)))
 }
 
 impl Palette {

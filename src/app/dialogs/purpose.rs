@@ -10,12 +10,10 @@ pub enum Purpose {
     Open,
     /// To save the picture in this format.
     Save(OutputFormat),
-    /// To save the marked part of the picture.
-    SaveCrop,
+    /// A picture of the user's own program, to check.
+    Check,
     /// To save the scene.
     SaveScene,
-    /// To save the scene with the bookmarks as keyframes.
-    SaveFlight,
     /// To save the plot's points.
     SavePlot,
     /// To load it as a film to compare with.
@@ -30,9 +28,8 @@ impl Purpose {
             Purpose::Save(OutputFormat::Png) => "Save picture as PNG",
             Purpose::Save(OutputFormat::P6) => "Save picture as PPM",
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
-            Purpose::SaveCrop => "Save crop as PNG",
+            Purpose::Check => "Check my picture",
             Purpose::SaveScene => "Save scene file",
-            Purpose::SaveFlight => "Save scene file with keyframes",
             Purpose::SavePlot => "Save error against time as CSV",
             Purpose::ReferenceFilm => "Load reference film",
         }
@@ -41,25 +38,26 @@ impl Purpose {
     /// The label of the dialog's button.
     pub fn button(self) -> &'static str {
         match self {
-            Purpose::Open | Purpose::ReferenceFilm => "Open",
+            Purpose::Open | Purpose::ReferenceFilm | Purpose::Check => "Open",
             _ => "Save",
         }
     }
 
     /// Whether the file will be written.
     pub fn is_saving(self) -> bool {
-        use Purpose::{Save, SaveCrop, SaveFlight, SavePlot, SaveScene};
-        matches!(self, Save(_) | SaveCrop | SaveScene | SaveFlight | SavePlot)
+        use Purpose::{Save, SavePlot, SaveScene};
+        matches!(self, Save(_) | SaveScene | SavePlot)
     }
 
     /// The possible file endings, without the dot.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
+            Purpose::Check => &["png", "ppm"],
             Purpose::Open => &["png", "ppm", "exr", "toml"],
-            Purpose::Save(OutputFormat::Png) | Purpose::SaveCrop => &["png"],
+            Purpose::Save(OutputFormat::Png) => &["png"],
             Purpose::Save(OutputFormat::P6) => &["ppm"],
             Purpose::Save(OutputFormat::Exr) | Purpose::ReferenceFilm => &["exr"],
-            Purpose::SaveScene | Purpose::SaveFlight => &["toml"],
+            Purpose::SaveScene => &["toml"],
             Purpose::SavePlot => &["csv"],
         }
     }

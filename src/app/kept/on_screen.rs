@@ -2,9 +2,9 @@
 
 use super::{KeptThread, Subject};
 use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
+use crate::app::model::kept::{Kept, Named};
 use crate::app::model::origin::Origin;
-use crate::app::model::slots::{Slot, SlotNumber};
+
 use crate::app::model::view::ViewState;
 use crate::app::tracer::Tracer;
 use crate::film::{Film, PixelSum};
@@ -30,8 +30,8 @@ impl OnScreen {
     pub fn of(document: Document, film: Film) -> Self {
         let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
         let mut view = ViewState::default();
-        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
-        view.look(Some(SlotNumber::ALL[0]));
+        let place = view.kept.add(Named { name: String::new(), kept });
+        view.look(Some(place));
         let live = Document::new(Origin::usual());
         OnScreen { live, main: Tracer::new().unwrap(), view, thread: KeptThread::default() }
     }

@@ -135,7 +135,7 @@ mod tests {
         assert_eq!(picture.waiting.strong_count(), 0);
         assert_eq!(grey(&mut picture, &c, &View::Picture), 192);
         assert!(picture.shown(&a).is_some() && picture.shown(&b).is_none(), "the one looked at last stays");
-        assert_eq!(grey(&mut picture, &a, &View::Exposed(2.0)), 128, "twice as bright twice");
+        assert_eq!(grey(&mut picture, &a, &View::Exposed(2.0, None)), 128, "twice as bright twice");
         assert_eq!(picture.held.len(), 2);
     }
 }

@@ -37,10 +37,10 @@ impl<'a> Subject<'a> {
         seconds_before: Option<f64>,
         thread: &'a KeptThread,
     ) -> Self {
-        Subject { live, main, kept: view.slots.shown(), thread, seconds_before }
+        Subject { live, main, kept: view.kept.shown(), thread, seconds_before }
     }
 
-    /// The same without slots.
+    /// The traced one.
     pub fn live(self) -> Self {
         Subject { kept: None, ..self }
     }

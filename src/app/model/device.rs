@@ -38,7 +38,7 @@ pub fn adapter() -> Result<&'static AdapterInfo, String> {
         (None, Some(unfit)) => {
             Err(format!("{} cannot be used: {}", unfit.name, unfit.lacks.as_deref().unwrap_or_default()))
         }
-        (None, None) => Err("No graphics adapter was found; everything runs on the CPU".to_owned()),
+        (None, None) => Err("No graphics card was found, so the processor traces everything".to_owned()),
     }
 }
 
@@ -83,12 +83,18 @@ impl Device {
     /// A short description.
     pub fn help(self) -> &'static str {
         match self {
-            Device::Cpu => "Trace on the processor, in packets of as many rays as it has lanes",
-            Device::Gpu => "Trace on the graphics adapter",
-            Device::Both => "Trace one picture on processor and graphics adapter together",
-            Device::Reference => {
-                "Trace in double precision, one ray at a time: slow, but the reference for rounding errors"
-            }
+            Device::Cpu => "Trace on the processor",
+            Device::Gpu => "Trace on the graphics card, usually many times faster",
+            Device::Both => "Trace one picture on processor and graphics card together",
+            Device::Reference => "Trace with 16 digits instead of 7, slowly, to show rounding errors",
+        }
+    }
+
+    /// As the palette calls it.
+    pub fn long_label(self) -> &'static str {
+        match self {
+            Device::Both => "CPU and GPU together",
+            _ => self.label(),
         }
     }
 

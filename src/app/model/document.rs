@@ -6,7 +6,7 @@ use crate::job::recipe::Recipe;
 use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::measure::stress::Case;
 use crate::progressive::Stop;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Pick, Scene};
 use crate::stages::{Rules, Shading, Stage};
 use std::sync::Arc;
 
@@ -94,6 +94,11 @@ impl Document {
     /// Whether scene, camera or settings are not the origin's. A size that follows the viewport is no change.
     pub fn is_changed(&self) -> bool {
         *self != Document { stop: self.stop, ..Document::of(Arc::clone(&self.origin)) }
+    }
+
+    /// What `camera` sees at a place in the picture, `0..=1` from the upper left.
+    pub fn pick(&self, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
+        self.scene().pick(camera.look_from, camera.direction_through(place, self.aspect()))
     }
 
     /// The rules of the origin.

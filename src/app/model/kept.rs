@@ -1,11 +1,11 @@
-//! A picture that is kept: its film, and what is needed to show it, to save it and to go on from it.
+//! The pictures that the user has kept to compare with. They live in memory until the window closes.
 
 use super::document::Document;
 use crate::film::{Film, to_byte};
 use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
+use crate::system::memory::words;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::SystemTime;
 
 /// A small copy of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -68,8 +68,6 @@ pub struct Kept {
     pub seconds_before: Option<f64>,
     /// A small copy.
     pub thumbnail: Thumbnail,
-    /// The name of its files. No other picture of any window ever has it.
-    pub id: String,
     number: u64,
     means: OnceLock<Arc<ReferenceMeans>>,
 }
@@ -81,14 +79,7 @@ impl Kept {
         let thumbnail = Thumbnail::of(&film, &document);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let (film, means) = (Arc::new(film), OnceLock::new());
-        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_millis();
-        let id = format!("{now:012x}-{}-{number}", std::process::id());
-        Kept { document, film, status, seconds_before, thumbnail, id, number, means }
-    }
-
-    /// The same picture under the name that its files have already.
-    pub fn with_id(self, id: String) -> Self {
-        Kept { id, ..self }
+        Kept { document, film, status, seconds_before, thumbnail, number, means }
     }
 
     /// A number that no other kept picture has.
@@ -130,6 +121,115 @@ impl Kept {
         let [width, height] = self.size();
         let of_means = self.means.get().map_or(0, |means| size_of_val(means.means.as_slice()) as u64);
         Film::bytes(width, height, self.film.halves().len()) + of_means
+    }
+}
+
+/// How many bytes the kept pictures may take together.
+pub const BYTES_LIMIT: u64 = 4_000_000_000;
+
+/// A kept picture in the list.
+#[derive(Clone, Debug)]
+pub struct Named {
+    pub name: String,
+    pub kept: Arc<Kept>,
+}
+
+/// The list of kept pictures, oldest first. Places count from 0; the user sees them from 1.
+#[derive(Clone, Debug, Default)]
+pub struct KeptList {
+    pictures: Vec<Named>,
+    looked: Option<usize>,
+    chosen: Option<usize>,
+}
+
+impl KeptList {
+    pub fn iter(&self) -> impl Iterator<Item = &Named> {
+        self.pictures.iter()
+    }
+
+    pub fn get(&self, place: usize) -> Option<&Named> {
+        self.pictures.get(place)
+    }
+
+    pub fn name_mut(&mut self, place: usize) -> Option<&mut String> {
+        self.pictures.get_mut(place).map(|named| &mut named.name)
+    }
+
+    /// As it is called in sentences.
+    pub fn title(&self, place: usize) -> String {
+        self.get(place).map_or_else(String::new, |named| format!("{}: {}", place + 1, named.name))
+    }
+
+    /// The picture that is shown instead of the traced one.
+    pub fn looked(&self) -> Option<usize> {
+        self.looked
+    }
+
+    /// The kept picture that is shown instead of the traced one.
+    pub fn shown(&self) -> Option<&Arc<Kept>> {
+        self.get(self.looked?).map(|named| &named.kept)
+    }
+
+    /// The picture that commands mean.
+    pub fn chosen(&self) -> Option<usize> {
+        self.chosen
+    }
+
+    pub fn choose(&mut self, place: usize) {
+        if place < self.pictures.len() {
+            self.chosen = Some(place);
+        }
+    }
+
+    /// Shows a kept picture, or the traced one.
+    pub fn look(&mut self, place: Option<usize>) {
+        self.looked = place.filter(|place| *place < self.pictures.len());
+        self.chosen = self.looked.or(self.chosen);
+    }
+
+    /// Adds a picture, or says why there is no memory for it.
+    ///
+    /// # Errors
+    /// If the kept pictures would take more than [`BYTES_LIMIT`].
+    pub fn check_room(&self, bytes: u64) -> Result<(), String> {
+        let held = self.bytes();
+        if held.saturating_add(bytes) <= BYTES_LIMIT {
+            return Ok(());
+        }
+        Err(format!(
+            "the picture takes {} and the kept ones take {}, but together they may take {}; delete one, or save it as a film",
+            words(bytes),
+            words(held),
+            words(BYTES_LIMIT)
+        ))
+    }
+
+    /// Adds a picture and chooses it. Returns its place.
+    pub fn add(&mut self, named: Named) -> usize {
+        self.pictures.push(named);
+        let place = self.pictures.len() - 1;
+        self.chosen = Some(place);
+        place
+    }
+
+    /// Removes a picture; later ones move up.
+    pub fn delete(&mut self, place: usize) {
+        if place >= self.pictures.len() {
+            return;
+        }
+        self.pictures.remove(place);
+        let after = |other: usize| match other.cmp(&place) {
+            std::cmp::Ordering::Less => Some(other),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => Some(other - 1),
+        };
+        self.looked = self.looked.and_then(after);
+        self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
+    }
+
+    /// What all of them take in memory.
+    pub fn bytes(&self) -> u64 {
+        self.iter().map(|named| named.kept.bytes()).sum()
     }
 }
 

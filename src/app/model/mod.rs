@@ -4,25 +4,19 @@
 pub mod checked;
 pub mod command_line;
 pub mod companion;
-pub mod crop;
 pub mod device;
 pub mod document;
 pub mod edit;
 pub mod first_steps;
 pub mod fitted;
-pub mod framing;
 pub mod further;
 pub mod kept;
-pub mod kept_view;
 pub mod origin;
 pub mod presentation;
 pub mod reload;
 pub mod remembered;
-pub mod session;
 pub mod show;
 pub mod sizing;
-pub mod slot_number;
-pub mod slots;
 pub mod tone;
 pub mod view;
 pub mod viewpoint;
@@ -55,8 +49,6 @@ pub struct Model {
     pub has_first_steps: bool,
     /// The presentation, if there is one.
     pub presentation: Option<Presentation>,
-    /// Whether the card with what other windows left is shown.
-    pub has_recovered: bool,
 }
 
 impl Model {

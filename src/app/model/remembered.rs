@@ -25,17 +25,50 @@ pub enum Theme {
 }
 
 impl Theme {
-    /// All themes.
     pub const ALL: [Theme; 3] = [Theme::System, Theme::Dark, Theme::Light];
 
-    /// The name in the menu.
     pub fn name(self) -> &'static str {
         match self {
-            Theme::System => "System",
+            Theme::System => "As the system",
             Theme::Dark => "Dark",
             Theme::Light => "Light",
         }
     }
+
+    pub fn help(self) -> &'static str {
+        match self {
+            Theme::System => "Follows the system",
+            Theme::Dark => "Light text on dark panels",
+            Theme::Light => "Dark text on light panels",
+        }
+    }
+
+    /// Other words by which the palette finds it.
+    pub fn synonyms(self) -> &'static str {
+        match self {
+            Theme::System => "theme",
+            Theme::Dark => "theme night",
+            Theme::Light => "theme bright",
+        }
+    }
+}
+
+/// The tabs of the dock under the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Dock {
+    Path,
+    Kept,
+    Lanes,
+    Error,
+}
+
+/// The tabs of the right panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Tab {
+    #[default]
+    Stage,
+    Code,
+    Check,
 }
 
 /// A saved camera.
@@ -78,18 +111,14 @@ pub struct Remembered {
     pub has_controls: bool,
     /// Whether the right panel is shown.
     pub has_info: bool,
-    /// Whether the plot is shown.
-    pub has_plot: bool,
-    /// Whether the lanes of a packet are shown.
-    pub has_packet: bool,
-    /// Whether the code of the stage is shown.
-    pub has_code: bool,
+    /// What the dock under the picture shows, if it is open.
+    pub dock: Option<Dock>,
+    /// What the right panel shows.
+    pub tab: Tab,
     /// The size of pictures that have no size of their own.
     pub sizing: Sizing,
-    /// Whether the axes are shown in a corner of the viewport.
-    pub has_gizmo: bool,
-    /// Whether the camera flies to a bookmark; otherwise it jumps.
-    pub has_flights: bool,
+    /// Whether the axes are always shown in a corner of the picture.
+    pub has_axes: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -119,12 +148,10 @@ impl Default for Remembered {
             has_panels: true,
             has_controls: true,
             has_info: true,
-            has_plot: false,
-            has_packet: false,
-            has_code: false,
+            dock: None,
+            tab: Tab::Stage,
             sizing: Sizing::Viewport,
-            has_gizmo: true,
-            has_flights: true,
+            has_axes: false,
             device: Device::Cpu,
             lanes: None,
             threads: None,

@@ -54,38 +54,45 @@ impl Show {
         }
     }
 
-    /// The name, to follow "Show".
+    /// As menus call it.
     pub fn name(self) -> &'static str {
         match self {
-            Show::Picture => "picture",
-            Show::Normals => "normals",
-            Show::Albedo => "albedo",
-            Show::Bounces => "rays per path",
-            Show::Error => "standard error",
-            Show::Occupancy => "lane occupancy",
-            Show::Difference => "difference to reference",
-            Show::Luminance => "luminance",
+            Show::Picture => "Picture",
+            Show::Normals => "Normals",
+            Show::Albedo => "Surface colours",
+            Show::Bounces => "Rays per path",
+            Show::Error => "Noise",
+            Show::Occupancy => "Lanes at work",
+            Show::Difference => "Difference from a film…",
+            Show::Luminance => "Brightness",
         }
     }
 
-    /// A description of the view.
+    /// One sentence about it.
     pub fn help(self) -> &'static str {
         match self {
-            Show::Picture => "The film as it will be saved",
-            Show::Normals => "Which way surfaces face: x red, y green, z blue",
-            Show::Albedo => {
-                "What surfaces reflect, without light and shadow; glass absorbs nothing and is white"
-            }
-            Show::Bounces => "How many rays a path has, including the camera ray: where the time goes",
-            Show::Error => "Standard error of each pixel's mean, linear radiance: where the noise is",
-            Show::Occupancy => {
-                "How full the packets were in each tile: a lane that has run out of work waits for the last lane \
-                 of its tile"
-            }
-            Show::Difference => "Difference from a loaded film, linear radiance",
-            Show::Luminance => {
-                "How bright each pixel is, in false colours with a scale, also where the picture is black or white"
-            }
+            Show::Picture => "The picture as it will be saved",
+            Show::Normals => "Which way each surface faces: x is red, y green, z blue",
+            Show::Albedo => "What surfaces reflect (albedo), without light and shadow",
+            Show::Bounces => "How many rays a path has: where the time goes",
+            Show::Error => "How uncertain each pixel still is (standard error)",
+            Show::Occupancy => "How full the lanes of the processor were",
+            Show::Difference => "Subtracts a film that you choose; asks for it the first time",
+            Show::Luminance => "How bright each pixel is, in false colours with a scale",
+        }
+    }
+
+    /// Other words by which the palette finds it.
+    pub fn synonyms(self) -> &'static str {
+        match self {
+            Show::Picture => "view",
+            Show::Normals => "view direction",
+            Show::Albedo => "view albedo",
+            Show::Bounces => "view heat depth bounces",
+            Show::Error => "view grain quality standard error spp samples",
+            Show::Occupancy => "view simd avx packet occupancy",
+            Show::Difference => "view reference subtract",
+            Show::Luminance => "view heat false colour luminance",
         }
     }
 

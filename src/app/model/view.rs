@@ -1,13 +1,11 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::checked::CheckedScene;
-use super::crop::Crop;
 use super::document::Document;
 use super::fitted::Fitted;
-use super::kept::Kept;
+use super::kept::{Kept, KeptList};
 use super::origin::Origin;
 use super::show::Show;
-use super::slots::{SlotNumber, Slots};
 use super::tone::Tone;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
@@ -31,8 +29,8 @@ pub enum With {
     Stage,
     /// The book's own arithmetic, even if there is another stage to compare with.
     Book,
-    /// The picture in a slot.
-    Slot(SlotNumber),
+    /// A kept picture, by its place.
+    Kept(usize),
 }
 
 /// What the main picture is compared with.
@@ -77,8 +75,6 @@ pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
     with: With,
-    /// Compare with the next stage even if the stage is paired with another.
-    pub is_with_next: bool,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: f32,
     /// How bright the picture is shown.
@@ -87,10 +83,8 @@ pub struct ViewState {
     pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
     pub reference: Option<Arc<ReferenceMeans>>,
-    /// Pictures that are kept; one of them can be shown instead of the live one.
-    pub slots: Slots,
-    /// A part of the picture is being chosen; the inner `None` stands for no part yet.
-    pub crop: Option<Option<Crop>>,
+    /// Pictures that are kept; one of them can be shown instead of the traced one.
+    pub kept: KeptList,
 }
 
 impl Default for ViewState {
@@ -99,13 +93,11 @@ impl Default for ViewState {
             show: Show::Picture,
             mode: None,
             with: With::Stage,
-            is_with_next: false,
             divider: 0.5,
             tone: Tone::default(),
             is_divider_unplaced: false,
             reference: None,
-            slots: Slots::default(),
-            crop: None,
+            kept: KeptList::default(),
         }
     }
 }
@@ -126,17 +118,17 @@ impl ViewState {
         self.with
     }
 
-    /// The slot that the picture is compared with, if it is.
-    pub fn compared_slot(&self) -> Option<SlotNumber> {
+    /// The place of the kept picture that this one is compared with, if it is.
+    pub fn compared_kept(&self) -> Option<usize> {
         match (self.mode, self.with) {
-            (Some(_), With::Slot(number)) => Some(number),
+            (Some(_), With::Kept(place)) => Some(place),
             _ => None,
         }
     }
 
-    /// The document of the main picture: that of the slot that is looked at, or `live`.
+    /// The document of the main picture: the kept one that is shown, or `live`.
     pub fn shown_document<'a>(&'a self, live: &'a Document) -> &'a Document {
-        self.slots.shown().map_or(live, |kept| &kept.document)
+        self.kept.shown().map_or(live, |kept| &kept.document)
     }
 
     /// Shows only this view of the film.
@@ -155,32 +147,35 @@ impl ViewState {
         let is_on = self.mode == Some(mode) && self.with == with;
         match with {
             // A picture that is compared with itself would teach nothing.
-            With::Slot(number) if self.slots.looked() == Some(number) => self.slots.look(None),
-            With::Slot(_) => {}
-            With::Stage | With::Book => self.slots.look(None),
+            With::Kept(place) if self.kept.looked() != Some(place) => {}
+            With::Kept(_) | With::Stage | With::Book => self.kept.look(None),
         }
         self.show = Show::Picture;
         (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
         (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
     }
 
-    /// Looks at a slot, or at the live picture. A comparison with that slot ends.
-    pub fn look(&mut self, at: Option<SlotNumber>) {
-        self.slots.look(at);
-        self.leave_own_comparison();
-    }
-
-    /// Looks at what was looked at before.
-    pub fn swap(&mut self) {
-        self.slots.swap();
-        self.leave_own_comparison();
-    }
-
-    fn leave_own_comparison(&mut self) {
-        let is_own = self.slots.looked().is_some_and(|number| self.with == With::Slot(number));
-        if is_own || (self.slots.looked().is_some() && !matches!(self.with, With::Slot(_))) {
+    /// Shows a kept picture, or the traced one.
+    pub fn look(&mut self, place: Option<usize>) {
+        self.kept.look(place);
+        let looked = self.kept.looked();
+        let is_own = looked.is_some_and(|place| self.with == With::Kept(place));
+        if is_own || (looked.is_some() && !matches!(self.with, With::Kept(_))) {
             self.end_comparison();
         }
+    }
+
+    /// Shows the traced picture and the chosen kept one in turn.
+    pub fn flip(&mut self) {
+        self.look(if self.kept.looked().is_some() { None } else { self.kept.chosen() });
+    }
+
+    /// Deletes a kept picture. A comparison with it ends.
+    pub fn delete_kept(&mut self, place: usize) {
+        if matches!(self.with, With::Kept(_)) {
+            self.end_comparison();
+        }
+        self.kept.delete(place);
     }
 
     /// Ends the comparison. The next one does not begin with its picture.
@@ -203,15 +198,15 @@ impl ViewState {
 
     /// The picture with which `document` can be compared, if any.
     fn other(&self, document: &Document) -> Option<Other> {
-        if let With::Slot(number) = self.with {
-            let slot = self.slots.get(number)?;
+        if let With::Kept(place) = self.with {
+            let kept = &self.kept.get(place)?.kept;
             // A difference of scaled pictures would show the scaling.
             let is_possible =
-                self.mode == Some(Mode::Wipe) || slot.kept.size() == self.shown_document(document).size();
-            return is_possible.then(|| Other::Kept(Arc::clone(&slot.kept)));
+                self.mode == Some(Mode::Wipe) || kept.size() == self.shown_document(document).size();
+            return is_possible.then(|| Other::Kept(Arc::clone(kept)));
         }
         match document.stage().filter(|_| self.with == With::Stage) {
-            Some(stage) => self.other_of(stage).map(Other::Stage),
+            Some(stage) => partner(stage).map(Other::Stage),
             None => {
                 let origin = &document.origin;
                 let by_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));
@@ -222,7 +217,7 @@ impl ViewState {
 
     /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
     pub fn has_other_camera(&self, document: &Document) -> bool {
-        self.with == With::Stage && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
+        self.with == With::Stage && document.stage().is_some_and(is_of_cameras)
     }
 
     /// Whether the other picture is an earlier stage of the book or an earlier picture, which a wipe shows at the left.
@@ -236,8 +231,8 @@ impl ViewState {
 
     /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
     pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
-        let number = self.compared_slot().filter(|_| self.mode == Some(Mode::Wipe))?;
-        let kept = &self.slots.get(number)?.kept;
+        let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
+        let kept = &self.kept.get(place)?.kept;
         Some((kept, Fitted::new(kept.size(), self.shown_document(live).size())))
     }
 
@@ -252,25 +247,21 @@ impl ViewState {
             _ => None,
         }
     }
+}
 
-    /// The stage that `stage` is compared with.
-    pub fn other_of(&self, stage: &'static Stage) -> Option<&'static Stage> {
-        let pair = stage.pair.and_then(|id| Stage::find(id).ok());
-        let next = stage.next().or_else(|| stage.previous());
-        if self.is_with_next { next.or(pair) } else { pair.or(next) }
-    }
+/// The stage that `stage` is compared with: its pair, or else the previous stage if it shows the same scene.
+pub fn partner(stage: &Stage) -> Option<&'static Stage> {
+    let pair = stage.pair.and_then(|id| Stage::find(id).ok());
+    let is_of_same_scene = |other: &&Stage| other.recipe().scene == stage.recipe().scene;
+    pair.or_else(|| stage.previous().filter(is_of_same_scene))
+}
 
-    /// Whether `stage` and the other stage differ in their cameras, so that each keeps its own.
-    pub fn is_of_cameras(&self, stage: &'static Stage) -> bool {
-        let mine = stage.recipe();
-        self.other_of(stage).is_some_and(|other| differ_in_camera(&mine, &other.recipe()))
-    }
+/// Whether `stage` and its partner differ in their cameras, so that each keeps its own.
+pub fn is_of_cameras(stage: &Stage) -> bool {
+    partner(stage).is_some_and(|other| differ_in_camera(&stage.recipe(), &other.recipe()))
 }
 
 /// Whether the recipes differ only in their cameras.
 pub fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
     a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
 }
-
-#[cfg(test)]
-mod tests;

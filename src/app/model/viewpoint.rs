@@ -34,12 +34,12 @@ impl Viewpoint {
     /// The name of its view.
     pub fn name(self) -> &'static str {
         match self {
-            Viewpoint::Right => "View from the right (+x)",
-            Viewpoint::Top => "View from the top (+y)",
-            Viewpoint::Front => "View from the front (+z)",
-            Viewpoint::Left => "View from the left (-x)",
-            Viewpoint::Bottom => "View from the bottom (-y)",
-            Viewpoint::Back => "View from the back (-z)",
+            Viewpoint::Right => "Look from the right",
+            Viewpoint::Top => "Look from above",
+            Viewpoint::Front => "Look from the front",
+            Viewpoint::Left => "Look from the left",
+            Viewpoint::Bottom => "Look from below",
+            Viewpoint::Back => "Look from the back",
         }
     }
 

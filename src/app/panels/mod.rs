@@ -1,6 +1,5 @@
 //! The left panel, with one file for each group of controls.
 
-mod bookmarks;
 mod camera;
 mod lens;
 mod output;
@@ -37,7 +36,6 @@ pub fn ui(
     });
     group(ui, ("Camera", true), Some(&camera::RESET), document, |ui, document| {
         camera::ui(ui, &mut document.camera, facts);
-        bookmarks::ui(ui, &document.camera, &mut remembered.bookmarks, facts, commands);
     });
     group(ui, ("Lens", true), Some(&lens::RESET), document, |ui, document| {
         lens::ui(ui, &mut document.camera, facts);
@@ -98,6 +96,3 @@ fn heading(ui: &mut Ui, name: &str, id: egui::Id) -> bool {
     let response = ui.interact(row, id.with("heading"), egui::Sense::CLICK);
     response.on_hover_cursor(egui::CursorIcon::PointingHand).clicked()
 }
-
-#[cfg(test)]
-mod tests;

@@ -28,21 +28,6 @@ fn reset(document: &mut Document) {
 pub(super) fn ui(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Vec<Command>) {
     sizing(ui, document, facts, commands);
     size(ui, document);
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for (name, command) in [
-            ("PNG", Command::Save(OutputFormat::Png)),
-            ("PPM", Command::Save(OutputFormat::P6)),
-            ("EXR film", Command::Save(OutputFormat::Exr)),
-            ("Scene", Command::SaveScene),
-        ] {
-            let response = ui.button(name);
-            let response = tips::beside(ui, response, command.help());
-            if response.accessible_name(format!("Save {name}")).clicked() {
-                commands.push(command);
-            }
-        }
-    });
     let command = Command::CopyCommand;
     let width = ui.available_width();
     let button = egui::Button::new(command.name()).min_size(egui::vec2(width, 0.0));
@@ -59,18 +44,6 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Ve
         ui.spacing_mut().item_spacing.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
         let button = |name: &str, is_on| egui::Button::new(name).selected(is_on).min_size(vec2(width, 0.0));
-        for sizing in Sizing::ALL {
-            let command = Command::Size(sizing);
-            let response = ui.add(button(sizing.name(), facts.is_on(command)));
-            let held = held_words(document, facts).filter(|_| sizing == Sizing::Viewport);
-            let help = held.as_deref().map_or_else(|| command.help().to_owned(), |held| {
-                format!("{}.\n\n{held}. Without them it follows the viewport again", command.help())
-            });
-            let response = explained(ui, response, About::new(&command.name(), &help));
-            if response.accessible_name(command.name()).clicked() {
-                commands.push(command);
-            }
-        }
         let help = "This picture keeps its size, which can be typed below. Pictures from files and from --size have \
                     their own size, too; the next stage follows the viewport or the book again";
         let response = ui.add(button("Own", document.has_own_size));
@@ -79,18 +52,6 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Ve
             document.has_own_size = true;
         }
     });
-    if let Some(held) = held_words(document, facts) {
-        let text = egui::RichText::new(held).small().color(ui.visuals().weak_text_color());
-        ui.add(egui::Label::new(text).wrap());
-    }
-}
-
-/// Says that the picture does not follow the viewport, if it does not: the kept pictures keep their size.
-fn held_words(document: &Document, facts: &Facts) -> Option<String> {
-    let model = &facts.model;
-    let follows = model.remembered.sizing == Sizing::Viewport && !document.has_own_size;
-    let [width, height] = document.origin.size_in(model.view.slots.room().filter(|_| follows)?)?;
-    Some(format!("Held at {width}x{height}, the size of the kept pictures, for comparison"))
 }
 
 fn size(ui: &mut Ui, document: &mut Document) {

@@ -151,7 +151,6 @@ mod tests {
     use super::*;
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
-    use crate::app::surfaces::Surfaces;
     use crate::app::tests::dressed;
     use crate::stages::Stage;
     use eframe::egui::{Event, Modifiers, PointerButton, pos2};
@@ -159,7 +158,6 @@ mod tests {
 
     struct Axes {
         document: Document,
-        surfaces: Surfaces,
         commands: Vec<Command>,
         touch: Touch,
         room: Rect,
@@ -170,13 +168,12 @@ mod tests {
         document.camera = camera;
         let draw = |ui: &mut Ui, axes: &mut Axes| {
             let mut camera = axes.document.camera;
-            let sight = Target { document: &axes.document, surfaces: &axes.surfaces, has_rays: true };
+            let sight = Target { document: &axes.document, has_rays: true };
             super::ui(ui, axes.room, (&mut camera, sight), &mut axes.commands, &mut axes.touch);
             axes.document.camera = camera;
         };
-        let (surfaces, touch) = (Surfaces::default(), Touch::default());
-        dressed([400.0, 300.0])
-            .build_ui_state(draw, Axes { document, surfaces, commands: Vec::new(), touch, room })
+        let touch = Touch::default();
+        dressed([400.0, 300.0]).build_ui_state(draw, Axes { document, commands: Vec::new(), touch, room })
     }
 
     /// A camera that looks down at all axes.

@@ -1,7 +1,6 @@
 //! The viewport: the picture, and mouse input on it.
 
 mod badge;
-mod crop;
 mod dropped;
 mod gizmo;
 mod legend;
@@ -20,19 +19,16 @@ pub use placement::Placement;
 use placement::whole_pixels;
 pub use touch::Touch;
 
-use super::command::{Command, SlotCommand};
+use super::command::Command;
 use super::facts::Facts;
 use super::menu;
-use super::model::crop::Crop;
 use super::model::document::Document;
 use super::model::edit::Edit;
 use super::model::view::Mode;
 use super::navigation;
 use super::spheres::Selected;
 use super::spheres::grip::new_body;
-use super::surfaces::Surfaces;
 use crate::scene::Camera;
-use crop::Cropping;
 use dropped::paint_drop;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, vec2,
@@ -64,7 +60,6 @@ pub struct Viewport {
     /// The selected sphere in the picture.
     selection: Selection,
     /// The drag that marks a part of the picture.
-    cropping: Cropping,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
 }
@@ -77,10 +72,6 @@ pub struct Handle<'a> {
     pub divider: &'a mut f32,
     /// The selected sphere.
     pub selected: Option<&'a Selected>,
-    /// The part of the picture that is being marked; see [`super::model::view::ViewState::crop`].
-    pub crop: &'a mut Option<Option<Crop>>,
-    /// What finds the sphere at a point of the picture.
-    pub surfaces: &'a Surfaces,
 }
 
 impl Viewport {
@@ -103,10 +94,10 @@ impl Viewport {
         facts: &Facts,
         commands: &mut Vec<Command>,
     ) -> Touch {
-        let Handle { camera, divider, selected, surfaces, crop } = handle;
-        let is_kept = facts.model.view.slots.looked().is_some();
+        let Handle { camera, divider, selected } = handle;
+        let is_kept = facts.model.view.kept.looked().is_some();
         let selected = selected.filter(|_| !is_kept);
-        let sight = Target { document: facts.document(), surfaces, has_rays: facts.no_rays().is_none() };
+        let sight = Target { document: facts.document(), has_rays: facts.no_rays().is_none() };
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -120,14 +111,11 @@ impl Viewport {
 
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);
+        let before = *divider;
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        if let Some(crop) = crop.as_mut().filter(|_| !is_held) {
-            self.cropping.handle(ui, &response, rect, pixels, crop);
-        }
-        // A picture that was kept does not change, and a part that is being marked stays where it is.
-        let is_still = is_kept || crop.is_some();
-        if is_still && !is_held {
-            still::handle(ui, &response, &mut self.placement, crop.is_none());
+        touch.is_divider_moved = *divider != before;
+        if is_kept && !is_held {
+            still::handle(ui, &response, &mut self.placement);
             is_held = true;
         }
         if !is_held {
@@ -149,9 +137,6 @@ impl Viewport {
         let clip = if is_wipe { own_side(rect, *divider, is_left) } else { rect };
         let rows = if notices > 0 { notices + usize::from(is_wipe) } else { 0 };
         self.selection.paint(ui, (rect, clip.intersect(room)), selected, (rows, &taken));
-        if let Some(crop) = crop {
-            crop::paint(ui, &ui.painter().with_clip_rect(room), rect, pixels, *crop);
-        }
         self.moving.paint(ui, clip.intersect(room), rect, &document);
         self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
@@ -160,7 +145,7 @@ impl Viewport {
             self.menu_at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         }
         response.context_menu(|ui| self.context_menu(ui, camera, sight, (facts, commands), &mut touch));
-        if facts.model.has_panels() && facts.model.remembered.has_gizmo && sight.has_rays && !is_still {
+        if facts.model.has_panels() && facts.model.remembered.has_axes && sight.has_rays && !is_kept {
             gizmo::ui(ui, room, (camera, sight), commands, &mut touch);
         }
         paint_drop(ui, room);
@@ -231,18 +216,18 @@ impl Viewport {
     }
 
     fn use_at(&mut self, spot: Spot, at: Pos2, sight: Target<'_>, camera: &mut Camera, touch: &mut Touch) {
-        let Target { document, surfaces, .. } = sight;
+        let document = sight.document;
         let place = place_at(self.placement.rect(), at);
         match spot {
             Spot::Select => {
-                let sphere = surfaces.pick(document, camera, place).map(|pick| pick.sphere);
+                let sphere = document.pick(camera, place).map(|pick| pick.sphere);
                 touch.select = Some(sphere);
                 if sphere.is_none() {
                     self.mark = Some(Mark { place, text: "sky".to_owned(), since: Instant::now() });
                 }
             }
             Spot::Add => {
-                let hit = surfaces.pick(document, camera, place);
+                let hit = document.pick(camera, place);
                 touch.edit = Some(Edit::Add(new_body(hit, camera, document.aspect(), place)));
             }
             Spot::Focus => self.focus(sight, camera, place),
@@ -255,7 +240,7 @@ impl Viewport {
     }
 
     fn focus(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
-        let text = match sight.surfaces.pick(sight.document, camera, place) {
+        let text = match sight.document.pick(camera, place) {
             Some(pick) => {
                 *camera = navigation::focus(camera, pick.point);
                 let distance = camera.depth_of(pick.point);
@@ -269,7 +254,7 @@ impl Viewport {
     }
 
     fn recentre(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
-        if let Some(pick) = sight.surfaces.pick(sight.document, camera, place) {
+        if let Some(pick) = sight.document.pick(camera, place) {
             *camera = navigation::recentre(camera, pick.point);
             let text = "centre".to_owned();
             self.mark = Some(Mark { place: [0.5, 0.5], text, since: Instant::now() });
@@ -309,13 +294,7 @@ impl Viewport {
             }
             ui.separator();
         }
-        for command in [
-            Command::Home,
-            Command::AddBookmark,
-            Command::Slot(SlotCommand::Keep),
-            Command::Crop,
-            Command::CopyCommand,
-        ] {
+        for command in [Command::Home, Command::AddBookmark, Command::Keep, Command::CopyCommand] {
             menu::item(ui, facts, commands, command);
         }
     }

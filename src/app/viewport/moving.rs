@@ -5,7 +5,6 @@ use super::point::{place_at, point_at};
 use super::touch::Touch;
 use crate::app::model::document::Document;
 use crate::app::navigation;
-use crate::app::surfaces::Surfaces;
 use crate::scene::Camera;
 use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::DVec3;
@@ -25,7 +24,6 @@ pub(super) fn angles(drag: Vec2) -> [f64; 2] {
 #[derive(Clone, Copy)]
 pub(super) struct Target<'a> {
     pub document: &'a Document,
-    pub surfaces: &'a Surfaces,
     /// Whether the stage traces rays. Without them the camera has no effect, so it stays where it is.
     pub has_rays: bool,
 }
@@ -33,7 +31,7 @@ pub(super) struct Target<'a> {
 impl Target<'_> {
     /// The point of the scene at a point of the screen, if there is one in the picture at `rect`.
     fn point(&self, camera: &Camera, rect: Rect, at: Pos2) -> Option<DVec3> {
-        let pick = rect.contains(at).then(|| self.surfaces.pick(self.document, camera, place_at(rect, at)));
+        let pick = rect.contains(at).then(|| self.document.pick(camera, place_at(rect, at)));
         Some(pick??.point)
     }
 
@@ -147,7 +145,6 @@ mod tests {
 
     struct Picture {
         document: Document,
-        surfaces: Surfaces,
         placement: Placement,
         moving: Moving,
         touch: Touch,
@@ -156,11 +153,11 @@ mod tests {
 
     fn picture() -> Harness<'static, Picture> {
         let draw = |ui: &mut Ui, picture: &mut Picture| {
-            let Picture { document, surfaces, placement, moving, touch, has_rays } = picture;
+            let Picture { document, placement, moving, touch, has_rays } = picture;
             let response = ui.allocate_rect(ROOM, Sense::click_and_drag());
             placement.place(ROOM, vec2(16.0, 9.0), 1.0);
             let mut camera = document.camera;
-            let sight = Target { document, surfaces, has_rays: *has_rays };
+            let sight = Target { document, has_rays: *has_rays };
             moving.handle(ui, &response, placement, (&mut camera, sight), touch);
             document.camera = camera;
             moving.paint(ui, ROOM, placement.rect(), document);
@@ -169,7 +166,6 @@ mod tests {
         document.set_size([16, 9]);
         let picture = Picture {
             document,
-            surfaces: Surfaces::default(),
             placement: Placement::default(),
             moving: Moving::default(),
             touch: Touch::default(),

@@ -116,7 +116,7 @@ pub(super) fn paint(
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
-    if let Zoom::Times(_) | Zoom::As(_) = placement.zoom() {
+    if let Zoom::Times(_) = placement.zoom() {
         let text = format!("{:.0} %", 100.0 * placement.times());
         let at = (corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP);
         taken.push(badge_below(ui, &painter, at, &text, &font, &taken));

@@ -1,6 +1,5 @@
 //! The position and scale of the picture.
 
-use crate::app::model::framing::Framing;
 use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// The scale of the picture.
@@ -12,8 +11,6 @@ pub enum Zoom {
     Part(Rect),
     /// Screen pixels per pixel of the picture.
     Times(f32),
-    /// As another window showed the picture, as long as it has the size that it had there.
-    As(Framing),
 }
 
 /// Screen pixels per pixel of the picture. The numbers of a pixel need some 90 on a screen of high resolution.
@@ -51,19 +48,6 @@ impl Placement {
     /// Where the picture was last drawn, in points.
     pub fn rect(&self) -> Rect {
         self.rect
-    }
-
-    /// Shows the same part of the picture as another window.
-    pub fn show_as(&mut self, framing: Framing) {
-        let [low, high] = ZOOM_LIMITS;
-        self.zoom = Zoom::As(Framing { times: framing.times.clamp(low, high), ..framing });
-    }
-
-    /// What is shown of a picture of `size` pixels, unless that follows from the viewport.
-    pub fn framing(&self, size: [u32; 2]) -> Option<Framing> {
-        let is_chosen = matches!(self.zoom, Zoom::Times(_) | Zoom::As(_)) && self.rect.is_positive();
-        let middle = Vec2::splat(0.5) - self.pan / self.rect.size();
-        is_chosen.then_some(Framing { times: self.times, middle: middle.into(), size })
     }
 
     /// Fits the whole picture into the viewport.
@@ -112,16 +96,7 @@ impl Placement {
     /// Places a picture of `size` pixels in `room`, aligned to screen pixels.
     pub fn place(&mut self, room: Rect, size: Vec2, pixels_per_point: f32) -> Rect {
         let fitting = (room.width() / size.x).min(room.height() / size.y) * pixels_per_point;
-        if let Zoom::As(framing) = self.zoom
-            && framing.size.map(|length| length as f32) != [size.x, size.y]
-        {
-            self.zoom = Zoom::Fit;
-        }
         self.times = match self.zoom {
-            Zoom::As(Framing { times, middle: [x, y], .. }) => {
-                self.pan = (vec2(0.5, 0.5) - vec2(x, y)) * size * times / pixels_per_point;
-                times
-            }
             Zoom::Fit => {
                 self.pan = Vec2::ZERO;
                 // A picture made for this room may leave less than a pixel of it free, which is not worth a filter.

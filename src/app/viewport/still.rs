@@ -1,18 +1,16 @@
-//! A picture whose camera stays: one that was kept, or one of which a part is being marked.
+//! A picture whose camera stays, because it was kept.
 
 use super::moving::DOLLY_PER_POINT;
 use super::placement::Placement;
-use crate::app::command::{Command, SlotCommand};
+use crate::app::command::Command;
 use crate::app::facts::Facts;
 use crate::app::menu;
 use eframe::egui::{CursorIcon, PointerButton, Response, Ui};
 
-/// Handles drags and the wheel, which move and zoom the picture. `is_primary_free` says that the primary button has no
-/// other use.
-pub(super) fn handle(ui: &Ui, response: &Response, placement: &mut Placement, is_primary_free: bool) {
-    let (modifiers, scroll, zoom) =
-        ui.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.zoom_delta()));
-    let is_primary = response.dragged_by(PointerButton::Primary) && (is_primary_free || modifiers.shift);
+/// Handles drags and the wheel, which move and zoom the picture.
+pub(super) fn handle(ui: &Ui, response: &Response, placement: &mut Placement) {
+    let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+    let is_primary = response.dragged_by(PointerButton::Primary);
     if is_primary || response.dragged_by(PointerButton::Middle) {
         placement.pan_by(response.drag_delta());
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
@@ -27,22 +25,19 @@ pub(super) fn handle(ui: &Ui, response: &Response, placement: &mut Placement, is
 
 /// The entries of the menu of a right click. Returns false if the picture is the live one, which has others.
 pub(super) fn menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> bool {
-    let view = &facts.model.view;
-    let listed: &[Command] = match (view.crop, view.slots.looked()) {
-        (Some(_), _) => &[Command::CopyCrop, Command::SaveCrop, Command::Crop],
-        (None, Some(_)) => &[
-            Command::Slot(SlotCommand::LookLive),
-            Command::Slot(SlotCommand::Swap),
-            Command::Slot(SlotCommand::Open),
-            Command::Slot(SlotCommand::Delete),
-            Command::CopyPicture,
-            Command::Crop,
-            Command::CopyCommand,
-        ],
-        (None, None) => return false,
-    };
-    for command in listed {
-        menu::item(ui, facts, commands, *command);
+    if facts.model.view.kept.looked().is_none() {
+        return false;
+    }
+    for command in [
+        Command::LookLive,
+        Command::KeptWipe,
+        Command::KeptDifference,
+        Command::OnlyNoise,
+        Command::GoOnFromKept,
+        Command::Save,
+        Command::DeleteKept,
+    ] {
+        menu::item(ui, facts, commands, command);
     }
     true
 }
@@ -59,11 +54,11 @@ mod tests {
     const ROOM: Rect = Rect { min: pos2(10.0, 10.0), max: pos2(330.0, 190.0) };
 
     /// A picture of 16x9 pixels that stays. Where its camera would move, the picture does.
-    fn picture(is_primary_free: bool) -> Harness<'static, Placement> {
+    fn picture() -> Harness<'static, Placement> {
         let draw = move |ui: &mut Ui, placement: &mut Placement| {
             let response = ui.allocate_rect(ROOM, Sense::click_and_drag());
             placement.place(ROOM, vec2(16.0, 9.0), 1.0);
-            handle(ui, &response, placement, is_primary_free);
+            handle(ui, &response, placement);
         };
         dressed([340.0, 200.0]).build_ui_state(draw, Placement::default())
     }
@@ -78,7 +73,7 @@ mod tests {
         for (event, factor) in
             [(wheel(5.0), f32::exp(0.01)), (wheel(-5.0), f32::exp(-0.01)), (Event::Zoom(2.0), 2.0)]
         {
-            let mut harness = picture(true);
+            let mut harness = picture();
             harness.event(Event::PointerMoved(ROOM.left_top() + vec2(80.0, 45.0)));
             harness.event(event);
             harness.run_steps(2);
@@ -87,7 +82,7 @@ mod tests {
             // A quarter of the picture is left of the pointer, as before; its corner is at a whole pixel.
             assert!((90.0 - rect.left() - 0.25 * rect.width()).abs() < 1.0, "{factor}: {rect}");
         }
-        let mut harness = picture(true);
+        let mut harness = picture();
         harness.event(Event::Zoom(2.0));
         harness.run_steps(2);
         assert_eq!(harness.state().rect(), ROOM, "the pointer is elsewhere");

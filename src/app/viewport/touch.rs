@@ -21,6 +21,8 @@ pub struct Touch {
     pub listed: Option<[u32; 2]>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
+    /// The divider of a wipe was dragged.
+    pub is_divider_moved: bool,
     /// A change to the spheres.
     pub edit: Option<Edit>,
     /// The area of the viewport.

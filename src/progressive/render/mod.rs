@@ -304,7 +304,8 @@ impl Render {
         let occupancy = renderer.and_then(Renderer::tile_occupancy);
         let transfer = self.job.rules().transfer;
         // Previews are smoothed; heat maps show the film as it is.
-        let is_smooth = self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(_));
+        let is_smooth =
+            self.plan.preview.is_some() && matches!(view, View::Picture | View::Exposed(.., None));
         let rgb8 = if is_smooth {
             view.resolve(&self.film.smoothed(), transfer, None)
         } else {

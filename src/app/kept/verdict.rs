@@ -1,7 +1,7 @@
 //! Whether two pictures differ only by noise: the statistics of `weekender compare`, on a thread.
 
+use super::Subject;
 use crate::app::answers::Answers;
-use crate::app::kept::Subject;
 use crate::app::model::kept::Kept;
 use crate::app::theme;
 use crate::film::Film;
@@ -180,8 +180,8 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use super::on_screen::{OnScreen, small_film};
+    use crate::app::*;
 
     #[test]
     fn the_answer_to_an_earlier_question_is_not_shown() {

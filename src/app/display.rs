@@ -1,0 +1,95 @@
+//! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
+
+use super::identity::Identity;
+use super::kept::{KeptActions, Subject};
+use super::layers::Layers;
+use super::model::Model;
+use super::model::show::Show;
+use super::pixel_values::PixelValues;
+use super::sight::Sighted;
+use super::toasts::Toasts;
+use super::tone::ToneUi;
+use super::tracer::Shown;
+use super::tracing::Tracing;
+use super::viewport::Viewport;
+use eframe::egui::Context;
+
+/// With this many samples per pixel, pictures differ by more than their noise.
+const CLEAR_SAMPLES: u64 = 16;
+
+#[derive(Default)]
+pub struct Display {
+    pub viewport: Viewport,
+    pub layers: Layers,
+    pub tone: ToneUi,
+    pub values: PixelValues,
+    pub identity: Identity,
+    pub kept: KeptActions,
+    /// What "Show me" has changed, to return to.
+    pub sight: Option<Sighted>,
+}
+
+impl Display {
+    /// The film on the screen.
+    pub fn subject<'a>(&'a self, model: &'a Model, tracing: &'a Tracing) -> Subject<'a> {
+        let live = (&model.document, &tracing.main);
+        Subject::new(&model.view, live, tracing.seconds_before, &self.kept.thread)
+    }
+
+    /// The picture of the film on the screen.
+    pub fn shown<'a>(&'a self, model: &Model, tracing: &'a Tracing) -> Option<&'a Shown> {
+        match model.view.kept.shown() {
+            Some(kept) => self.kept.picture.shown(kept),
+            None => tracing.main.shown(),
+        }
+    }
+
+    /// Asks background threads for what the screen shows beside the picture.
+    pub fn follow(
+        &mut self,
+        context: &Context,
+        model: &Model,
+        tracing: &Tracing,
+        is_moving: bool,
+        toasts: &mut Toasts,
+    ) {
+        let (document, view) = (&model.document, &model.view);
+        let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
+        if let Some(kept) = view.kept.shown().or_else(other) {
+            self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));
+        }
+        let live = (document, &tracing.main);
+        let subject = Subject::new(view, live, tracing.seconds_before, &self.kept.thread);
+        let is_live_moving = is_moving && !subject.is_kept();
+        let fault = self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
+        if let Some(reason) = fault {
+            toasts.bad(format!("This view cannot be traced: {reason}"));
+        }
+        self.tone.follow(&subject, view.tone.white(), context);
+        let is_picture = view.mode().is_none() && view.show() == Show::Picture;
+        let area = self.viewport.room().filter(|_| is_picture);
+        self.values.follow(&subject, self.viewport.placement.rect(), area, context);
+        self.identity.follow(view.subtracted(tracing.second.film()), &subject, context);
+    }
+
+    /// Puts the divider of a new wipe where the two pictures differ most, once both are clear.
+    pub fn place_divider(&self, model: &mut Model, tracing: &Tracing) {
+        if !model.view.is_divider_unplaced {
+            return;
+        }
+        let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
+        let mine = match model.view.kept.shown() {
+            Some(kept) => self.kept.picture.shown(kept),
+            None => {
+                let is_over = tracing.main.status().phase.is_over();
+                tracing.main.shown().filter(|shown| is_clear(shown) || is_over)
+            }
+        };
+        let theirs = tracing.second.shown().filter(|shown| is_clear(shown) || tracing.second.is_over());
+        if let (Some(mine), Some(theirs)) = (mine, theirs) {
+            let column = mine.texture.most_different_column(&theirs.texture);
+            model.view.divider = column.unwrap_or(model.view.divider);
+            model.view.is_divider_unplaced = false;
+        }
+    }
+}

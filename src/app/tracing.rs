@@ -1,0 +1,278 @@
+//! What traces: the render on the screen, the one that it is compared with, and their size.
+
+use super::changes::Changes;
+use super::model::Model;
+use super::model::device::Device;
+use super::model::show::Show;
+use super::second::Second;
+use super::sizer::{Present, Sizer};
+use super::speed::Speed;
+use super::toasts::Toasts;
+use super::tracer::{Tracer, Want};
+use super::wording::in_window_words;
+use crate::film::Film;
+use crate::job::saved::SavedFilm;
+use crate::progressive::Status;
+use eframe::egui::Context;
+use std::time::{Duration, Instant};
+
+/// Longer than the time between two pictures.
+const PICTURES_APART: Duration = Duration::from_millis(300);
+
+pub struct Tracing {
+    pub main: Tracer,
+    /// Traces what the picture is compared with.
+    pub second: Second,
+    pub speed: Speed,
+    pub sizer: Sizer,
+    /// Tracing time of the film's samples from before this run; none if it is not known.
+    pub seconds_before: Option<f64>,
+    /// The film with which the next run begins.
+    pub film: Option<Film>,
+    /// Why the document cannot be rendered, if so.
+    pub invalid: Option<String>,
+    /// The run and how many of its messages and failures have been seen.
+    seen_messages: (u64, usize),
+    seen_failures: (u64, usize),
+}
+
+impl Tracing {
+    /// # Errors
+    /// If the render thread cannot be started.
+    pub fn new() -> std::io::Result<Self> {
+        Ok(Tracing {
+            main: Tracer::new()?,
+            second: Second::default(),
+            speed: Speed::default(),
+            sizer: Sizer::default(),
+            seconds_before: Some(0.0),
+            film: None,
+            invalid: None,
+            seen_messages: (0, 0),
+            seen_failures: (0, 0),
+        })
+    }
+
+    /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
+    pub fn poll(&mut self, context: &Context) -> Option<Instant> {
+        self.second.receive();
+        let pictured = self.main.poll(context);
+        self.speed.follow(self.main.status());
+        pictured
+    }
+
+    /// Goes on with this film, which is the document's.
+    pub fn adopt(&mut self, film: SavedFilm) {
+        self.seconds_before = film.seconds;
+        self.film = Some(film.film);
+    }
+
+    /// Tracing time of the film's samples; infinite if it is not known.
+    pub fn seconds(&self) -> f64 {
+        self.seconds_before.unwrap_or(f64::INFINITY) + self.main.status().trace.as_secs_f64()
+    }
+
+    pub fn pause(&mut self, context: &Context) {
+        self.main.pause();
+        self.second.pause();
+        // The picture of the last samples is still to come.
+        context.request_repaint_after(PICTURES_APART);
+    }
+
+    pub fn resume(&mut self) {
+        self.main.resume();
+        self.second.resume();
+    }
+
+    /// Throws the samples away and begins anew.
+    pub fn restart(&mut self) {
+        self.seconds_before = Some(0.0);
+        self.main.restart();
+    }
+
+    /// Gives the document the size that fits the window, if its samples are not worth more.
+    pub fn follow_size(&mut self, context: &Context, model: &mut Model, room: [u32; 2], is_needed: bool) {
+        if self.film.is_some() {
+            return;
+        }
+        let present = Present {
+            is_documents: self.main.is_of(&model.document),
+            seconds: self.seconds(),
+            is_needed: is_needed || model.view.show() == Show::Difference,
+        };
+        self.sizer.follow(context, &mut model.document, (model.remembered.sizing, room), &present);
+    }
+
+    /// Traces what the model asks for. Returns whether there is a picture to compare with, if one is asked for.
+    pub fn follow(&mut self, context: &Context, model: &Model, changes: &Changes) -> bool {
+        let Model { document, view, is_paused, .. } = model;
+        let want = Want {
+            document,
+            backend: &model.backend(),
+            stop: document.stop,
+            view: view.of_film(self.second.film()),
+            is_moving: changes.is_moving(),
+            is_paused: *is_paused,
+        };
+        let outcome = match self.film.take() {
+            Some(film) => self.main.go_on_with(film, &want),
+            None => self.main.want(&want),
+        };
+        self.invalid = outcome.err().map(|reason| in_window_words(&reason));
+        self.second.follow(context, view, &want)
+    }
+
+    /// Shows the render's new messages. If the chosen device has failed, chooses the one that goes on.
+    pub fn report(&mut self, device: &mut Device, toasts: &mut Toasts) {
+        let status = self.main.status();
+        for message in unseen(self.seen_messages, status) {
+            let message = in_window_words(message);
+            if status.given_up.is_empty() {
+                toasts.warn(message, status.run);
+            } else {
+                toasts.bad(message);
+            }
+        }
+        if status.samples_per_pixel > 0 {
+            toasts.end_warnings(status.run);
+        }
+        self.seen_messages = (status.run, status.messages.len());
+        let (run, seen) = self.seen_failures;
+        let (next, seen) = device_after(*device, if run == status.run { seen } else { 0 }, status);
+        *device = next;
+        self.seen_failures = (status.run, seen);
+    }
+}
+
+fn unseen((run, seen): (u64, usize), status: &Status) -> &[String] {
+    let seen = if run == status.run { seen } else { 0 };
+    status.messages.get(seen..).unwrap_or_default()
+}
+
+/// The device that the switch shows, and how many failures it has answered to: once `chosen` has failed, the one that
+/// has taken over.
+fn device_after(chosen: Device, seen: usize, status: &Status) -> (Device, usize) {
+    let has_failed = status.given_up.iter().skip(seen).any(|name| *name == chosen.name());
+    let name = status.backend.as_ref().map(|backend| backend.name);
+    let present = Device::ALL.into_iter().find(|device| Some(device.name()) == name);
+    match present {
+        Some(present) if has_failed && present != chosen => (present, status.given_up.len()),
+        // The next backend is still getting ready.
+        _ if has_failed => (chosen, seen),
+        _ => (chosen, status.given_up.len()),
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::app::tests::window;
+    use crate::film::Film;
+    use crate::job::recipe::Recipe;
+    use crate::job::render::BackendInfo;
+    use crate::job::saved::SavedFilm;
+    use eframe::egui::Context;
+
+    #[test]
+    fn a_film_is_not_resumed_after_the_picture_was_changed() {
+        let mut window = window("weekender --stage normals --size 16x9 --samples 1");
+        let resumed = |begun: &Document| Resumed {
+            path: PathBuf::from("/of/mine.exr"),
+            begun: begun.clone(),
+            film: SavedFilm { film: Film::new(16, 9, 1), seconds: None, backend: None },
+        };
+        window.go_on(resumed(&Document::new(Origin::usual())));
+        let told = window.messages();
+        let reason = "Not resumed: the picture was changed before /of/mine.exr had been read";
+        assert!(told[0].starts_with(reason) && window.pending_film.is_none(), "{told:?}");
+        assert!(window.model.remembered.recent.is_empty());
+        let mine = window.document().clone();
+        window.go_on(resumed(&mine));
+        assert!(window.pending_film.is_some());
+        assert_eq!(window.messages().pop().as_deref(), Some("Continuing /of/mine.exr"));
+        assert_eq!(window.model.remembered.recent, [PathBuf::from("/of/mine.exr")]);
+    }
+
+    #[test]
+    fn each_message_of_a_run_is_told_once() {
+        let messages = ["a", "b"].map(str::to_owned).to_vec();
+        let status = Status { run: 2, messages, ..Status::default() };
+        assert_eq!(untold((1, 1), &status), ["a", "b"], "those of another run");
+        assert_eq!(untold((2, 1), &status), ["b"]);
+        assert!(untold((2, 2), &status).is_empty());
+    }
+
+    #[test]
+    fn only_a_failure_of_the_chosen_device_changes_the_choice() {
+        let status = |name, given_up: &[&'static str]| {
+            let backend = BackendInfo { name, device: String::new(), lanes: 1, threads: 1 };
+            let messages = vec!["the estimate is doubtful".to_owned()];
+            Status { backend: Some(backend), given_up: given_up.to_vec(), messages, ..Status::default() }
+        };
+        let (cpu, gpu) = (Device::Cpu, Device::Gpu);
+        assert_eq!(device_after(gpu, 0, &status("cpu", &[])), (gpu, 0), "the GPU is being prepared");
+        assert_eq!(device_after(cpu, 0, &status("gpu", &[])), (cpu, 0));
+        assert_eq!(device_after(gpu, 0, &status("gpu", &["gpu"])), (gpu, 0), "nothing has taken over yet");
+        assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
+        assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
+        assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
+    }
+
+    #[test]
+    fn what_was_written_or_read_is_told_and_remembered() {
+        let (mut window, context) = (window("weekender --stage normals --size 16x9"), Context::default());
+        let path = |name: &str| PathBuf::from("/of").join(name);
+        window.files.saved.answer(&context).give(Ok(path("a.png")));
+        window.files.saved.answer(&context).give(Ok(path("b.CSV")));
+        window.files.saved.answer(&context).give(Err("there is no room".to_owned()));
+        window.files.resumed.answer(&context).give(Err("there is no film".to_owned()));
+        window.files.references.answer(&context).give(Err("it is not a film".to_owned()));
+        let reason = "it cannot be read".to_owned();
+        let not_opened = NotOpened { path: path("not there.png"), reason, is_picture: true };
+        window.files.opened.answer(&context).give(Err(not_opened));
+        let copied =
+            (egui::ColorImage::from_rgb([1, 1], &[0; 3]), "picture: 1x1, 4 samples per pixel".to_owned());
+        window.files.copied.answer(&context).give(copied);
+        window.receive(&context);
+        let told = [
+            "Saved /of/a.png",
+            "Saved /of/b.CSV",
+            "Not saved: there is no room",
+            "Not opened: it cannot be read",
+            "Copied the picture: 1x1, 4 samples per pixel",
+            "Not resumed: there is no film",
+            "Reference not loaded: it is not a film",
+        ];
+        assert_eq!(window.messages(), told);
+        assert_eq!(window.model.remembered.recent, [path("a.png")], "a plot cannot be opened");
+        assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
+        window.remember_directory(Path::new("c.png"));
+        let here = std::env::current_dir().unwrap();
+        assert_eq!(window.model.remembered.directory.as_ref(), Some(&here), "a bare name");
+        window.remember_directory(Path::new("to/c.png"));
+        assert_eq!(window.model.remembered.directory, Some(here.join("to")));
+    }
+
+    #[test]
+    fn what_is_opened_keeps_its_size_and_a_picture_its_end() {
+        let recipe = Recipe::builtin("three-spheres").unwrap();
+        for (content, samples) in [
+            (Content::Scene, None),
+            (Content::Picture { samples: Some(7) }, Some(7)),
+            (Content::Picture { samples: None }, None),
+        ] {
+            let mut window = window("weekender --stage normals --size 16x9");
+            let is_scene = matches!(content, Content::Scene);
+            let path = PathBuf::from("/of/mine.toml");
+            let (recipe, job) = (recipe.clone(), recipe.job().unwrap());
+            window.show_opened(Opened { path: path.clone(), recipe, job, stage: None, content });
+            let document = window.document();
+            assert!(document.has_own_size);
+            assert_eq!(document.stop.samples, samples);
+            assert_eq!(document.origin.source == Source::File(path.clone()), is_scene);
+            assert_eq!(window.model.remembered.recent, [path]);
+            assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
+            assert_eq!(window.messages(), ["Opened /of/mine.toml"]);
+        }
+    }
+}
