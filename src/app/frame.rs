@@ -8,7 +8,6 @@ use super::model::show::Show;
 use super::sizer::Present;
 use super::theme;
 use super::tracer::{Shown, Want};
-use super::widgets;
 use super::window::Window;
 use super::wording::in_window_words;
 use crate::scene::Camera;
@@ -207,7 +206,7 @@ impl Window {
             self.toasts.bad(reason);
         }
         self.follow_size(context);
-        if self.changes.follow(context, &self.model.document, widgets::is_typing(context)) {
+        if self.changes.follow(context, &self.model.document, false) {
             self.seconds_before = Some(0.0);
             // A change is seen in the live picture.
             self.model.view.look(None);

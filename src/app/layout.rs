@@ -12,7 +12,7 @@ use super::present::{self, Lens, Seen};
 use super::second::Second;
 use super::viewport::{Handle, Pictures, SecondPicture};
 use super::window::Window;
-use super::{info, panels, plot, status_bar, theme, tips, title_bar, widgets};
+use super::{controls, info, plot, status_bar, theme, tips, title_bar};
 use eframe::egui::{self, Rect};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -46,7 +46,6 @@ impl Window {
             commands,
             spheres,
             slot_actions,
-            is_new,
             presenter,
             thumbnails,
             ..
@@ -92,7 +91,7 @@ impl Window {
                 packet.ui(ui, commands);
             }
             if has.has_controls {
-                let panel = egui::Panel::left("controls").default_size(244.0).size_range(190.0..=380.0);
+                let panel = egui::Panel::left("controls").exact_size(232.0);
                 Place::Controls.begin(ui);
                 scrolling(ui, panel, None, |ui| {
                     let has_info_below = is_narrow && has.has_info;
@@ -101,13 +100,7 @@ impl Window {
                         let response = ui.button("Stage and pixel: below");
                         tips::beside(ui, response, help).clicked()
                     };
-                    panels::ui(
-                        ui,
-                        (document, selected),
-                        remembered,
-                        (&facts, *is_new),
-                        (&mut edits, commands),
-                    );
+                    controls::ui(ui, (document, selected), remembered, &facts, (&mut edits, commands));
                     if is_asked {
                         ui.scroll_to_cursor(Some(egui::Align::Min));
                     }
@@ -203,9 +196,6 @@ impl Window {
                 self.sizer.ui(ui, room, &mut self.commands);
             }
             self.toasts.ui(ui, room, &mut self.commands);
-        }
-        if let Some(text) = widgets::take_told(ui.ctx()) {
-            self.toasts.good(text);
         }
         self.check.ui(ui.ctx());
         self.slot_actions.verdict.ui(ui.ctx());
