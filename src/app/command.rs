@@ -6,6 +6,7 @@ use super::model::device::Device;
 use super::model::origin::Source;
 use super::model::remembered::{Dock, Theme};
 use super::model::show::Show;
+use super::model::sizing::Sizing;
 use super::model::tone::{Channel, Tone};
 use super::model::view::{Mode, With};
 use super::model::viewpoint::Viewpoint;
@@ -98,7 +99,8 @@ pub enum Command {
     ClearPaths,
     NextPanel,
     Blank,
-    ViewportSize,
+    /// Gives the picture the size of the viewport or of the book.
+    Size(Sizing),
     Stage(&'static Stage),
     Extreme(&'static Case),
     /// Opens a recent file.
@@ -1006,13 +1008,15 @@ fn rows() -> Vec<Row> {
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
         unlisted()
     );
-    row!(
-        C::ViewportSize,
-        "Render at this size",
-        "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
-        |w, _| w.take_viewport_size(),
-        unlisted()
-    );
+    for sizing in Sizing::ALL {
+        row!(
+            C::Size(sizing),
+            "Render at this size",
+            "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
+            move |w, _| w.take_size(sizing),
+            unlisted()
+        );
+    }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row!(
             C::Kept(place),

@@ -7,7 +7,7 @@ use super::model::document::Document;
 use super::model::show::Show;
 use super::model::view::{With, is_of_cameras, partner};
 use super::tips::{self, Side};
-use super::widgets::{About, control};
+use super::widgets::{About, list};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{self, RichText, Ui};
@@ -141,21 +141,12 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
 /// Text about the current view.
 fn view_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let show = facts.model.view.show();
-    control(
-        ui,
-        About::new("View", "What the window shows in place of the picture (Ctrl+1 to Ctrl+8)"),
-        |ui| {
-            egui::ComboBox::from_id_salt("view")
-                .width(ui.available_width())
-                .selected_text(show.name())
-                .show_ui(ui, |ui| {
-                    for show in Show::ALL {
-                        item(ui, facts, commands, Command::Show(show));
-                    }
-                })
-                .response
-        },
-    );
+    let about = About::new("View", "What the window shows in place of the picture (Ctrl+1 to Ctrl+8)");
+    list(ui, about, show.name(), |ui| {
+        for show in Show::ALL {
+            item(ui, facts, commands, Command::Show(show));
+        }
+    });
     if show != Show::Picture {
         ui.add(egui::Label::new(RichText::new(show.help()).small()).wrap());
         ui.add_space(6.0);

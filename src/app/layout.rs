@@ -14,7 +14,7 @@ use super::present::{self, Lens, Seen};
 use super::second::Second;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{info, panels, plot, status_bar, theme, title_bar, widgets};
+use super::{controls, info, plot, status_bar, theme, title_bar};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -78,13 +78,7 @@ impl Window {
             let panel = egui::Panel::left("controls").exact_size(232.0);
             Place::Controls.begin(ui);
             scrolling(ui, panel, |ui| {
-                panels::ui(
-                    ui,
-                    (document, selected.as_ref()),
-                    remembered,
-                    (facts, false),
-                    (&mut edits, commands),
-                );
+                controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
                 if has.has_info && is_narrow {
                     Place::Info.begin(ui);
                     right(ui, commands);
@@ -180,9 +174,6 @@ impl Window {
                 self.tracing.sizer.ui(ui, room, &mut self.commands);
             }
             self.shell.toasts.ui(ui, room, &mut self.commands);
-        }
-        if let Some(text) = widgets::take_told(ui.ctx()) {
-            self.shell.toasts.good(text);
         }
     }
 

@@ -446,8 +446,8 @@ impl Window {
         *device = if *device == Device::Reference { Device::Cpu } else { Device::Reference };
     }
 
-    pub(super) fn take_viewport_size(&mut self) {
-        self.model.remembered.sizing = Sizing::Viewport;
+    pub(super) fn take_size(&mut self, sizing: Sizing) {
+        self.model.remembered.sizing = sizing;
         self.model.document.has_own_size = false;
         self.tracing.sizer.ask();
     }

@@ -5,7 +5,7 @@ use super::command::Command;
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
-use super::widgets::{compact, number};
+use super::widgets::{About, FIELD, Number, compact};
 use crate::numbers::statistics::fit::{Point, Prediction};
 use crate::progressive::{HistoryPoint, Status, Stop};
 use eframe::egui::{
@@ -68,9 +68,8 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
         );
         if let Some(target) = target {
             ui.label(RichText::new("target").small());
-            let place = ("Target error", egui::vec2(64.0, ui.spacing().interact_size.y));
-            number(ui, place, target, TARGETS, |drag| drag.speed(1e-4).max_decimals(6))
-                .on_hover_text("The render ends at this error; the line in the plot can be dragged, too");
+            let help = "The render ends at this error; the line in the plot can be dragged, too";
+            Number::new(About::new("Target error", help), TARGETS).speed(1e-4).field(ui, FIELD, target);
         } else {
             let button = ui.add(egui::Button::new("Set a target").small());
             if button.on_hover_text("End the render at an estimated error; its line in the plot can be dragged").clicked() {

@@ -123,7 +123,7 @@ impl Sizer {
                 let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
                             lost; this renders it anew, one pixel of the picture per pixel of the screen";
                 if ui.button(label).on_hover_text(help).clicked() {
-                    commands.push(Command::ViewportSize);
+                    commands.push(Command::Size(Sizing::Viewport));
                 }
             });
     }

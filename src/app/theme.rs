@@ -1,72 +1,117 @@
-//! Colours and spacing: subdued greys, and one accent colour, the blue of the book's sky.
+//! Colours, fonts and distances: subdued greys, and one accent colour, the blue of the book's sky.
 
 use super::model::remembered::Theme;
+use eframe::egui::style::{HandleShape, ScrollStyle, Spacing};
 use eframe::egui::{
-    self, Color32, Context, CornerRadius, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui, Visuals,
+    self, Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui,
+    Visuals, vec2,
 };
 use std::sync::Arc;
 
-/// The colours of one theme.
-struct Palette {
-    panel: Color32,
-    surround: Color32,
-    raised: Color32,
-    hovered: Color32,
-    pressed: Color32,
-    line: Color32,
-    weak: Color32,
-    text: Color32,
-    strong: Color32,
-    accent: Color32,
-    on_accent: Color32,
-    warn: Color32,
-    bad: Color32,
+/// The colours of one theme. Letters on `tint` are `text` or `strong`.
+pub struct Colours {
+    /// Panels, menus, cards, dialogs.
+    pub panel: Color32,
+    /// Around the picture, and behind plots.
+    pub surround: Color32,
+    /// Behind what is typed, and behind code.
+    pub well: Color32,
+    /// Buttons, fields, rails.
+    pub raised: Color32,
+    /// Under the pointer; open menus.
+    pub hovered: Color32,
+    /// While pressed.
+    pub pressed: Color32,
+    /// Separators, edges of cards.
+    pub line: Color32,
+    /// Rings and handles; never letters.
+    pub edge: Color32,
+    /// What is on or chosen.
+    pub tint: Color32,
+    /// Labels, hints, keys.
+    pub weak: Color32,
+    pub text: Color32,
+    /// Titles, values, what is chosen.
+    pub strong: Color32,
+    /// Links, focus, progress; as a fill, the one button to press next.
+    pub accent: Color32,
+    /// Letters on `accent`.
+    pub on_accent: Color32,
+    /// Right.
+    pub good: Color32,
+    /// A mistake, a notice.
+    pub warn: Color32,
+    /// An error.
+    pub bad: Color32,
 }
 
-const DARK: Palette = Palette {
-    panel: Color32::from_rgb(27, 29, 32),
-    surround: Color32::from_rgb(17, 18, 20),
-    raised: Color32::from_rgb(42, 45, 50),
-    hovered: Color32::from_rgb(54, 58, 64),
-    pressed: Color32::from_rgb(66, 71, 79),
-    line: Color32::from_rgb(48, 51, 56),
-    weak: Color32::from_rgb(160, 166, 175),
-    text: Color32::from_rgb(205, 209, 214),
-    strong: Color32::from_rgb(242, 244, 246),
-    accent: Color32::from_rgb(112, 176, 240),
-    on_accent: Color32::from_rgb(12, 24, 38),
-    warn: Color32::from_rgb(232, 186, 92),
-    bad: Color32::from_rgb(244, 122, 112),
+const fn rgb(hex: u32) -> Color32 {
+    let [_, r, g, b] = hex.to_be_bytes();
+    Color32::from_rgb(r, g, b)
+}
+
+const DARK: Colours = Colours {
+    panel: rgb(0x1B_1D_20),
+    surround: rgb(0x11_12_14),
+    well: rgb(0x11_12_14),
+    raised: rgb(0x2A_2D_32),
+    hovered: rgb(0x36_3A_40),
+    pressed: rgb(0x42_47_4F),
+    line: rgb(0x30_33_38),
+    edge: rgb(0x6F_76_80),
+    tint: rgb(0x27_40_5C),
+    weak: rgb(0xA0_A6_AF),
+    text: rgb(0xCD_D1_D6),
+    strong: rgb(0xF2_F4_F6),
+    accent: rgb(0x70_B0_F0),
+    on_accent: rgb(0x0C_18_26),
+    good: rgb(0x6C_C5_8A),
+    warn: rgb(0xE8_BA_5C),
+    bad: rgb(0xF4_7A_70),
 };
 
-const LIGHT: Palette = Palette {
-    panel: Color32::from_rgb(247, 247, 245),
-    surround: Color32::from_rgb(226, 227, 226),
-    raised: Color32::from_rgb(230, 231, 231),
-    hovered: Color32::from_rgb(218, 221, 223),
-    pressed: Color32::from_rgb(204, 209, 213),
-    line: Color32::from_rgb(214, 215, 215),
-    weak: Color32::from_rgb(88, 93, 100),
-    text: Color32::from_rgb(48, 52, 57),
-    strong: Color32::from_rgb(16, 18, 21),
-    accent: Color32::from_rgb(28, 104, 178),
-    on_accent: Color32::WHITE,
-    warn: Color32::from_rgb(138, 90, 0),
-    bad: Color32::from_rgb(184, 38, 30),
+const LIGHT: Colours = Colours {
+    panel: rgb(0xF7_F7_F5),
+    surround: rgb(0xE2_E3_E2),
+    well: rgb(0xFF_FF_FF),
+    raised: rgb(0xE6_E7_E7),
+    hovered: rgb(0xDA_DD_DF),
+    pressed: rgb(0xCC_D1_D5),
+    line: rgb(0xD6_D7_D7),
+    edge: rgb(0x81_86_8C),
+    tint: rgb(0xCF_E0_F2),
+    weak: rgb(0x58_5D_64),
+    text: rgb(0x30_34_39),
+    strong: rgb(0x10_12_15),
+    accent: rgb(0x18_5F_A5),
+    on_accent: rgb(0xFF_FF_FF),
+    good: rgb(0x18_68_39),
+    warn: rgb(0x7D_52_00),
+    bad: rgb(0xB0_24_1C),
 };
 
-fn palette(is_dark: bool) -> &'static Palette {
+/// The colours of the theme that a part of the window has.
+pub fn colours(ui: &Ui) -> &'static Colours {
+    of_theme(ui.visuals().dark_mode)
+}
+
+fn of_theme(is_dark: bool) -> &'static Colours {
     if is_dark { &DARK } else { &LIGHT }
 }
 
 /// The colour around the picture.
 pub fn surround(ui: &Ui) -> Color32 {
-    palette(ui.visuals().dark_mode).surround
+    colours(ui).surround
 }
 
 /// The accent colour.
 pub fn accent(ui: &Ui) -> Color32 {
-    palette(ui.visuals().dark_mode).accent
+    colours(ui).accent
+}
+
+/// The text style of the first steps' title.
+pub fn card() -> TextStyle {
+    TextStyle::Name("card".into())
 }
 
 /// Sets both themes' styles.
@@ -86,52 +131,78 @@ pub fn choose(context: &Context, theme: Theme) {
 }
 
 fn dress(style: &mut Style, is_dark: bool) {
-    for (text, size) in [
-        (TextStyle::Small, 11.0),
-        (TextStyle::Body, 13.0),
-        (TextStyle::Button, 13.0),
-        (TextStyle::Monospace, 12.0),
-        (TextStyle::Heading, 16.0),
-    ] {
-        if let Some(font) = style.text_styles.get_mut(&text) {
-            font.size = size;
-        }
-    }
-    style.spacing.item_spacing = egui::vec2(8.0, 6.0);
-    style.spacing.button_padding = egui::vec2(8.0, 3.0);
-    style.spacing.interact_size = egui::vec2(40.0, 22.0);
-    style.spacing.menu_margin = Margin::same(6);
-    style.spacing.slider_rail_height = 4.0;
-    style.spacing.tooltip_width = 320.0;
+    style.text_styles = [
+        (TextStyle::Small, FontId::proportional(12.0)),
+        (TextStyle::Body, FontId::proportional(14.0)),
+        (TextStyle::Button, FontId::proportional(14.0)),
+        (card(), FontId::proportional(16.0)),
+        (TextStyle::Heading, FontId::proportional(20.0)),
+        (TextStyle::Monospace, FontId::monospace(12.0)),
+    ]
+    .into();
+    style.spacing = Spacing {
+        item_spacing: vec2(8.0, 8.0),
+        button_padding: vec2(8.0, 4.0),
+        interact_size: vec2(40.0, 24.0),
+        window_margin: Margin::same(24),
+        menu_margin: Margin::same(4),
+        menu_spacing: 4.0,
+        menu_width: 248.0,
+        indent: 16.0,
+        slider_width: 200.0,
+        slider_rail_height: 4.0,
+        combo_width: 112.0,
+        combo_height: 320.0,
+        text_edit_width: 200.0,
+        icon_width: 16.0,
+        icon_width_inner: 10.0,
+        icon_spacing: 8.0,
+        tooltip_width: 320.0,
+        // A bar shows whenever something overflows, and takes no room.
+        scroll: ScrollStyle {
+            bar_width: 6.0,
+            floating_allocated_width: 0.0,
+            dormant_handle_opacity: 0.6,
+            foreground_color: false,
+            ..ScrollStyle::floating()
+        },
+        ..style.spacing.clone()
+    };
     style.interaction.tooltip_delay = 0.6;
+    style.interaction.tooltip_grace_time = 0.3;
+    style.interaction.show_tooltips_only_when_still = true;
     style.interaction.selectable_labels = false;
+    style.animation_time = 0.1;
     style.visuals = visuals(is_dark);
 }
 
 fn visuals(is_dark: bool) -> Visuals {
-    let colours = palette(is_dark);
+    let colours = of_theme(is_dark);
     let mut visuals = if is_dark { Visuals::dark() } else { Visuals::light() };
     visuals.panel_fill = colours.panel;
     visuals.window_fill = colours.panel;
+    visuals.extreme_bg_color = colours.surround;
+    visuals.text_edit_bg_color = Some(colours.well);
+    visuals.code_bg_color = colours.well;
+    visuals.faint_bg_color = colours.raised;
+    visuals.selection.bg_fill = colours.tint;
+    visuals.selection.stroke = Stroke::new(1.0, colours.strong);
+    visuals.hyperlink_color = colours.accent;
+    visuals.weak_text_color = Some(colours.weak);
+    visuals.warn_fg_color = colours.warn;
+    visuals.error_fg_color = colours.bad;
     visuals.window_stroke = Stroke::new(1.0, colours.line);
     visuals.window_corner_radius = CornerRadius::same(8);
     visuals.menu_corner_radius = CornerRadius::same(6);
-    visuals.extreme_bg_color = colours.surround;
-    visuals.faint_bg_color = colours.raised;
-    visuals.hyperlink_color = colours.accent;
-    visuals.warn_fg_color = colours.warn;
-    visuals.error_fg_color = colours.bad;
-    visuals.weak_text_color = Some(colours.weak);
-    visuals.selection.bg_fill = colours.accent;
-    visuals.selection.stroke = Stroke::new(1.0, colours.on_accent);
+    let color = Color32::from_black_alpha(if is_dark { 96 } else { 48 });
+    visuals.popup_shadow = Shadow { offset: [0, 4], blur: 14, spread: 0, color };
+    visuals.window_shadow = visuals.popup_shadow;
     visuals.slider_trailing_fill = true;
-    // Colours have the numbers of scene files.
-    visuals.numeric_color_space = egui::style::NumericColorSpace::Linear;
-    visuals.handle_shape = egui::style::HandleShape::Circle;
+    visuals.handle_shape = HandleShape::Circle;
     visuals.disabled_alpha = 0.45;
-    let shadow = Shadow { offset: [0, 4], blur: 14, spread: 0, color: Color32::from_black_alpha(60) };
-    visuals.popup_shadow = shadow;
-    visuals.window_shadow = shadow;
+    visuals.collapsing_header_frame = false;
+    visuals.indent_has_left_vline = false;
+    visuals.button_frame = true;
     let widgets = &mut visuals.widgets;
     for (widget, fill, text) in [
         (&mut widgets.noninteractive, colours.panel, colours.text),
@@ -144,11 +215,10 @@ fn visuals(is_dark: bool) -> Visuals {
         widget.weak_bg_fill = fill;
         widget.bg_stroke = Stroke::NONE;
         widget.fg_stroke = Stroke::new(1.0, text);
-        widget.corner_radius = CornerRadius::same(5);
+        widget.corner_radius = CornerRadius::same(4);
         widget.expansion = 0.0;
     }
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, colours.line);
-    widgets.hovered.bg_stroke = Stroke::new(1.0, colours.line);
     visuals
 }
 
@@ -156,20 +226,18 @@ fn visuals(is_dark: bool) -> Visuals {
 pub fn paint_focus(context: &Context) {
     let focused = context.memory(|memory| memory.focused());
     let Some(response) = focused.and_then(|id| context.read_response(id)) else { return };
-    let colours = palette(context.global_style().visuals.dark_mode);
+    let stroke = Stroke::new(2.0, of_theme(context.global_style().visuals.dark_mode).accent);
     let painter = context.layer_painter(response.layer_id).with_clip_rect(response.interact_rect.expand(3.0));
-    let kind = egui::StrokeKind::Outside;
-    painter.rect_stroke(response.rect, CornerRadius::same(5), Stroke::new(2.0, colours.accent), kind);
+    painter.rect_stroke(response.rect.expand(1.0), CornerRadius::same(5), stroke, egui::StrokeKind::Outside);
 }
 
 /// A frame for widgets that float over the picture.
 pub fn float_frame(ui: &Ui) -> Frame {
-    let fill = ui.visuals().panel_fill.gamma_multiply(0.94);
     Frame::new()
-        .fill(fill)
+        .fill(colours(ui).panel.gamma_multiply(0.94))
         .stroke(ui.visuals().window_stroke)
         .corner_radius(6)
-        .inner_margin(Margin::symmetric(10, 6))
+        .inner_margin(Margin::symmetric(12, 8))
 }
 
 /// The window's icon.
@@ -180,8 +248,8 @@ pub fn icon() -> Arc<egui::IconData> {
 
 /// A panel's frame. It has no fill: the window is cleared to the panel's colour, which costs almost nothing in software
 /// rendering, while a fill costs as much as the whole content.
-pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
-    egui::Frame::new().inner_margin(inner_margin)
+pub fn panel(inner_margin: Margin) -> Frame {
+    Frame::new().inner_margin(inner_margin)
 }
 
 #[cfg(test)]
@@ -203,22 +271,22 @@ mod tests {
 
     #[test]
     fn text_is_readable_on_every_background() {
-        const LEAST: f64 = 4.5;
-        for palette in [&DARK, &LIGHT] {
-            let Palette { panel, surround, raised, hovered, weak, text, strong, .. } = *palette;
-            for colour in [weak, text, strong] {
-                for background in [panel, surround, raised, hovered] {
-                    let found = contrast(colour, background);
-                    assert!(found >= LEAST, "{colour:?} on {background:?}: {found:.2}");
-                }
+        for c in [&DARK, &LIGHT] {
+            let letters = [c.weak, c.text, c.strong, c.accent, c.good, c.warn, c.bad];
+            let on_ground = letters.map(|letter| [c.panel, c.raised].map(|ground| (letter, ground, 4.5)));
+            let others = [
+                (c.text, c.tint, 4.5),
+                (c.strong, c.tint, 4.5),
+                (c.text, c.hovered, 4.5),
+                (c.weak, c.surround, 4.5),
+                (c.on_accent, c.accent, 4.5),
+                (c.edge, c.panel, 3.0),
+                (c.edge, c.raised, 2.95),
+            ];
+            for (front, ground, least) in on_ground.into_iter().flatten().chain(others) {
+                let found = contrast(front, ground);
+                assert!(found >= least, "{front:?} on {ground:?}: {found:.2}");
             }
-            for colour in [palette.accent, palette.warn, palette.bad] {
-                for background in [panel, raised] {
-                    let found = contrast(colour, background);
-                    assert!(found >= LEAST, "{colour:?} on {background:?}: {found:.2}");
-                }
-            }
-            assert!(contrast(palette.on_accent, palette.accent) >= LEAST);
         }
     }
 }

@@ -8,7 +8,7 @@ use super::model::tone::Tone;
 use super::model::view::{Mode, ViewState};
 use super::theme;
 use super::tips;
-use super::widgets::{About, compact, explained, number, slider, under_name};
+use super::widgets::{About, FIELD, Number, above, compact};
 use crate::film::Histogram;
 use eframe::egui::{
     self, Align2, Color32, Pos2, Rect, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
@@ -100,8 +100,7 @@ fn exposure_ui(ui: &mut Ui, tone: &mut Tone) {
         "Shows the picture brighter or darker, in stops: each stop doubles the light (keys + and -, 0 for none). \
          It changes only what you see; files are saved without it",
     );
-    let ranges = (Tone::EXPOSURES, Tone::EXPOSURES);
-    slider(ui, about, &mut tone.exposure, ranges, "", |slider| slider.step_by(0.1));
+    Number::new(about, Tone::EXPOSURES).speed(0.02).slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
 }
 
 fn range_ui(ui: &mut Ui, tone: &mut Tone) {
@@ -109,21 +108,16 @@ fn range_ui(ui: &mut Ui, tone: &mut Tone) {
         "Range of luminances",
         "The luminances at the two ends of the colours, as powers of two: 0 is white, -1 half as much",
     );
-    under_name(ui, about, |ui| {
-        ui.horizontal(|ui| {
-            let before = tone.range;
-            let [low, high] = &mut tone.range;
-            let size = vec2(56.0, ui.spacing().interact_size.y);
-            let place = ("Darkest luminance, power of two", size);
-            let low = number(ui, place, low, Tone::RANGES, |drag| drag.speed(0.1).max_decimals(1));
-            ui.label("to");
-            let place = ("Brightest luminance, power of two", size);
-            let high = number(ui, place, high, Tone::RANGES, |drag| drag.speed(0.1).max_decimals(1));
-            ui.label("stops");
-            tone.mend_range(before);
-            explained(ui, low.union(high), about)
-        })
-        .inner
+    above(ui, about);
+    ui.horizontal(|ui| {
+        let before = tone.range;
+        let [low, high] = &mut tone.range;
+        let field = |name| Number::new(About { name, ..about }, Tone::RANGES).speed(0.1);
+        field("Darkest luminance, power of two").field(ui, FIELD, low);
+        ui.label("to");
+        field("Brightest luminance, power of two").field(ui, FIELD, high);
+        ui.label("stops");
+        tone.mend_range(before);
     });
 }
 

@@ -17,7 +17,6 @@ use super::spheres::Spheres;
 use super::theme;
 use super::tools::Tools;
 use super::tracing::Tracing;
-use super::widgets;
 use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
@@ -207,8 +206,7 @@ impl Window {
         }
         let room = self.display.viewport.room_pixels();
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
-        let is_typing = widgets::is_typing(context);
-        if self.changes.follow(context, &self.model.document, is_typing) {
+        if self.changes.follow(context, &self.model.document, false) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.look(None);
             if let Some(log) = &mut self.shell.frame_log {

@@ -1,0 +1,135 @@
+//! Tests of the left panel.
+
+use super::*;
+use crate::app::spheres::Spheres;
+use crate::app::tests::{dressed, facts_of};
+use eframe::egui::{self, Key, Role};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+
+struct Panel {
+    facts: Facts,
+    edits: Vec<Edit>,
+    commands: Vec<Command>,
+}
+
+/// The panel of a window of this command line, as wide as in the window.
+fn panel(words: &str) -> Harness<'static, Panel> {
+    let panel = Panel { facts: facts_of(words), edits: Vec::new(), commands: Vec::new() };
+    let draw = |ui: &mut Ui, Panel { facts, edits, commands }: &mut Panel| {
+        let (mut document, mut remembered) = (facts.model.document.clone(), facts.model.remembered.clone());
+        let selected = Spheres::default().selected(&facts.model);
+        egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 8)).show(ui, |ui| {
+            ui.set_min_width(200.0);
+            let chosen = (&mut document, selected.as_ref());
+            super::ui(ui, chosen, &mut remembered, facts, (edits, commands));
+        });
+        (facts.model.document, facts.model.remembered) = (document, remembered);
+    };
+    let mut harness = dressed([232.0, 720.0]).build_ui_state(draw, panel);
+    harness.run_steps(3);
+    harness
+}
+
+fn field<'h>(harness: &'h Harness<'_, Panel>, name: &'h str) -> Node<'h> {
+    let mut named = harness.get_all_by_label(name);
+    named.find(|node| [Role::SpinButton, Role::TextInput].contains(&node.accesskit_node().role())).unwrap()
+}
+
+/// Types a text into a field and presses Enter.
+fn set(harness: &mut Harness<'_, Panel>, name: &str, text: &str) {
+    field(harness, name).click();
+    harness.run_steps(3);
+    field(harness, name).type_text(text);
+    harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_typed_number_is_applied_once_and_one_out_of_range_not_at_all() {
+    let mut harness = panel("--stage book");
+    let vfov = |harness: &Harness<'_, Panel>| harness.state().facts.document().camera.vfov_degrees;
+    field(&harness, "Field of view").click();
+    harness.run_steps(3);
+    field(&harness, "Field of view").type_text("45");
+    harness.run_steps(3);
+    assert_eq!(vfov(&harness), 20.0, "nothing is applied while the user types");
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(vfov(&harness), 45.0);
+    for (text, reason) in [
+        ("200", "From 0.01 to 179 degrees"),
+        ("NaN", "From 0.01 to 179 degrees"),
+        ("4,5", "“4,5” is no number; decimals need a point"),
+    ] {
+        set(&mut harness, "Field of view", text);
+        assert_eq!(vfov(&harness), 45.0);
+        assert!(harness.query_by_label(reason).is_some(), "{text}");
+    }
+    // Escape takes back what was typed.
+    field(&harness, "Field of view").click();
+    harness.run_steps(3);
+    field(&harness, "Field of view").type_text("60");
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    assert_eq!(vfov(&harness), 45.0);
+}
+
+#[test]
+fn a_camera_that_cannot_be_is_refused_at_its_field() {
+    let mut harness = panel("--stage book");
+    harness.get_by_label("Position, folded").click();
+    harness.run_steps(20);
+    set(&mut harness, "Up, y", "0");
+    assert!(harness.query_by_label("Up must not point along the view").is_some());
+    assert_eq!(harness.state().facts.document().camera.vup, DVec3::Y);
+    set(&mut harness, "Up, z", "1");
+    set(&mut harness, "Up, y", "0");
+    assert_eq!(harness.state().facts.document().camera.vup, DVec3::Z);
+}
+
+#[test]
+fn a_group_can_be_reset_only_if_it_was_changed() {
+    let mut harness = panel("--stage book");
+    assert!(harness.query_by_label("Reset lens").is_none());
+    let original = harness.state().facts.document().camera;
+    set(&mut harness, "Focus distance", "7");
+    assert_eq!(harness.state().facts.document().camera.focus_distance, Some(7.0));
+    harness.get_by_label("Reset lens").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().facts.document().camera, original);
+    assert!(harness.query_by_label("Reset lens").is_none());
+}
+
+#[test]
+fn another_kind_of_material_keeps_the_colour() {
+    let mut harness = panel("--stage glass-schlick");
+    harness.state_mut().facts.model.selected = Some(1);
+    harness.run_steps(3);
+    harness.get_by_label("Metal").click();
+    harness.run_steps(2);
+    let edit = harness.state_mut().edits.pop();
+    let body = Body::of(harness.state().facts.document().scene(), 1).unwrap();
+    let material = Material::Metal { albedo: body.material.albedo().unwrap(), fuzz: 0.0 };
+    assert_eq!(edit, Some(Edit::Change(1, Body { material, ..body })));
+}
+
+#[test]
+fn one_limit_at_a_time_ends_the_render() {
+    let mut harness = panel("--stage book");
+    harness.get_by_label("Size and samples, folded").click();
+    harness.run_steps(20);
+    for (name, expected) in [
+        ("Samples", Stop::at_samples(500)),
+        ("Never", Stop::default()),
+        ("Time", Stop { seconds: Some(60.0), ..Stop::default() }),
+        ("Error", Stop { noise: Some(Stop::NOISE), ..Stop::default() }),
+    ] {
+        harness.get_by_role_and_label(Role::ComboBox, "Stop at").click();
+        harness.run_steps(3);
+        harness.get_all_by_label(name).last().unwrap().click();
+        harness.run_steps(3);
+        assert_eq!(harness.state().facts.document().stop, expected, "{name}");
+    }
+}

@@ -1,0 +1,695 @@
+//! Controls of the window: numbers, switches, lists, headers, signs and tooltips.
+
+use super::theme;
+use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
+use eframe::egui::{
+    self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Label, Layout, Painter, Pos2, Rect,
+    RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind, Tooltip,
+    Ui, UiBuilder, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+};
+use glam::DVec3;
+use std::cell::RefCell;
+use std::ops::RangeInclusive;
+
+/// Width of a field for a number, points.
+pub const FIELD: f32 = 64.0;
+
+/// Seconds for which a refused number is explained.
+const REFUSAL_SECONDS: f64 = 4.0;
+
+/// A control's name, its tooltip, and the reason if it is disabled.
+#[derive(Clone, Copy)]
+pub struct About<'a> {
+    pub name: &'a str,
+    pub help: &'a str,
+    pub disabled_reason: Option<&'a str>,
+}
+
+impl<'a> About<'a> {
+    pub fn new(name: &'a str, help: &'a str) -> Self {
+        About { name, help, disabled_reason: None }
+    }
+
+    pub fn disabled_if(self, reason: Option<&'a str>) -> Self {
+        About { disabled_reason: reason, ..self }
+    }
+}
+
+/// Gives a widget a name for assistive technology.
+pub fn named(response: &Response, name: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// Adds a tooltip, which ends with the reason if the control is disabled. In a column it stands beside that, so that it
+/// doesn't cover the next control.
+pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str>) -> Response {
+    let reason = disabled_reason.filter(|_| !response.enabled());
+    let text = [Some(help), reason].into_iter().flatten().filter(|part| !part.is_empty());
+    let text = text.collect::<Vec<_>>().join("\n\n");
+    let is_held = response.ctx.input(|input| input.pointer.any_down());
+    if !text.is_empty() && !is_held && Tooltip::should_show_tooltip(&response, true) {
+        show_tip(ui, &response, text);
+    }
+    response
+}
+
+fn show_tip(ui: &Ui, response: &Response, text: impl Into<WidgetText>) {
+    const BESIDE: &[RectAlign] =
+        &[RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
+    const BELOW: &[RectAlign] =
+        &[RectAlign::BOTTOM_START, RectAlign::BOTTOM_END, RectAlign::TOP_START, RectAlign::TOP_END];
+    let clip = ui.clip_rect();
+    let is_menu = ui.layout().horizontal_justify();
+    let is_panel = !is_menu && clip.height() > clip.width();
+    let around = match is_panel {
+        true => Rect::from_x_y_ranges(clip.x_range(), response.rect.y_range()),
+        false => response.rect,
+    };
+    let aligns = if is_panel || is_menu { BESIDE } else { BELOW };
+    let mut tooltip = Tooltip::for_widget(response);
+    tooltip.popup = tooltip.popup.anchor(around).align(aligns[0]).align_alternatives(aligns).gap(8.0);
+    tooltip.show(|ui| ui.label(text));
+}
+
+/// A label at the left and a control at the right edge.
+pub fn row<R>(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.add_enabled_ui(about.disabled_reason.is_none(), |ui| {
+        let sides = Sides::new().height(ui.spacing().interact_size.y).shrink_left().truncate();
+        let (label, added) = sides.show(ui, |ui| ui.label(about.name), add);
+        tip(ui, label, about.help, about.disabled_reason);
+        added
+    })
+    .inner
+}
+
+/// A small label above a control.
+pub fn above(ui: &mut Ui, about: About<'_>) {
+    ui.spacing_mut().item_spacing.y = 4.0;
+    let color = ui.visuals().weak_text_color();
+    let label = ui.add_enabled(
+        about.disabled_reason.is_none(),
+        Label::new(RichText::new(about.name).small().color(color)),
+    );
+    tip(ui, label, about.help, about.disabled_reason);
+}
+
+/// A weak sentence that wraps.
+pub fn hint(ui: &mut Ui, text: &str) -> Response {
+    let text = RichText::new(text).color(ui.visuals().weak_text_color()).line_height(Some(20.0));
+    ui.add(Label::new(text).wrap())
+}
+
+/// The button to press next. There is at most one in the window.
+pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
+    let colours = theme::colours(ui);
+    let towards = if ui.visuals().dark_mode { Color32::WHITE } else { Color32::BLACK };
+    ui.scope(|ui| {
+        let widgets = &mut ui.visuals_mut().widgets;
+        for (widget, share) in
+            [(&mut widgets.inactive, 0.0), (&mut widgets.hovered, 0.08), (&mut widgets.active, 0.16)]
+        {
+            widget.weak_bg_fill = colours.accent.lerp_to_gamma(towards, share);
+            widget.fg_stroke.color = colours.on_accent;
+        }
+        ui.add(Button::new(text.into()))
+    })
+    .inner
+}
+
+/// A button that is tinted while it is on.
+pub fn choice<'a>(ui: &Ui, is_on: bool, text: impl Into<WidgetText>) -> Button<'a> {
+    let stroke = if is_on { Stroke::new(1.0, theme::colours(ui).accent) } else { Stroke::NONE };
+    Button::new(text.into()).selected(is_on).stroke(stroke)
+}
+
+/// Buttons of which one is on, side by side, each at least `width` wide. Returns the one that was clicked.
+pub fn switch<T: PartialEq + Copy>(
+    ui: &mut Ui,
+    width: f32,
+    chosen: T,
+    options: &[(T, About<'_>)],
+) -> Option<T> {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        let mut clicked = None;
+        for (index, (value, about)) in options.iter().enumerate() {
+            let (left, right) = (u8::from(index == 0) * 4, u8::from(index + 1 == options.len()) * 4);
+            let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
+            let is_on = *value == chosen;
+            let button = choice(ui, is_on, about.name).corner_radius(corners).min_size(vec2(width, 0.0));
+            let response = ui.add_enabled(about.disabled_reason.is_none(), button);
+            let is_enabled = response.enabled();
+            response.widget_info(|| WidgetInfo::selected(Role::RadioButton, is_enabled, is_on, about.name));
+            if tip(ui, response, about.help, about.disabled_reason).clicked() {
+                clicked = Some(*value);
+            }
+        }
+        clicked
+    })
+    .inner
+}
+
+/// A list that opens under its name's row; `entries` are drawn with [`entry`].
+pub fn list(ui: &mut Ui, about: About<'_>, shown: &str, entries: impl FnOnce(&mut Ui)) -> Response {
+    row(ui, about, |ui| {
+        let combo = ComboBox::from_id_salt(about.name).width(ui.spacing().combo_width).truncate();
+        let response = combo.selected_text(shown).show_ui(ui, entries).response;
+        named(&response, about.name);
+        tip(ui, response, about.help, about.disabled_reason)
+    })
+}
+
+/// An entry of a [`list`]. Returns whether it was chosen, which closes the list.
+pub fn entry(ui: &mut Ui, is_on: bool, about: About<'_>) -> bool {
+    let response = ui.add_enabled(about.disabled_reason.is_none(), Button::selectable(is_on, about.name));
+    let is_chosen = tip(ui, response, about.help, about.disabled_reason).clicked();
+    if is_chosen {
+        ui.close();
+    }
+    is_chosen
+}
+
+/// A check box.
+pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
+    let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
+    tip(ui, response, about.help, about.disabled_reason)
+}
+
+/// A number to type or drag.
+pub struct Number<'a> {
+    about: About<'a>,
+    limits: RangeInclusive<f64>,
+    suffix: &'a str,
+    unit: &'a str,
+    speed: Option<f64>,
+    scale: Option<f64>,
+    is_whole: bool,
+    check: Option<&'a dyn Fn(f64) -> Option<String>>,
+}
+
+impl<'a> Number<'a> {
+    pub fn new(about: About<'a>, limits: RangeInclusive<f64>) -> Self {
+        Number { about, limits, suffix: "", unit: "", speed: None, scale: None, is_whole: false, check: None }
+    }
+
+    /// What stands after the number, and the unit in words.
+    pub fn unit(self, suffix: &'a str, unit: &'a str) -> Self {
+        Number { suffix, unit, ..self }
+    }
+
+    /// Change for each point that the pointer is dragged; else it depends on the number.
+    pub fn speed(self, speed: f64) -> Self {
+        Number { speed: Some(speed), ..self }
+    }
+
+    pub fn whole(self) -> Self {
+        Number { is_whole: true, ..self }
+    }
+
+    /// Says why a number within the limits can't be taken, if so.
+    pub fn refused_if(self, check: &'a dyn Fn(f64) -> Option<String>) -> Self {
+        Number { check: Some(check), ..self }
+    }
+
+    /// The field alone. A typed number is taken when the edit is complete. One that can't be taken changes nothing: the
+    /// field gets a red frame, and the reason stands beside it.
+    pub fn field(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
+        let (rect, _) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::hover());
+        let layout = Layout::centered_and_justified(egui::Direction::LeftToRight);
+        let mut within = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+        within.shrink_clip_rect(rect);
+        within.spacing_mut().button_padding.x = 4.0;
+        if self.about.disabled_reason.is_some() {
+            within.disable();
+        }
+        let (id, before) = (within.next_auto_id(), *value);
+        let layer = within.layer_id();
+        // Tab leaves a field only after it has asked for the focus.
+        let is_typing = within.memory_mut(|memory| {
+            if self.about.disabled_reason.is_none() {
+                memory.interested_in_focus(id, layer);
+            }
+            memory.has_focus(id)
+        });
+        let is_given_up = was_escape_pressed(ui);
+        let outcome = RefCell::new(None);
+        let parse = |text: &str| {
+            let parsed = if is_given_up { Ok(before) } else { self.parsed(text, before) };
+            let number = parsed.as_ref().ok().copied();
+            outcome.replace(Some(parsed));
+            number.filter(|number| !is_typing && *number != before)
+        };
+        let mut shown = before;
+        let speed = self.speed.unwrap_or(0.01 * before.abs().max(0.1));
+        let drag = DragValue::new(&mut shown)
+            .speed(if self.is_whole { speed.max(0.1) } else { speed })
+            .range(self.limits.clone())
+            .clamp_existing_to_range(false)
+            .custom_formatter(|n, _| self.text(n))
+            .custom_parser(parse)
+            .suffix(self.suffix)
+            .clip_text(true)
+            .min_size(rect.size());
+        let mut response = within.add(drag);
+        named(&response, self.about.name);
+        response.flags.set(Flags::CHANGED, false);
+        let mut outcome = outcome.into_inner();
+        if shown != before {
+            let checked = self.checked(shown);
+            if let Some(number) = checked.as_ref().ok().filter(|number| **number != before) {
+                *value = *number;
+                response.mark_changed();
+            }
+            outcome = Some(checked);
+        }
+        if let Some(outcome) = outcome {
+            refuse(ui, id, outcome.err());
+        }
+        explain_refusal(ui, &response, is_typing);
+        tip(ui, response, self.about.help, self.about.disabled_reason)
+    }
+
+    /// A label at the left and the field at the right.
+    pub fn row(&self, ui: &mut Ui, value: &mut f64) -> Response {
+        row(ui, self.about, |ui| self.field(ui, FIELD, value))
+    }
+
+    /// A row with a slider under it, which covers the usual values `track`.
+    pub fn slider(
+        &self,
+        ui: &mut Ui,
+        value: &mut f64,
+        track: RangeInclusive<f64>,
+        is_logarithmic: bool,
+    ) -> Response {
+        let response = ui
+            .scope(|ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let typed = self.row(ui, value);
+                let accent = theme::colours(ui).accent;
+                ui.visuals_mut().selection.bg_fill = accent;
+                ui.spacing_mut().interact_size.y = 20.0;
+                ui.spacing_mut().slider_width = ui.available_width();
+                let (least, most, before) = (*track.start(), *track.end(), *value);
+                let slider = Slider::new(value, track)
+                    .show_value(false)
+                    .clamping(SliderClamping::Edits)
+                    .logarithmic(is_logarithmic)
+                    .smallest_positive(most / 100.0);
+                let slid = ui.add_enabled(self.about.disabled_reason.is_none(), slider);
+                if *value != before {
+                    // Assistive technology knows no limits.
+                    *value = if value.is_nan() { before } else { value.clamp(least, most) };
+                }
+                named(&slid, self.about.name);
+                typed.union(tip(ui, slid, self.about.help, self.about.disabled_reason))
+            })
+            .inner;
+        ui.add_space(4.0 - ui.spacing().item_spacing.y);
+        response
+    }
+
+    fn text(&self, n: f64) -> String {
+        match self.scale {
+            _ if self.is_whole => with_minus(&format!("{n:.0}")),
+            Some(scale) => compact(rounded(n, scale, 5)),
+            None => compact(n),
+        }
+    }
+
+    /// The number of a text; `before` if the text is what is shown of that.
+    fn parsed(&self, text: &str, before: f64) -> Result<f64, String> {
+        let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+        if text == self.text(before) {
+            return Ok(before);
+        }
+        let number = text.replace('\u{2212}', "-");
+        match number.trim_end_matches(self.suffix.trim()).parse() {
+            Ok(number) => self.checked(number),
+            Err(_) if text.contains(',') => {
+                Err(format!("\u{201c}{text}\u{201d} is no number; decimals need a point"))
+            }
+            Err(_) => Err(format!("\u{201c}{text}\u{201d} is no number")),
+        }
+    }
+
+    /// The number as it is taken, or why it can't be.
+    fn checked(&self, number: f64) -> Result<f64, String> {
+        /// A limit below this only keeps out 0: nobody means the limit itself.
+        const TINY: f64 = 1e-8;
+        /// Nobody wants to read a limit above this.
+        const HUGE: f64 = 1e15;
+        let number = if self.is_whole { number.round() } else { number };
+        let (least, most) = (*self.limits.start(), *self.limits.end());
+        let is_above_zero = 0.0 < least && least < TINY;
+        if self.limits.contains(&number) && !(is_above_zero && number == least) {
+            return match self.check.and_then(|check| check(number)) {
+                Some(reason) => Err(reason),
+                None => Ok(number),
+            };
+        }
+        let [from, to] = [least, most].map(compact);
+        let words = match (is_above_zero, most < HUGE) {
+            (true, true) => format!("Above 0, up to {to} {}", self.unit),
+            (true, false) => format!("Above 0 {}", self.unit),
+            (false, false) if least > -HUGE => format!("At least {from} {}", self.unit),
+            _ => format!("From {from} to {to} {}", self.unit),
+        };
+        Err(words.trim_end().to_owned())
+    }
+}
+
+/// Whether Escape was pressed lately. egui applies the text of a field up to two frames after it lost the focus, even if
+/// Escape took that.
+fn was_escape_pressed(ui: &Ui) -> bool {
+    const FRAMES: u64 = 2;
+    let (place, now) = (Id::unique("escape pressed"), ui.ctx().cumulative_frame_nr());
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(place, now));
+    }
+    ui.data(|data| data.get_temp::<u64>(place)).is_some_and(|then| now <= then + FRAMES)
+}
+
+/// Notes why what was typed into `id` can't be taken, or that it can.
+fn refuse(ui: &Ui, id: Id, reason: Option<String>) {
+    let (place, until) = (id.with("refused"), ui.input(|input| input.time) + REFUSAL_SECONDS);
+    ui.data_mut(|data| match reason {
+        Some(reason) => _ = data.insert_temp(place, (reason, until)),
+        None => data.remove::<(String, f64)>(place),
+    });
+}
+
+/// Draws a red frame, and the reason beside it, around a field whose text was refused.
+fn explain_refusal(ui: &Ui, response: &Response, is_typing: bool) {
+    let refused: Option<(String, f64)> = ui.data(|data| data.get_temp(response.id.with("refused")));
+    let Some((reason, until)) = refused else { return };
+    let left = until - ui.input(|input| input.time);
+    if left <= 0.0 && !is_typing {
+        return refuse(ui, response.id, None);
+    }
+    let bad = theme::colours(ui).bad;
+    ui.painter().rect_stroke(response.rect, 4, Stroke::new(1.0, bad), StrokeKind::Inside);
+    show_tip(ui, response, RichText::new(reason).color(bad));
+    ui.ctx().request_repaint_after_secs(left.max(0.0) as f32);
+}
+
+/// Three coordinates under their name, each within `limits`. `check` says why a vector can't be taken, if so.
+pub fn vector(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut DVec3,
+    limits: RangeInclusive<f64>,
+    speed: f64,
+    check: &dyn Fn(DVec3) -> Option<String>,
+) {
+    ui.scope(|ui| {
+        above(ui, about);
+        ui.horizontal(|ui| {
+            let width = ((ui.available_width() - 16.0) / 3.0).floor();
+            let before = *value;
+            for (axis, component) in ["x", "y", "z"].into_iter().zip(0..3) {
+                let name = format!("{}, {axis}", about.name);
+                let about = About { name: &name, ..about };
+                let check = |number: f64| {
+                    let mut changed = before;
+                    changed[component] = number;
+                    check(changed)
+                };
+                let scale = Some(before.abs().max_element());
+                let number =
+                    Number { scale, ..Number::new(about, limits.clone()).speed(speed).refused_if(&check) };
+                number.field(ui, width, &mut value[component]);
+            }
+        });
+    });
+}
+
+/// A colour to pick or type. It is shown as the picture shows it in white light.
+pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
+    let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
+    let [r, g, b] = shown;
+    let help = format!("{} {}", about.help, point_words(*albedo));
+    let about = About { help: &help, ..about };
+    row(ui, about, |ui| {
+        ui.visuals_mut().text_edit_bg_color = Some(theme::colours(ui).raised);
+        let usual = format!("{r:02X}{g:02X}{b:02X}");
+        let place = ui.scope_id().with("colour");
+        let mut text = ui.data(|data| data.get_temp(place)).unwrap_or_else(|| usual.clone());
+        let edit =
+            egui::TextEdit::singleline(&mut text).desired_width(64.0).align(egui::Align2::CENTER_CENTER);
+        let response = ui.add(edit.min_size(vec2(80.0, 0.0)));
+        named(&response, about.name);
+        if response.has_focus() {
+            ui.data_mut(|data| data.insert_temp(place, text));
+        } else {
+            ui.data_mut(|data| data.remove::<String>(place));
+            if response.lost_focus() && text != usual && !was_escape_pressed(ui) {
+                let typed = colour_of(&text);
+                *albedo = typed.unwrap_or(*albedo);
+                let reason = "Six digits as in 5172B4, or red, green and blue as in 0.1, 0.2, 0.5";
+                refuse(ui, response.id, typed.is_none().then(|| reason.to_owned()));
+            }
+        }
+        explain_refusal(ui, &response, false);
+        tip(ui, response, about.help, about.disabled_reason);
+        ui.spacing_mut().interact_size.x = ui.spacing().interact_size.y;
+        let mut picked = shown;
+        let response = ui.color_edit_button_srgb(&mut picked);
+        named(&response, about.name);
+        tip(ui, response, about.help, about.disabled_reason);
+        for component in (0..3).filter(|component| picked[*component] != shown[*component]) {
+            albedo[component] = decoded(picked[component]);
+        }
+    });
+}
+
+/// The share of light that the picture shows as this byte.
+fn decoded(byte: u8) -> f64 {
+    let light = (f64::from(byte) / 255.0).powi(2);
+    (light * 1e4).round() / 1e4
+}
+
+/// The colour of a text: six hexadecimal digits, or three shares of light.
+fn colour_of(text: &str) -> Option<DVec3> {
+    let numbers = text.split([',', ' ']).filter(|part| !part.is_empty()).map(str::parse);
+    if let Ok(Ok(shares)) = numbers.collect::<Result<Vec<f64>, _>>().map(<[f64; 3]>::try_from) {
+        return shares.iter().all(|share| (0.0..=1.0).contains(share)).then(|| shares.into());
+    }
+    let digits = text.trim().trim_start_matches('#');
+    let is_colour = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let [_, bytes @ ..] = u32::from_str_radix(digits, 16).ok().filter(|_| is_colour)?.to_be_bytes();
+    Some(DVec3::from_array(bytes.map(decoded)))
+}
+
+/// Formats a number in few characters.
+pub fn compact(n: f64) -> String {
+    let magnitude = n.abs();
+    if magnitude == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = magnitude.log10().floor();
+    let trimmed = |text: &str| match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text.to_owned(),
+    };
+    if !(1e-6..1e7).contains(&magnitude) {
+        let text = format!("{n:.2e}");
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        return with_minus(&format!("{}e{power}", trimmed(mantissa)));
+    }
+    let decimals = if exponent < -2.0 { 2.0 - exponent } else { (4.0 - exponent).clamp(0.0, 4.0) };
+    with_minus(&trimmed(&format!("{n:.*}", decimals as usize)))
+}
+
+fn with_minus(text: &str) -> String {
+    text.replace('-', "\u{2212}")
+}
+
+/// A number with so many digits of `scale`, so that rounding noise beside a large number is 0.
+fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
+    let step = 10_f64.powi(scale.abs().log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
+    let rounded = (n / step).round() * step;
+    if rounded.is_finite() { rounded } else { n }
+}
+
+/// A point in few characters, as in `13, 2, 3`.
+pub fn point_words(point: DVec3) -> String {
+    let scale = point.abs().max_element();
+    point.to_array().map(|n| compact(rounded(n, scale, 3))).join(", ")
+}
+
+/// The parts of a group's header.
+#[derive(Clone, Copy, Default)]
+pub struct Header<'a> {
+    pub title: &'a str,
+    /// The group's values, shown while it is folded.
+    pub summary: &'a str,
+    /// The name of the button that resets the group, if something in it was changed.
+    pub reset: Option<&'a str>,
+    /// It belongs to the group above.
+    pub is_minor: bool,
+}
+
+/// A group of controls that is always open. Returns whether the button that resets it was clicked.
+pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> bool {
+    ui.scope(|ui| {
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
+        let is_reset = header_row(ui, rect, header, true);
+        ui.spacing_mut().item_spacing.y = spacing;
+        ui.scope(body);
+        is_reset
+    })
+    .inner
+}
+
+/// A group of controls that folds when its header is clicked. Returns whether the button that resets it was clicked.
+pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&mut Ui)) -> bool {
+    ui.scope(|ui| {
+        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        let id = ui.make_persistent_id(header.title);
+        let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::click());
+        let words = if state.is_open() { "open" } else { "folded" };
+        let name = format!("{}, {words}", header.title);
+        response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &name));
+        if response.clicked() {
+            state.toggle(ui);
+        }
+        let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));
+        paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
+        let is_reset = header_row(ui, rect.with_min_x(rect.left() + 16.0), header, state.is_open());
+        ui.spacing_mut().item_spacing.y = spacing;
+        state.show_body_unindented(ui, |ui| {
+            body(ui);
+            ui.add_space(8.0 - spacing);
+        });
+        is_reset
+    })
+    .inner
+}
+
+fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> bool {
+    let mut is_reset = false;
+    let mut row = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
+    Sides::new().height(rect.height()).shrink_left().truncate().show(
+        &mut row,
+        |ui| {
+            let title = RichText::new(header.title);
+            ui.label(if header.is_minor { title } else { title.strong() })
+        },
+        |ui| {
+            if let Some(name) = header.reset {
+                let response = sign_button(ui, Sign::Reset, 16.0, name);
+                is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
+            }
+            if !is_open && !header.summary.is_empty() {
+                let color = ui.visuals().weak_text_color();
+                ui.label(RichText::new(header.summary).small().color(color));
+            }
+        },
+    );
+    is_reset
+}
+
+/// A line over the whole width of a panel.
+pub fn panel_line(ui: &mut Ui) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 0.0), Sense::hover());
+    ui.painter().hline(
+        ui.clip_rect().x_range(),
+        rect.center().y,
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
+}
+
+/// A sign that is painted, because the font doesn't have it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    Reset,
+    Close,
+    Previous,
+    Next,
+    Alert,
+}
+
+/// A button without a frame that shows a sign. `name` is for assistive technology.
+pub fn sign_button(ui: &mut Ui, sign: Sign, size: f32, name: &str) -> Response {
+    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(size), Sense::click());
+    let enabled = ui.is_enabled();
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, name));
+    let colours = theme::colours(ui);
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4, colours.hovered);
+    }
+    let color = match sign {
+        Sign::Reset => colours.accent,
+        _ if response.hovered() => colours.strong,
+        _ => colours.text,
+    };
+    paint_sign(ui.painter(), rect, sign, color);
+    response
+}
+
+/// Paints a sign of 16 points into the middle of `rect`.
+pub fn paint_sign(painter: &Painter, rect: Rect, sign: Sign, color: Color32) {
+    let middle = rect.center();
+    let at = |x: f32, y: f32| middle + vec2(x, y);
+    let stroke = Stroke::new(1.5, color);
+    let lines = |points: Vec<Pos2>| painter.line(points, stroke);
+    match sign {
+        Sign::Reset => {
+            // Counterclockwise round the right side, from the lower left to the arrowhead at the upper left.
+            let arc = (0..=24).map(|step| {
+                let (sine, cosine) = (150.0 - 12.5 * step as f32).to_radians().sin_cos();
+                at(5.0 * cosine, 5.0 * sine)
+            });
+            lines(arc.collect());
+            lines(vec![at(-5.0, -6.0), at(-5.0, -2.5), at(-1.5, -2.5)]);
+        }
+        Sign::Close => {
+            lines(vec![at(-4.0, -4.0), at(4.0, 4.0)]);
+            lines(vec![at(-4.0, 4.0), at(4.0, -4.0)]);
+        }
+        Sign::Previous => _ = lines(vec![at(2.0, -4.0), at(-2.0, 0.0), at(2.0, 4.0)]),
+        Sign::Next => _ = lines(vec![at(-2.0, -4.0), at(2.0, 0.0), at(-2.0, 4.0)]),
+        Sign::Alert => {
+            painter.circle_filled(middle, 8.0, color);
+            let ground = painter.ctx().global_style().visuals.panel_fill;
+            painter.line_segment([at(0.0, -4.5), at(0.0, 1.0)], Stroke::new(1.5, ground));
+            painter.circle_filled(at(0.0, 4.0), 1.0, ground);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_free_of_noise() {
+        for (number, expected) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (-1.2, "−1.2"),
+            (-100.25, "−100.25"),
+            (0.1 + 0.2, "0.3"),
+            (-5e-4, "−0.0005"),
+            (100_000.0, "100000"),
+            (-2.5e-12, "−2.5e−12"),
+            (1e18, "1e18"),
+        ] {
+            assert_eq!(compact(number), expected);
+        }
+        assert_eq!(point_words(DVec3::new(12.974, 2.08e-17, -3.0)), "13, 0, −3");
+        assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
+    }
+
+    #[test]
+    fn a_colour_is_typed_as_the_picture_shows_it_or_as_shares_of_light() {
+        assert_eq!(colour_of("#FF8000"), Some(DVec3::new(1.0, 0.252, 0.0)));
+        assert_eq!(colour_of("0.1, 0.2, .5"), Some(DVec3::new(0.1, 0.2, 0.5)));
+        for wrong in ["", "red", "12345", "1 2", "0.1 0.2 1.5", "+12345"] {
+            assert_eq!(colour_of(wrong), None, "{wrong}");
+        }
+    }
+}
