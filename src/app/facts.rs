@@ -191,5 +191,3 @@ impl Facts {
     }
 }
 
-#[cfg(test)]
-mod tests;
