@@ -55,7 +55,7 @@ pub struct Settings {
     pub estimate_error: bool,
     /// Samples per pixel of the references that the report renders.
     pub reference_samples: u64,
-    /// The backend that renders the references, or the file used instead.
+    /// The backend that renders the references.
     pub reference: String,
 }
 

@@ -7,7 +7,7 @@
 mod case;
 pub mod families;
 mod judge;
-mod pages;
+mod pictures;
 mod report;
 mod suite;
 
@@ -25,7 +25,7 @@ use crate::cli::terminal;
 use crate::cli::{JsonTarget, StressOptions};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::{check_page, check_writable};
+use crate::system::files::{check_writable, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
@@ -40,7 +40,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     }
     if let Some(directory) = &options.out {
         make_directory(directory).map_err(Failure::Input)?;
-        check_page(&directory.join("index.html")).map_err(Failure::input)?;
+        check_writable(&directory.join("table.md")).map_err(Failure::input)?;
     }
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
@@ -112,14 +112,14 @@ fn suite(
         progress.finished(1.0);
         report.cases.push(found);
         if let Some(directory) = &options.out {
-            pages::write_pictures(directory, case, &mut painter, interrupt)?;
+            pictures::write(directory, case, &mut painter, interrupt)?;
         }
     }
     progress.clear();
     report.seconds = begin.elapsed().as_secs_f64();
     printed = printed.and(terminal::print_beside(json.as_ref(), &report.summary()));
     if let Some(directory) = &options.out {
-        pages::write_pages(directory, &report)?;
+        write_text(&directory.join("table.md"), &report.markdown())?;
     }
     if let Some(target) = &json {
         write_json(target, &machine, &report)?;
