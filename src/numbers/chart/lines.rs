@@ -1,6 +1,6 @@
 //! Lines over two axes.
 
-use super::axis::Ruler;
+use super::axis::{Ruler, position};
 use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
 use super::{LineChart, Look, Series};
 use plotters::coord::Shift;
@@ -27,7 +27,7 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, units.px(17.0), &INK));
     }
-    let mut context = builder.build_cartesian_2d(x.clone(), y.clone())?;
+    let mut context = builder.build_cartesian_2d(x, y)?;
     context
         .configure_mesh()
         .bold_line_style(GRID.stroke_width(units.size(1.0)))
@@ -46,8 +46,8 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
             .points
             .iter()
             .filter_map(|point| {
-                let at = (x.position(point.x)?, y.position(point.y)?);
-                let ends = |[low, high]: [f64; 2]| Some([y.position(low)?, y.position(high)?]);
+                let at = (position(point.x)?, position(point.y)?);
+                let ends = |[low, high]: [f64; 2]| Some([position(low)?, position(high)?]);
                 Some(Placed { at, spread: point.spread.and_then(ends) })
             })
             .collect();
@@ -117,10 +117,10 @@ fn legend<'a, B: DrawingBackend + 'a>(
     chart: &LineChart,
     units: Units,
 ) -> Drawn<B> {
-    let Some(position) = chart.legend.clone() else { return Ok(()) };
+    let Some(corner) = chart.legend.clone() else { return Ok(()) };
     context
         .configure_series_labels()
-        .position(position)
+        .position(corner)
         .margin(units.px(12.0))
         .legend_area_size(units.px(34.0))
         .label_font((FONT, units.px(14.0), &INK))
