@@ -43,6 +43,7 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &BarChart, u
         .bold_line_style(GRID.stroke_width(units.size(1.0)))
         .light_line_style(TRANSPARENT)
         .axis_style(FAINT_INK.stroke_width(units.size(1.0)))
+        .set_all_tick_mark_size(units.px(4.0))
         .label_style((FONT, units.px(14.0), &FAINT_INK))
         .axis_desc_style((FONT, units.px(14.0), &FAINT_INK))
         .x_label_formatter(&|x| label(*x))
