@@ -104,8 +104,8 @@ impl Finding {
             title = "Something differs, and none of the known mistakes explains it".to_owned();
             explanation = "It may be a picture of another section";
             remedy = Some(
-                "name the section of your picture (--stage), and look where it differs (--out DIR); the final picture \
-                 of section 14.1 cannot be checked: its small spheres are at random places",
+                "choose the section that your picture belongs to, and look where it differs; the final picture of section \
+                 14.1 cannot be checked: its small spheres are at random places",
             );
             section = Section::find(self.stage.section);
         } else if !damages.is_empty() {

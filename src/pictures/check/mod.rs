@@ -77,6 +77,9 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
     text.push(("", answer.explanation));
     text.extend(answer.evidence.into_iter().map(|line| ("seen", line)));
     text.extend(answer.remedy.map(|remedy| ("change", remedy)));
+    if answer.kind == AnswerKind::Unknown {
+        text.push(("note", "--stage names the section, and --out DIR shows where the two differ".to_owned()));
+    }
     text.extend(answer.section.map(|section| ("read", format!("{}, {}", section.number, section.url))));
     for damage in answer.damages {
         text.extend([("file", damage.title), ("change", damage.remedy.to_owned())]);
