@@ -39,9 +39,6 @@ struct BackendFlags {
     /// Lose the GPU after this many dispatches, to see that the CPU continues (fault injection)
     #[arg(long, value_name = "DISPATCHES", group = "fault")]
     simulate_device_lost: Option<u64>,
-    /// Use up the GPU's memory after this many dispatches (fault injection)
-    #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
-    simulate_out_of_memory: Option<u64>,
     /// Make an invalid call after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
     simulate_invalid_call: Option<u64>,
@@ -64,7 +61,6 @@ impl BackendFlags {
             CpuOptions { isa, lanes, threads, panics_after: self.simulate_panic, ..CpuOptions::default() };
         let injections = [
             (self.simulate_device_lost, Fault::Lost),
-            (self.simulate_out_of_memory, Fault::OutOfMemory),
             (self.simulate_invalid_call, Fault::Invalid),
             (self.simulate_hang, Fault::Hang),
         ];

@@ -79,21 +79,12 @@ pub struct ReportOptions {
     #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
           help_heading = "How it is measured")]
     target: Option<f64>,
-    /// Measure relative to this film: of the only scene, at this size and with two halves
-    #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
-    reference: Option<PathBuf>,
-    /// Otherwise, the backend that renders the references, named as for --backends
-    #[arg(
-        long,
-        value_name = "BACKEND",
-        default_value = "reference",
-        conflicts_with = "reference",
-        help_heading = "How it is measured"
-    )]
+    /// The backend that renders the references, named as for --backends
+    #[arg(long, value_name = "BACKEND", default_value = "reference", help_heading = "How it is measured")]
     reference_backend: String,
     /// Samples per pixel of the references [default: 4 times --max-samples, with --calibration 16 times]
     #[arg(long, value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
-          allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
+          allow_hyphen_values = true, help_heading = "How it is measured")]
     reference_samples: Option<u64>,
 
     /// Show progress on standard error; auto: if it is a terminal
@@ -104,13 +95,13 @@ pub struct ReportOptions {
     pub command: String,
 }
 
-/// The reference for errors.
+/// How to render the pictures that errors are measured against.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ReferenceChoice {
-    /// An existing film.
-    File(PathBuf),
-    /// A reference that is rendered by the backend of this name.
-    Make { name: String, choice: BackendChoice, samples: u64 },
+pub struct ReferenceChoice {
+    /// Name of the backend.
+    pub name: String,
+    pub choice: BackendChoice,
+    pub samples: u64,
 }
 
 /// Defaults for the flags of a report.
@@ -230,14 +221,12 @@ impl ReportOptions {
     }
 
     fn check_paths(&self, scenes: &[Recipe]) -> Result<(), CliError> {
-        let made: &[Recipe] = if self.reference.is_some() { &[] } else { scenes };
-        let names = REPORT_FILES.iter().map(|name| (*name).to_owned()).chain(made.iter().map(reference_name));
+        let names =
+            REPORT_FILES.iter().map(|name| (*name).to_owned()).chain(scenes.iter().map(reference_name));
         let files = self.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
         let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
         names
-            .fold(paths.read("--reference", self.reference.as_deref()), |paths, name| {
-                paths.write("a file of --out,", Some(&self.out.join(name)))
-            })
+            .fold(paths, |paths, name| paths.write("a file of --out,", Some(&self.out.join(name))))
             .check(&[])
     }
 
@@ -275,27 +264,15 @@ impl ReportOptions {
         self.target.into_iter().chain(usual).collect()
     }
 
-    /// The reference for errors.
+    /// The references for errors.
     ///
     /// # Errors
-    /// If there is no such backend, or one film is given for several scenes.
+    /// If there is no such backend.
     pub fn reference(&self) -> Result<ReferenceChoice, CliError> {
-        let Some(path) = &self.reference else {
-            let (name, factor) = (self.reference_backend.clone(), self.defaults().reference_factor);
-            let choice = self.backend_among(&name, &[])?;
-            let samples = (factor * self.max_samples()).min(SAMPLE_LIMIT);
-            return Ok(ReferenceChoice::Make {
-                name,
-                choice,
-                samples: self.reference_samples.unwrap_or(samples),
-            });
-        };
-        let count = if self.scenes.is_empty() { self.defaults().scenes.len() } else { self.scenes.len() };
-        if count > 1 {
-            let reason = "a film is the reference for only one scene; name that scene with --scenes";
-            return Err(CliError::Together { flag: "--reference", other: "several --scenes", reason });
-        }
-        Ok(ReferenceChoice::File(path.clone()))
+        let name = self.reference_backend.clone();
+        let choice = self.backend_among(&name, &[])?;
+        let samples = (self.defaults().reference_factor * self.max_samples()).min(SAMPLE_LIMIT);
+        Ok(ReferenceChoice { name, choice, samples: self.reference_samples.unwrap_or(samples) })
     }
 }
 
@@ -337,7 +314,7 @@ mod tests {
             ("--max-samples 64 --reference-samples 100", 100),
         ] {
             let found = parsed(&format!("--backends portable {words}")).unwrap().reference().unwrap();
-            assert!(matches!(found, ReferenceChoice::Make { samples, .. } if samples == expected), "{words}");
+            assert_eq!(found.samples, expected, "{words}");
         }
     }
 }

@@ -28,7 +28,7 @@ pub struct StressOptions {
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     json: Option<PathBuf>,
-    /// Write pictures, the table as Markdown and an HTML page to this directory
+    /// Write pictures and the table as Markdown to this directory
     #[arg(long, value_name = "DIRECTORY", help_heading = "Files")]
     pub out: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
@@ -40,9 +40,9 @@ impl StressOptions {
     /// Returns an error if the files conflict.
     pub(super) fn check(self) -> Result<Self, CliError> {
         self.levels()?;
-        let pages = self.out.iter().flat_map(|out| ["table.md", "index.html"].map(|name| out.join(name)));
-        pages
-            .fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)))
+        let table = self.out.as_ref().map(|out| out.join("table.md"));
+        Paths::default()
+            .write("a file of --out,", table.as_deref())
             .write_json(self.json().as_ref())
             .check(&[])?;
         Ok(self)

@@ -163,10 +163,3 @@ fn diff_takes_sides_and_place_from_flags() {
         assert!(error.contains(part), "{error}");
     }
 }
-
-#[test]
-fn a_report_has_the_reference_that_is_given() {
-    let line = "report --out no-such --backends portable --scenes metals --reference no-such.exr";
-    let Ok(Request::Report(options)) = request(line) else { panic!("no report") };
-    assert_eq!(options.reference().unwrap(), ReferenceChoice::File(PathBuf::from("no-such.exr")));
-}

@@ -15,9 +15,9 @@ use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
 use crate::job::render::RenderJob;
 use crate::numbers::chart;
+use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Kind, Row, Run, SceneFigures, Spread};
 use std::process::ExitCode;
@@ -41,12 +41,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::input)?;
     let levels = options.levels().map_err(Failure::input)?;
     let json = options.json();
-    if let Some(JsonTarget::File(path)) = &json {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    if let Some(path) = &options.plot {
-        check_writable(path).map_err(Failure::input)?;
-    }
+    check_outputs(json.as_ref(), options.plot.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);

@@ -78,11 +78,6 @@ impl<'a> Report<'a> {
     fn open(options: &'a ReportOptions) -> Result<Self> {
         let (scenes, reference) = (options.scenes()?, options.reference()?);
         let candidates = candidates(options)?;
-        if let ReferenceChoice::File(path) = &reference {
-            for recipe in &scenes {
-                reference::read(path, recipe, &options.samplers, options.seeds())?;
-            }
-        }
         let out = &options.out;
         make_directory(out)?;
         check_writable(&out.join("report.json"))?;
@@ -115,21 +110,15 @@ impl<'a> Report<'a> {
 
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
         let (interrupt, progress) = (&self.interrupt, &mut self.progress);
-        let reference = match &self.reference {
-            ReferenceChoice::File(path) => {
-                reference::read(path, recipe, &self.options.samplers, self.options.seeds())?
-            }
-            ReferenceChoice::Make { choice, samples, .. } => {
-                let path = self.options.reference_path(recipe);
-                let what = format!("reference of {}", recipe.name);
-                let mut renderer = backends::create(choice).map_err(anyhow::Error::from)?;
-                let made = reference::make(renderer.as_mut(), &path, recipe, *samples, |share| {
-                    progress.at(&what, share * EXPECTED_SECONDS);
-                    !interrupt.is_set()
-                });
-                made?.ok_or(Stop::Cancelled)?
-            }
-        };
+        let ReferenceChoice { choice, samples, .. } = &self.reference;
+        let path = self.options.reference_path(recipe);
+        let what = format!("reference of {}", recipe.name);
+        let mut renderer = backends::create(choice).map_err(anyhow::Error::from)?;
+        let made = reference::make(renderer.as_mut(), &path, recipe, *samples, |share| {
+            progress.at(&what, share * EXPECTED_SECONDS);
+            !interrupt.is_set()
+        });
+        let reference = made?.ok_or(Stop::Cancelled)?;
         self.progress.finished(EXPECTED_SECONDS);
         Ok(reference)
     }
@@ -227,10 +216,6 @@ fn samplers(candidate: &Candidate, options: &ReportOptions) -> Vec<SamplerKind> 
 }
 
 fn settings(options: &ReportOptions, reference: &ReferenceChoice) -> Settings {
-    let (reference, reference_samples) = match reference {
-        ReferenceChoice::File(path) => (path.display().to_string(), 0),
-        ReferenceChoice::Make { name, samples, .. } => (name.clone(), *samples),
-    };
     Settings {
         software: SOFTWARE.to_owned(),
         size: options.size(),
@@ -238,8 +223,8 @@ fn settings(options: &ReportOptions, reference: &ReferenceChoice) -> Settings {
         time_limit: options.time_limit(),
         max_samples: options.max_samples(),
         estimate_error: options.estimates_error(),
-        reference_samples,
-        reference,
+        reference_samples: reference.samples,
+        reference: reference.name.clone(),
     }
 }
 
