@@ -4,8 +4,8 @@
 use super::progress::LINE_INTERVAL;
 use super::studio::{Event, Studio};
 use super::summary::Envelope;
-use super::{create_directory, ended, json_file};
-use crate::cli::FramesOptions;
+use super::{create_directory, ended};
+use crate::cli::{FramesOptions, JsonTarget};
 use crate::cli::terminal::{Display, print_beside, write_json};
 use crate::film::{Film, key};
 use crate::job::output::{write_animation, write_image};
@@ -31,9 +31,10 @@ use std::time::{Duration, Instant};
 /// [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     create_directory(&options.names.directory)?;
-    let animation = options.animation.as_ref().map(|(path, _)| path);
+    let animation = options.animation.as_ref().map(|(path, _)| path.as_path());
     let first = options.names.path(options.frames.start);
-    for path in [Some(&first), animation, json_file(options.json.as_ref())].into_iter().flatten() {
+    let json = options.json.as_ref().and_then(JsonTarget::file);
+    for path in [Some(first.as_path()), animation, json].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
     options.job.check_memory(1).map_err(Failure::input)?;
@@ -68,7 +69,6 @@ impl<'a> Run<'a> {
         let template = "{prefix} [{bar:24}] {wide_msg}";
         let count = options.frames.len() as u64;
         let display = Display::new(options.progress, count, template, &options.recipe.name, LINE_INTERVAL);
-        options.notes.iter().for_each(|note| display.say(&format!("warning: {note}")));
         Run {
             options,
             interrupt,
@@ -78,7 +78,7 @@ impl<'a> Run<'a> {
             kept: 0,
             rendering: Duration::ZERO,
             animation: None,
-            warnings: options.notes.clone(),
+            warnings: Vec::new(),
         }
     }
 

@@ -33,8 +33,7 @@ impl<'a> Picture<'a> {
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them.
     pub fn lock(render: &'a RenderOptions) -> Result<Self, Failure> {
-        let (places, warnings) = (files::lock(render)?, render.notes.clone());
-        Ok(Picture { render, resumed: None, places, warnings })
+        Ok(Picture { render, resumed: None, places: files::lock(render)?, warnings: Vec::new() })
     }
 
     /// Checks the files that the render would replace.

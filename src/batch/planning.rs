@@ -20,7 +20,6 @@ use std::process::ExitCode;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
-    options.notes.iter().for_each(|note| console::note(&format!("warning: {note}")));
     create_directory(&options.directory)?;
     let manifest = Manifest {
         command: options.command.clone(),

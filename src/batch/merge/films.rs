@@ -1,8 +1,8 @@
 //! Merges films without a plan.
 
-use super::{print_findings, warn_of_loss, write, wrote};
+use super::{check_outputs, print_findings, warn_of_loss, write, wrote};
 use crate::cli::terminal::print;
-use crate::cli::{MergeOptions, Paths};
+use crate::cli::MergeOptions;
 use crate::film::{FilmHead, FilmSum, MergeError, SampleRanges, checkpoint, merge_files};
 use crate::job::recipe::file;
 use crate::job::saved::same_job;
@@ -22,9 +22,7 @@ pub(super) fn run(films: &[PathBuf], options: &MergeOptions) -> Result<ExitCode,
     if let Some(film) = films.iter().find(is_again) {
         return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
     }
-    let paths = films.iter().fold(Paths::default(), |paths, film| paths.read("the merge", Some(film)));
-    let paths = options.out.iter().fold(paths, |paths, out| paths.write("--out", Some(out)));
-    paths.check(&[]).map_err(Failure::input)?;
+    check_outputs("the merge", films, options)?;
     if options.check { check(films, &options.program) } else { merge(films, &options.out) }
 }
 

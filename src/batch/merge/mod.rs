@@ -5,7 +5,7 @@ mod films;
 mod pieces;
 mod plan;
 
-use crate::cli::MergeOptions;
+use crate::cli::{MergeOptions, NamedPath, check_paths};
 use crate::film::{Description, Film, SampleRanges};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::plan::Plan;
@@ -41,6 +41,14 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
         ),
         films => films::run(films, options),
     }
+}
+
+/// Refuses to replace an input, which is `what`, by a result.
+fn check_outputs(what: &'static str, inputs: &[PathBuf], options: &MergeOptions) -> Result<(), Failure> {
+    fn named<'a>(what: &'static str, paths: &'a [PathBuf]) -> Vec<NamedPath<'a>> {
+        paths.iter().map(|path| (what, Some(path.as_path()))).collect()
+    }
+    check_paths(&named(what, inputs), &named("--out", &options.out)).map_err(Failure::Input)
 }
 
 /// Warns of samples that are lost because `film` replaces a film that has others.

@@ -35,7 +35,7 @@ use std::time::Instant;
 /// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
 /// otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
-    if let Some(JsonTarget::File(path)) = &options.json() {
+    if let Some(JsonTarget::File(path)) = &options.json {
         check_writable(path).map_err(Failure::input)?;
     }
     if let Some(directory) = &options.out {
@@ -49,7 +49,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
-    let levels = options.levels().map_err(Failure::input)?;
+    let levels = options.levels().map_err(Failure::Input)?;
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let painter = Candidate::backend("pictures", cpu(levels[0]));
@@ -97,7 +97,7 @@ fn suite(
         interrupted: false,
         cases: Vec::new(),
     };
-    let json = options.json();
+    let json = &options.json;
     // Write pictures and figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_ref(), &report::head());
     for case in chosen {
