@@ -1,12 +1,12 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
 //! the same command continues an interrupted run.
 
-use super::progress::LINE_INTERVAL;
+use super::progress::display;
 use super::studio::{Event, Studio};
 use super::summary::Envelope;
 use super::{create_directory, ended};
-use crate::cli::{FramesOptions, JsonTarget};
 use crate::cli::terminal::{Display, print_beside, write_json};
+use crate::cli::{FramesOptions, JsonTarget};
 use crate::film::{Film, key};
 use crate::job::output::{write_animation, write_image};
 use crate::job::recipe::Recipe;
@@ -66,13 +66,10 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
-        let template = "{prefix} [{bar:24}] {wide_msg}";
-        let count = options.frames.len() as u64;
-        let display = Display::new(options.progress, count, template, &options.recipe.name, LINE_INTERVAL);
         Run {
             options,
             interrupt,
-            display,
+            display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
             begin: Instant::now(),
             rendered: 0,
             kept: 0,
@@ -128,7 +125,7 @@ impl<'a> Run<'a> {
         let (status, film) = studio.render(job, plan, None, |event| match event {
             Event::Warning(warning) if self.warnings.iter().any(|known| known == warning) => {}
             Event::Warning(warning) => {
-                self.display.say(&format!("warning: {warning}"));
+                self.display.warn(warning);
                 self.warnings.push(warning.to_owned());
             }
             Event::Stopping => {

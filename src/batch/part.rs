@@ -5,7 +5,9 @@ use super::picture::Picture;
 use super::summary::Summary;
 use super::{check_before, frames, render_all, write_figures};
 use crate::cli::terminal::print_beside;
-use crate::cli::{BatchOptions, FramesOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths};
+use crate::cli::{
+    BatchOptions, FramesOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths,
+};
 use crate::film::CheckpointError;
 use crate::job::output::PpmForm;
 use crate::job::plan::{Frames, Part, Plan, Samples, Work};

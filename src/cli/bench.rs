@@ -1,8 +1,8 @@
 //! The flags of `weekender bench`.
 
 use super::raw::ProgressChoice;
-use super::{NamedPath, check_paths, sources};
 use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size, whole};
+use super::{NamedPath, check_paths, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::numbers::chart::ChartFormat;

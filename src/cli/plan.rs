@@ -103,7 +103,9 @@ impl PartOptions {
         match (self.part, of_environment()) {
             (Some(part), _) => Ok(part),
             (None, Some((name, value))) => value.parse().with_context(|| {
-                format!("{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER")
+                format!(
+                    "{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER"
+                )
             }),
             (None, None) => bail!(
                 "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part \

@@ -23,8 +23,14 @@ pub struct ReportOptions {
     #[arg(long)]
     calibration: bool,
     /// Built-in scenes, field:N or scene files, separated by commas
-    #[arg(long, alias = "scene", value_name = "A,B,...", value_delimiter = ',', default_value = "three-spheres,book",
-          default_value_if("calibration", "true", "three-spheres,book,close-up,near-glass"))]
+    #[arg(
+        long,
+        alias = "scene",
+        value_name = "A,B,...",
+        value_delimiter = ',',
+        default_value = "three-spheres,book",
+        default_value_if("calibration", "true", "three-spheres,book,close-up,near-glass")
+    )]
     scenes: Vec<String>,
     /// Backends: cpu (the widest packets), scalar (one lane), portable, reference (f64), gpu,
     /// c89 (the plain C program) [default: cpu,scalar, gpu if there is one, c89 if there is a C compiler]
@@ -121,8 +127,7 @@ impl ReportOptions {
             return self.backends.clone();
         }
         let has_gpu = BackendChoice::gpu_if_present(self.adapter.as_deref()).is_some();
-        let usual =
-            if self.calibration { &["cpu", "gpu"][..] } else { &["cpu", "scalar", "gpu", BASELINE] };
+        let usual = if self.calibration { &["cpu", "gpu"][..] } else { &["cpu", "scalar", "gpu", BASELINE] };
         usual.iter().filter(|name| has_gpu || **name != "gpu").map(|name| (*name).to_owned()).collect()
     }
 

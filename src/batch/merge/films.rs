@@ -1,8 +1,8 @@
 //! Merges films without a plan.
 
 use super::{check_outputs, print_findings, warn_of_loss, write, wrote};
-use crate::cli::terminal::print;
 use crate::cli::MergeOptions;
+use crate::cli::terminal::print;
 use crate::film::{FilmHead, FilmSum, MergeError, SampleRanges, checkpoint, merge_files};
 use crate::job::recipe::file;
 use crate::job::saved::same_job;

@@ -2,8 +2,8 @@
 
 use super::pieces::{Piece, Pieces, State};
 use super::{check_outputs, print_findings, warn_of_loss, write, wrote};
-use crate::cli::terminal::print;
 use crate::cli::MergeOptions;
+use crate::cli::terminal::print;
 use crate::film::{Film, FilmSum, MergeError, key};
 use crate::job::output::{OutputFormat, write_animation};
 use crate::job::plan::{Frames, Plan, Work};
