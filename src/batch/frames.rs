@@ -213,11 +213,10 @@ impl<'a> Run<'a> {
         let FramesOptions { recipe, frames, names, .. } = self.options;
         let (name, settings) = (printable(&recipe.name), &recipe.settings);
         let samples = counted(recipe.samples_per_pixel, "sample");
-        let each = self.rendering.as_secs_f64() / f64::from(self.rendered.max(1));
-        let each = if self.rendered == 0 {
-            String::new()
-        } else {
-            format!(" ({each:.3} s for each frame rendered)")
+        let each = self.rendering.as_secs_f64() / f64::from(self.rendered);
+        let each = match self.rendered {
+            0 => String::new(),
+            _ => format!(" ({each:.3} s for each frame rendered)"),
         };
         let files = match self.files() {
             Some([first, last]) if self.done() == frames.len() as u32 => {

@@ -1,11 +1,9 @@
 //! The flags of a picture, which rendering, planning and comparing share, and the values that several commands take.
 
 use super::values::{finite_number, parse_size, parse_vector, whole};
-use crate::job::output::PpmForm;
 use crate::job::recipe::Recipe;
 use crate::job::render::{DEPTH_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
-use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, ValueHint};
 use glam::DVec3;
 
@@ -76,26 +74,6 @@ pub enum DrawWith {
     Wgpu,
     /// OpenGL
     Gl,
-}
-
-impl ValueEnum for SamplerKind {
-    fn value_variants<'a>() -> &'a [Self] {
-        &SamplerKind::ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()))
-    }
-}
-
-impl ValueEnum for PpmForm {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[PpmForm::Binary, PpmForm::Ascii]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(if *self == PpmForm::Binary { "binary" } else { "ascii" }))
-    }
 }
 
 /// Whether progress is shown on standard error.

@@ -1,7 +1,7 @@
 //! Merges the existing parts of a plan, or parts as they come.
 
 use super::pieces::{Piece, Pieces, State};
-use super::{check_outputs, print_findings, warn_of_loss, write, wrote};
+use super::{check_outputs, warn_of_loss, write, wrote};
 use crate::cli::MergeOptions;
 use crate::cli::terminal::print;
 use crate::film::{Film, FilmSum, MergeError, key};
@@ -98,7 +98,8 @@ impl Merging<'_> {
         if !is_complete {
             lines.push(pieces.remedy(&self.options.program));
         }
-        print_findings(&lines, is_complete)
+        print(&(lines.join("\n") + "\n")).map_err(Failure::Run)?;
+        Ok(if is_complete { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
     }
 
     /// Merges parts as they come, until all are complete or a signal arrives.
