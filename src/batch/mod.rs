@@ -31,7 +31,7 @@ use crate::system::files::{ShownPath, check_replaceable, check_writable, write_t
 use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use picture::Picture;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use summary::Envelope;
 
@@ -122,15 +122,12 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     }
     let pictures = options.renders.iter().flat_map(|render| [Some(&render.out), render.checkpoint.as_ref()]);
     let scene = options.save_scene.as_ref().map(|save| &save.path);
-    for path in pictures.chain([json_file(options.json.as_ref()), scene]).flatten() {
+    let json = options.json.as_ref().and_then(JsonTarget::file);
+    for path in pictures.chain([scene]).flatten().map(PathBuf::as_path).chain(json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
     options.renders.iter().try_for_each(|render| render.job.check_memory(1)).map_err(Failure::input)
-}
-
-fn json_file(target: Option<&JsonTarget>) -> Option<&std::path::PathBuf> {
-    if let Some(JsonTarget::File(path)) = target { Some(path) } else { None }
 }
 
 fn create_directory(directory: &Path) -> Result<(), Failure> {

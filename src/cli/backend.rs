@@ -1,6 +1,5 @@
 //! The flags that choose a backend. All commands that render have them, as a [`BackendChoice`] among their options.
 
-use super::error::CliError;
 use super::values::{Level, Simd, parse_isa, parse_simd, whole};
 use crate::backends::BackendChoice;
 use crate::render_cpu::CpuOptions;
@@ -54,7 +53,7 @@ struct BackendFlags {
 pub(super) const FLAGS: [&str; 5] = ["device", "adapter", "simd", "isa", "threads"];
 
 impl BackendFlags {
-    fn choice(self) -> Result<BackendChoice, CliError> {
+    fn choice(self) -> Result<BackendChoice, String> {
         let (Simd(lanes), Level(isa)) = (self.simd, self.isa);
         let threads = self.threads;
         let cpu =
@@ -75,9 +74,7 @@ impl BackendFlags {
         let device =
             self.device.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         let refuse = |flags: &str, limit: &str| {
-            Err(CliError::Refused(format!(
-                "{flags} cannot be used with --device {device}: {limit}; leave one of them out"
-            )))
+            Err(format!("{flags} cannot be used with --device {device}: {limit}; leave one of them out"))
         };
         match self.device {
             Device::Cpu | Device::Reference if for_gpu => {

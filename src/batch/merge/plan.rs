@@ -1,9 +1,9 @@
 //! Merges the existing parts of a plan, or parts as they come.
 
 use super::pieces::{Piece, Pieces, State};
-use super::{print_findings, warn_of_loss, write, wrote};
+use super::{check_outputs, warn_of_loss, write, wrote};
+use crate::cli::MergeOptions;
 use crate::cli::terminal::print;
-use crate::cli::{MergeOptions, Paths};
 use crate::film::{Film, FilmSum, MergeError, key};
 use crate::job::output::{OutputFormat, write_animation};
 use crate::job::plan::{Frames, Plan, Work};
@@ -25,10 +25,7 @@ const SIGNAL: Duration = Duration::from_millis(100);
 
 /// Merges, watches or checks the parts.
 pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
-    let own = plan.files();
-    let paths = own.iter().fold(Paths::default(), |paths, file| paths.read("a file of the plan", Some(file)));
-    let paths = options.out.iter().fold(paths, |paths, out| paths.write("--out", Some(out)));
-    paths.check(&[]).map_err(Failure::input)?;
+    check_outputs("a file of the plan", &plan.files(), options)?;
     let sum = match &plan.manifest.work {
         Work::Samples(_) => Some(empty_sum(plan).map_err(Failure::input)?),
         Work::Frames(_) => {
@@ -101,7 +98,8 @@ impl Merging<'_> {
         if !is_complete {
             lines.push(pieces.remedy(&self.options.program));
         }
-        print_findings(&lines, is_complete)
+        print(&(lines.join("\n") + "\n")).map_err(Failure::Run)?;
+        Ok(if is_complete { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
     }
 
     /// Merges parts as they come, until all are complete or a signal arrives.

@@ -38,9 +38,9 @@ const WARM_UP_SECONDS: f64 = 0.2;
 
 /// Measures, prints tables and writes files. [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
-    let scenes = options.scenes().map_err(Failure::input)?;
-    let levels = options.levels().map_err(Failure::input)?;
-    let json = options.json();
+    let scenes = options.scenes().map_err(Failure::Input)?;
+    let levels = options.levels().map_err(Failure::Input)?;
+    let json = &options.json;
     check_outputs(json.as_ref(), options.plot.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
@@ -105,7 +105,7 @@ impl Bench<'_> {
 
     fn scenes(&mut self, scenes: &[BenchScene]) {
         let mut candidates = self.candidates();
-        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs()));
+        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs));
         for BenchScene { name, job, samples, .. } in scenes {
             let rows = self.rows(name, job, *samples, &mut candidates);
             self.figures.scenes.push(SceneFigures::new(name, job, rows));
@@ -155,7 +155,7 @@ impl Bench<'_> {
     ) -> Vec<Row> {
         let mut rows: Vec<Row> =
             candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
-        'turns: for turn in 0..=self.options.runs() {
+        'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
                     self.progress.at(&format!("{scene}: {}", row.name), 0.0);

@@ -38,7 +38,7 @@ use std::time::Instant;
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     let table = options.out.as_ref().map(|directory| directory.join("table.md"));
     options.out.iter().try_for_each(|directory| make_directory(directory)).map_err(Failure::Input)?;
-    check_outputs(options.json().as_ref(), table.as_deref()).map_err(Failure::Input)?;
+    check_outputs(options.json.as_ref(), table.as_deref()).map_err(Failure::Input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
         let ids: Vec<&str> = families::families().map(|family| family.id).collect();
@@ -46,7 +46,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
-    let levels = options.levels().map_err(Failure::input)?;
+    let levels = options.levels().map_err(Failure::Input)?;
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let painter = Candidate::backend("pictures", cpu(levels[0]));
@@ -94,7 +94,7 @@ fn suite(
         interrupted: false,
         cases: Vec::new(),
     };
-    let json = options.json();
+    let json = &options.json;
     // Write pictures and figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_ref(), &report::head());
     for case in chosen {
