@@ -142,7 +142,7 @@ pub struct StressOptions {
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<JsonTarget>,
-    /// Write pictures, the table as Markdown and an HTML page to this directory
+    /// Write pictures and the table as Markdown to this directory
     #[arg(long, value_name = "DIRECTORY")]
     pub out: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
