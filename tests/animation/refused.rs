@@ -66,5 +66,5 @@ fn an_animation_is_not_a_film() {
     }
     with(&["--out", "d", "--stage", "all"], &["all"]);
     refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--batch"]);
-    refused(&["--batch", "--fps", "30"], &["--fps needs --frames"]);
+    refused(&["--batch", "--fps", "30"], &["--frames"]);
 }
