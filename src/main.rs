@@ -41,7 +41,7 @@ fn run() -> Result<ExitCode, Failure> {
         ))),
         Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
-        Request::SaveScene(options) => batch::save_scene(&options),
+        Request::SaveScene(recipe, path) => batch::save_scene(&recipe, &path),
         Request::Plan(options) => batch::plan(&options),
         Request::Part(options) => batch::render_part(*options),
         Request::Merge(options) => merge::run(&options),

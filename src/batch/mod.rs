@@ -20,8 +20,8 @@ pub use studio::{Event, Studio};
 
 use crate::backends;
 use crate::cli::terminal::{print, print_beside, write_json};
-use crate::cli::{BatchOptions, JsonTarget, SaveSceneOptions};
-use crate::job::recipe::file;
+use crate::cli::{BatchOptions, JsonTarget};
+use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
@@ -56,8 +56,8 @@ fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<Exit
     pictures.iter_mut().try_for_each(Picture::check)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
-    if let Some(save) = &options.save_scene {
-        write_text(&save.path, &file::to_toml(&save.recipe)).map_err(Failure::run)?;
+    if let (Some(path), [only]) = (&options.save_scene, options.renders.as_slice()) {
+        write_text(path, &file::to_toml(&only.recipe)).map_err(Failure::run)?;
     }
     let mut summaries = Vec::new();
     let (mut failure, mut printed) = (None, Ok(()));
@@ -109,9 +109,9 @@ fn ended(
 ///
 /// # Errors
 /// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
-pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
-    write_text(&options.path, &file::to_toml(&options.recipe)).map_err(Failure::input)?;
-    print(&format!("wrote {}\n", options.path.shown())).map_err(Failure::Run)?;
+pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
+    write_text(path, &file::to_toml(recipe)).map_err(Failure::input)?;
+    print(&format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -121,7 +121,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         create_directory(directory)?;
     }
     let pictures = options.renders.iter().flat_map(|render| [Some(&render.out), render.checkpoint.as_ref()]);
-    let scene = options.save_scene.as_ref().map(|save| &save.path);
+    let scene = options.save_scene.as_ref();
     let json = options.json.as_ref().and_then(JsonTarget::file);
     for path in pictures.chain([scene]).flatten().map(PathBuf::as_path).chain(json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };

@@ -61,8 +61,8 @@ impl AnimationFlags {
                 )
             }
             None if picture.camera != Default::default() => bail!(
-                "--look-from and other flags of the camera cannot be used with the keyframes of the scene file: they set \
-                 the camera; change them, or use --turntable"
+                "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
+                 they set the camera; change them, or use --turntable"
             ),
             None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
         };

@@ -112,7 +112,9 @@ fn sides(raw: &RawDiff) -> Result<[BackendChoice; 2]> {
             "{flag} needs the side {side} in --sides: it applies only to that side; otherwise leave it out"
         );
     }
-    let [a, b] = raw.sides.as_slice() else { bail!("--sides must be two backends, such as cpu,reference") };
+    let [a, b] = raw.sides.as_slice() else {
+        bail!("--sides must be two of {} separated by a comma", BackendChoice::NAMES.join(", "))
+    };
     let side = |name: &str| match name {
         "cpu" => Ok(BackendChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() })),
         name => backend_named(name, raw.adapter.as_deref()),

@@ -28,8 +28,8 @@ pub struct MergeOptions {
     /// Interval at which --watch writes the picture so far: 0.1s to 30d
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "watch")]
     pub every: Duration,
-    /// Write nothing; read everything, list what is missing, damaged, foreign or there twice, and print the commands
-    /// for what is missing
+    /// Write nothing; read everything, list what a plan lacks and what is damaged or foreign, and print the commands for
+    /// what is missing
     #[arg(long, conflicts_with_all = ["out", "watch"])]
     pub check: bool,
     /// How commands call this program.

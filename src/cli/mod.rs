@@ -25,11 +25,12 @@ pub use direct::{CheckOptions, CompanionOptions, GalleryOptions, InfoOptions, Me
 pub use paths::{NamedPath, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
-pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
+pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportOptions};
 pub use sources::DEFAULT_SCENE;
 pub use values::JsonTarget;
 
+use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell;
 use anyhow::Result;
@@ -49,8 +50,8 @@ pub enum Request {
     Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
-    /// Write a scene file and render nothing.
-    SaveScene(Box<SaveSceneOptions>),
+    /// Write a scene file, whose recipe is valid, and render nothing.
+    SaveScene(Box<Recipe>, PathBuf),
     Plan(Box<PlanOptions>),
     Part(Box<PartOptions>),
     Merge(Box<MergeOptions>),

@@ -108,8 +108,8 @@ pub struct BatchOptions {
     pub renders: Vec<RenderOptions>,
     /// The directory for the pictures of all stages, which is created if necessary.
     pub directory: Option<PathBuf>,
-    /// A scene file to write as well.
-    pub save_scene: Option<SaveSceneOptions>,
+    /// A scene file to write as well, of the only picture.
+    pub save_scene: Option<PathBuf>,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<JsonTarget>,
@@ -179,14 +179,6 @@ pub struct RenderOptions {
     pub command: String,
 }
 
-/// A scene file to write.
-#[derive(Clone, Debug)]
-pub struct SaveSceneOptions {
-    /// Already validated.
-    pub recipe: Recipe,
-    pub path: PathBuf,
-}
-
 /// Validates the flags without a subcommand.
 pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request> {
     if flags.list {
@@ -205,7 +197,7 @@ pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request> {
             check_paths(&flags, &[])?;
             let (chosen, _) =
                 sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
-            Ok(Request::SaveScene(Box::new(SaveSceneOptions { recipe: chosen.recipe, path: path.clone() })))
+            Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
         (true, _) => batch(flags, line),
     }
@@ -273,13 +265,12 @@ fn batch(flags: RenderFlags, line: &Line) -> Result<Request> {
         (vec![render(chosen, &flags, out, line)?], None)
     };
     check_paths(&flags, &renders)?;
-    let save_scene = files.save_scene.clone().zip(renders.first());
     Ok(Request::Batch(Box::new(BatchOptions {
-        save_scene: save_scene.map(|(path, only)| SaveSceneOptions { recipe: only.recipe.clone(), path }),
         renders,
         directory,
         backend: flags.backend,
         progress: flags.progress,
+        save_scene: flags.files.save_scene,
         json: flags.files.json,
         crashes_at: flags.simulate_crash,
     })))

@@ -6,7 +6,7 @@ use super::{NamedPath, check_paths, sources};
 use crate::backends::BackendChoice;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::builder::BoolishValueParser;
 use clap::{ArgAction, Args};
 use std::path::PathBuf;
@@ -133,7 +133,11 @@ impl ReportOptions {
     /// # Errors
     /// If there is none.
     pub fn backend(&self, name: &str) -> Result<Option<BackendChoice>> {
-        if name == BASELINE { Ok(None) } else { backend_named(name, self.adapter.as_deref()).map(Some) }
+        if name == BASELINE {
+            return Ok(None);
+        }
+        let backend = backend_named(name, self.adapter.as_deref());
+        backend.map(Some).context("--backends takes c89, the plain C program, and these")
     }
 
     /// The scenes at their final size.

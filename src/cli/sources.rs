@@ -87,7 +87,7 @@ pub(super) fn scene(name: &str) -> Result<Recipe> {
         None if name == NEAR_GLASS => {
             Ok(file::parse(include_str!("../../assets/scenes/near-glass.toml"), NEAR_GLASS)?)
         }
-        None => Ok(Recipe::find(name)?),
+        None => Recipe::find(name),
     }
 }
 

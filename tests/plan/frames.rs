@@ -40,7 +40,7 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     // Planning again repeats what it divides.
     let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "3"]].concat();
     let message = ends(at, 0, &again).1;
-    assert!(message.contains("3 parts of 2 to 3 frames"), "{message}");
+    assert!(message.contains("3 parts of at most 3 frames"), "{message}");
     for line in lines.lines().rev() {
         let words = shlex::split(line).unwrap();
         assert_eq!(words[1], "render-part");

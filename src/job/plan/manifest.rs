@@ -247,7 +247,10 @@ impl Manifest {
     fn check(&self) -> Result<(), String> {
         let (version, result) = self.work.kind();
         if self.plan_version != version {
-            return Err(format!("it has version {}, but this program reads {version}", self.plan_version));
+            return Err(format!(
+                "it has version {}, but this program reads version {version}",
+                self.plan_version
+            ));
         }
         let (whole, parts, limit) = self.work.ranges();
         let mut next = whole[0];
