@@ -107,7 +107,7 @@ impl Finding {
                 "choose the section that your picture belongs to, and look where it differs; the final picture of section \
                  14.1 cannot be checked: its small spheres are at random places",
             );
-            section = Section::find(self.stage.section);
+            section = None;
         } else if !damages.is_empty() {
             let damage = damages.remove(0);
             kind = AnswerKind::Mistake;
@@ -142,7 +142,7 @@ impl Finding {
         if let Some(note) = self.mistake.as_ref().and_then(|found| found.hypothesis.note.as_deref()) {
             evidence.push(capitalised(note));
         }
-        if !self.right.is_noise {
+        if self.right.differing > 0.0 {
             let [column, row] = self.right.worst;
             evidence.push(format!(
                 "They differ in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}",
@@ -150,7 +150,7 @@ impl Finding {
             ));
         }
         match &self.mistake {
-            Some(found) if self.right.is_noise => {
+            Some(found) if self.right.differing == 0.0 => {
                 let shown = if found.hypothesis.mistake.is_some_and(super::Mistake::is_at_edges) {
                     "at edges, pixel by pixel"
                 } else {

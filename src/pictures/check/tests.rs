@@ -277,7 +277,7 @@ fn answer_covers_damage_shape_and_mistake() {
         hypothesis: Hypothesis::right(&stage.recipe()),
         misfit: 0.0,
         is_noise,
-        differing: 0.25,
+        differing: if is_noise { 0.0 } else { 0.25 },
         worst: [3, 4],
         expected: Vec::new(),
     };
