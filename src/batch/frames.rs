@@ -39,7 +39,17 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     }
     options.job.check_memory(1).map_err(Failure::input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let mut run = Run::new(&options, &interrupt);
+    let mut run = Run {
+        options: &options,
+        interrupt: &interrupt,
+        display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
+        begin: Instant::now(),
+        rendered: 0,
+        kept: 0,
+        rendering: Duration::ZERO,
+        animation: None,
+        warnings: Vec::new(),
+    };
     let failure = match run.render_all() {
         Err(failure @ Failure::Input(_)) => return Err(failure),
         outcome => outcome.err(),
@@ -64,21 +74,7 @@ struct Run<'a> {
     warnings: Vec<String>,
 }
 
-impl<'a> Run<'a> {
-    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
-        Run {
-            options,
-            interrupt,
-            display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
-            begin: Instant::now(),
-            rendered: 0,
-            kept: 0,
-            rendering: Duration::ZERO,
-            animation: None,
-            warnings: Vec::new(),
-        }
-    }
-
+impl Run<'_> {
     fn done(&self) -> u32 {
         self.rendered + self.kept
     }

@@ -80,36 +80,15 @@ fn level_named(name: &str) -> Option<Isa> {
     Isa::ALL.into_iter().find(|isa| isa.name() == name)
 }
 
-/// Instruction levels.
+/// Instruction levels of this processor, the least capable first; `None` leaves the choice to the command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Levels {
-    Auto,
-    /// All that the processor has.
-    All,
-    /// These, the least capable first.
-    Named(Vec<Isa>),
-}
-
-impl Levels {
-    /// Resolves the levels; `auto` chooses among those of this processor, the most capable last.
-    pub fn available(&self, auto: impl FnOnce(&[Isa]) -> Vec<Isa>) -> Result<Vec<Isa>> {
-        let available = Isa::available();
-        let levels = match self {
-            Levels::Auto => auto(&available),
-            Levels::All => available.clone(),
-            Levels::Named(levels) => levels.clone(),
-        };
-        match levels.iter().copied().find(|isa| !available.contains(isa)) {
-            Some(isa) => Err(CpuError::Isa { isa, available }.into()),
-            None => Ok(levels),
-        }
-    }
-}
+pub(super) struct Levels(pub Option<Vec<Isa>>);
 
 pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
+    let available = Isa::available();
     match text {
-        "auto" => return Ok(Levels::Auto),
-        "all" => return Ok(Levels::All),
+        "auto" => return Ok(Levels(None)),
+        "all" => return Ok(Levels(Some(available))),
         _ => {}
     }
     let named: Option<Vec<Isa>> = text.split(',').map(|name| level_named(name.trim())).collect();
@@ -119,7 +98,10 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
     })?;
     named.sort_unstable();
     named.dedup();
-    Ok(Levels::Named(named))
+    match named.iter().find(|isa| !available.contains(isa)) {
+        Some(isa) => Err(CpuError::Isa { isa: *isa, available }.to_string()),
+        None => Ok(Levels(Some(named))),
+    }
 }
 
 /// Numbers of spheres from `A` to `B`: `A` times powers of ten, and three times these.

@@ -25,10 +25,11 @@ const SIGNAL: Duration = Duration::from_millis(100);
 /// Merges, watches or checks the parts.
 pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
     check_outputs("a file of the plan", &plan.files(), options)?;
-    if let Work::Frames(_) = plan.manifest.work {
-        check_names(options)?;
-    }
-    let (pieces, sum) = (Pieces::of(plan), Some(empty_sum(plan).map_err(Failure::input)?));
+    let sum = match plan.manifest.work {
+        Work::Samples(_) => Some(empty_sum(plan).map_err(Failure::input)?),
+        Work::Frames(_) => check_names(options).map(|()| None)?,
+    };
+    let pieces = Pieces::of(plan);
     let mut merging = Merging { options, pieces, sum, found: String::new(), is_written: false };
     if options.check {
         return merging.check();
@@ -69,7 +70,7 @@ fn check_names(options: &MergeOptions) -> Result<(), Failure> {
 struct Merging<'a> {
     options: &'a MergeOptions,
     pieces: Pieces<'a>,
-    /// The sum of the whole parts, until the end.
+    /// The sum of the whole parts, until the end; `None` for frames.
     sum: Option<FilmSum>,
     /// How much exists, as of the last merge.
     found: String,

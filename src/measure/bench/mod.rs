@@ -39,7 +39,7 @@ const WARM_UP_SECONDS: f64 = 0.2;
 /// Measures, prints tables and writes files. [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::Input)?;
-    let levels = options.levels().map_err(Failure::Input)?;
+    let levels = options.levels();
     let json = &options.json;
     check_outputs(json.as_ref(), options.plot.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;

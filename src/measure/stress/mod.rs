@@ -46,7 +46,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
-    let levels = options.levels().map_err(Failure::Input)?;
+    let levels = options.levels();
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let painter = Candidate::backend("pictures", cpu(levels[0]));
