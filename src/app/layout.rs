@@ -35,10 +35,8 @@ impl Window {
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
         self.display.kept.verdict.ui(ui.ctx());
-        if let Some((purpose, path)) = self.shell.dialogs.ui(ui, &facts, &mut self.commands) {
-            let context = ui.ctx().clone();
-            self.use_path(&context, purpose, path);
-        }
+        let outcome = self.shell.dialogs.ui(ui, &facts, &mut self.commands);
+        self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
         }

@@ -1,5 +1,6 @@
 //! What background threads have answered.
 
+use super::command::Command;
 use super::files::{NotOpened, Resumed};
 use super::kept::Reopened;
 use super::model::document::Document;
@@ -22,15 +23,20 @@ impl Window {
                 Ok(path) => {
                     self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
-                    self.shell.toasts.good(format!("Saved {}", path.display()));
+                    let name = path.file_name().unwrap_or(path.as_os_str()).display();
+                    let offers = [Command::ViewSaved, Command::ShowInFolder];
+                    self.shell.toasts.good_with(format!("Saved {name}"), &offers);
                 }
-                Err(reason) => self.shell.toasts.bad(format!("Not saved: {reason}")),
+                Err(reason) => {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                    self.shell.toasts.add_offer(Command::Save);
+                }
             }
         }
         while let Some(outcome) = self.files.opened.take() {
             match outcome {
                 Ok(opened) => self.show_opened(opened),
-                // A picture of another program: the user's own, to be checked.
+                // A picture of another program is the user's own, to be checked.
                 Err(NotOpened { path, is_picture: true, .. }) if path.exists() => {
                     self.tools.check.begin(context, &path, None);
                 }
@@ -67,6 +73,10 @@ impl Window {
                 Ok(resumed) => self.go_on(resumed),
                 Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
             }
+            self.files.is_restoring = false;
+        }
+        while let Some(outcome) = self.files.companions.take() {
+            self.show_companion(context, outcome);
         }
         while let Some(outcome) = self.files.references.take() {
             match outcome {
@@ -74,11 +84,8 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not subtracted: {reason}")),
             }
         }
-        while let Some(outcome) = self.shell.dialogs.browsed() {
-            match outcome {
-                Ok((purpose, path)) => self.use_path(context, purpose, path),
-                Err(reason) => self.shell.toasts.bad(reason),
-            }
+        if let Some(outcome) = self.shell.dialogs.chosen() {
+            self.end_dialog(context, outcome);
         }
         self.follow_scene_file(context);
         let device = &mut self.model.remembered.device;
@@ -98,7 +105,9 @@ impl Window {
             document.stop = Stop::at_samples(samples);
         }
         self.show_document(document);
-        self.shell.toasts.good(format!("Opened {}", path.display()));
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let words = format!("Opened {name}; its size and samples hold for this picture only");
+        self.shell.toasts.good(words);
         if let Content::Film(film) = content {
             self.tracing.adopt(film);
             self.changes.adopt(&self.model.document);
@@ -109,11 +118,13 @@ impl Window {
     pub(super) fn go_on(&mut self, resumed: Resumed) {
         let path = resumed.path.display();
         if self.document().has_same_film(&resumed.begun) {
-            self.shell.toasts.good(format!("Continuing {path}"));
-            self.model.remembered.note_recent(&resumed.path);
+            if !self.files.is_restoring {
+                self.shell.toasts.good(format!("Continuing {path}"));
+                self.model.remembered.note_recent(&resumed.path);
+            }
             self.tracing.adopt(resumed.film);
             self.changes.adopt(&self.model.document);
-        } else {
+        } else if !self.files.is_restoring {
             self.shell.toasts.bad(format!(
                 "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
             ));

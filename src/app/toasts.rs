@@ -21,14 +21,16 @@ struct Toast {
     since: Instant,
     /// The run of the render whose picture it is about, if it is about a picture.
     run: Option<u64>,
-    /// What it offers to do. Such a message stays until it is closed.
-    offer: Option<Command>,
+    /// What it offers to do.
+    offers: Vec<Command>,
+    /// It stays until it is closed.
+    stays: bool,
 }
 
 impl Toast {
     /// How long the message is still shown, if it does not stay.
     fn left(&self) -> Option<Duration> {
-        self.offer.is_none().then(|| lifetime(self.tone).saturating_sub(self.since.elapsed()))
+        (!self.stays).then(|| lifetime(self.tone).saturating_sub(self.since.elapsed()))
     }
 }
 
@@ -77,23 +79,35 @@ impl Toasts {
         self.good(words(is_on));
     }
 
-    /// Reports something that calls for a command, and offers the command. The message stays until it is closed, or the
-    /// offer withdrawn.
-    pub fn offer(&mut self, text: impl Into<String>, command: Command) {
-        self.add(text.into(), Tone::Good);
+    /// Reports a success, and offers commands that follow from it.
+    pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
+        self.good(text);
         if let Some(toast) = self.0.last_mut() {
-            toast.offer = Some(command);
+            toast.offers = offers.to_vec();
+        }
+    }
+
+    /// Adds a command to the newest message.
+    pub fn add_offer(&mut self, command: Command) {
+        self.0.last_mut().into_iter().for_each(|toast| toast.offers.push(command));
+    }
+
+    /// Reports something that calls for a command. The message stays until it is closed, or an offer withdrawn.
+    pub fn offer(&mut self, text: impl Into<String>, offers: &[Command]) {
+        self.good_with(text, offers);
+        if let Some(toast) = self.0.last_mut() {
+            toast.stays = true;
         }
     }
 
     /// Removes the messages that offer this command.
     pub fn withdraw(&mut self, command: Command) {
-        self.0.retain(|toast| toast.offer != Some(command));
+        self.0.retain(|toast| !toast.offers.contains(&command));
     }
 
     fn add(&mut self, text: String, tone: Tone) {
         self.0.retain(|toast| toast.text != text);
-        self.0.push(Toast { text, tone, since: Instant::now(), run: None, offer: None });
+        self.0.push(Toast { text, tone, since: Instant::now(), run: None, offers: Vec::new(), stays: false });
     }
 
     /// The visible messages, oldest first.
@@ -131,16 +145,20 @@ impl Toasts {
                             ui.scope(|ui| {
                                 ui.set_max_width(room);
                                 let words = RichText::new(&toast.text).color(colour);
-                                let Some(command) = toast.offer else {
-                                    ui.add(egui::Label::new(words).wrap());
-                                    return;
-                                };
                                 ui.vertical(|ui| {
                                     ui.add(egui::Label::new(words).wrap());
-                                    if ui.button(command.name()).on_hover_text(command.help()).clicked() {
-                                        commands.push(command);
-                                        closed = Some(index);
+                                    if toast.offers.is_empty() {
+                                        return;
                                     }
+                                    ui.horizontal_wrapped(|ui| {
+                                        for command in &toast.offers {
+                                            let button = ui.button(command.name());
+                                            if button.on_hover_text(command.help()).clicked() {
+                                                commands.push(*command);
+                                                closed = Some(index);
+                                            }
+                                        }
+                                    });
                                 });
                             });
                             if ui.add(close).on_hover_text("Close this message").clicked() {

@@ -143,12 +143,8 @@ pub struct WindowOptions {
     pub is_fresh: bool,
     /// Tracing time after which the film is saved, and again each time.
     pub autosave_every: Duration,
-    /// The directory in which the window keeps what it shows; without one, it keeps nothing.
+    /// The directory in which the window saves its film by itself; without one, it doesn't.
     pub state_directory: Option<PathBuf>,
-    /// The file of the settings, which all windows share; without one, nothing is remembered.
-    pub settings: Option<PathBuf>,
-    /// Most bytes of kept pictures in that directory, unless the usual limit applies.
-    pub kept_limit: Option<u64>,
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
@@ -233,8 +229,6 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
         is_fresh: flags.fresh,
         autosave_every: flags.autosave_every,
         state_directory: None,
-        settings: None,
-        kept_limit: None,
         draw_with: flags.draw_with,
         frame_log: flags.frame_log,
         crashes_at: flags.simulate_crash,
