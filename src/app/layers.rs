@@ -73,6 +73,11 @@ pub struct Layers {
 
 impl Layers {
     /// The newest version of a layer.
+    pub fn shown(&self, layer: Layer) -> Option<&ShownLayer> {
+        self.shown.as_ref().filter(|shown| shown.layer == layer)
+    }
+
+    /// The newest version of a layer.
     pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
         self.shown.as_mut().filter(|shown| shown.layer == layer)
     }

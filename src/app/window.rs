@@ -13,7 +13,6 @@ use super::model::document::Document;
 use super::model::origin::{Origin, Source};
 use super::model::view::ViewState;
 use super::shell::Shell;
-use super::spheres::Spheres;
 use super::theme;
 use super::tools::Tools;
 use super::tracing::Tracing;
@@ -30,7 +29,6 @@ pub struct Window {
     pub(super) model: Model,
     /// What can be undone.
     pub(super) changes: Changes,
-    pub(super) spheres: Spheres,
     pub(super) tracing: Tracing,
     pub(super) display: Display,
     pub(super) tools: Tools,
@@ -79,7 +77,6 @@ impl Window {
                 has_first_steps,
                 presentation: None,
             },
-            spheres: Spheres::default(),
             tracing: Tracing::new().context("cannot start the render thread")?,
             display: Display::default(),
             tools: Tools::default(),
@@ -201,9 +198,9 @@ impl Window {
 
     /// Starts what the changes of this frame ask for.
     fn follow(&mut self, context: &egui::Context) {
-        if let Err(reason) = self.spheres.follow(context, &mut self.model) {
-            self.shell.toasts.bad(reason);
-        }
+        // The selection may be of another scene.
+        let count = self.document().scene().spheres.len();
+        self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         let room = self.display.viewport.room_pixels();
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
         if self.changes.follow(context, &self.model.document, false) {
@@ -219,14 +216,11 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, spheres, tracing, display, tools, files, shell, .. } = self;
+        let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
         let subject = display.subject(model, tracing);
         files.follow(context, &subject);
         tools.follow(context, model, &subject, is_moving);
-        if let Some(words) = spheres.told(&model.document, &tracing.main) {
-            shell.toasts.good(words);
-        }
         display.place_divider(model, tracing);
         if !has_second {
             model.view.end_comparison();

@@ -25,15 +25,14 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The outline of the sphere in the picture of a camera. `scene` may hide parts of it; without a scene, nothing
-    /// does.
-    pub fn new(camera: &Camera, aspect: f64, center: DVec3, radius: f64, scene: Option<&Scene>) -> Self {
+    /// The outline of a sphere of the scene in the picture of a camera.
+    pub fn new(camera: &Camera, aspect: f64, center: DVec3, radius: f64, scene: &Scene) -> Self {
         let eye = camera.look_from;
         let touched = touched(camera, center, radius);
-        let hiding = scene.map(|scene| in_front(scene, eye, center, radius));
+        let hiding = in_front(scene, eye, center, radius);
         let point = |at: DVec3| OutlinePoint {
             place: camera.place_of(at, aspect),
-            is_visible: hiding.as_ref().is_none_or(|hiding| !is_hidden(hiding, eye, at)),
+            is_visible: !is_hidden(&hiding, eye, at),
         };
         Outline { points: touched.into_iter().map(point).collect() }
     }
@@ -115,7 +114,7 @@ mod tests {
             let center = DVec3::new(x, y, z);
             let mut scene = Scene::default();
             scene.add_sphere(center, radius, 0);
-            let outline = Outline::new(&camera, 1.5, center, radius, Some(&scene));
+            let outline = Outline::new(&camera, 1.5, center, radius, &scene);
             let middle = camera.place_of(center, 1.5).unwrap();
             prop_assert_eq!(outline.points.len(), POINTS);
             for point in &outline.points {
