@@ -57,8 +57,6 @@ impl Want<'_> {
 struct Started {
     document: Document,
     preview: Preview,
-    /// A preview of a picture that does not move, which follows at once.
-    is_look: bool,
     run: u64,
     at: Instant,
     is_pictured: bool,
@@ -95,7 +93,7 @@ pub struct Tracer {
     status: Arc<Status>,
     asked: Instant,
     /// The backend and plan last sent to the render thread.
-    told: Option<(BackendChoice, Plan)>,
+    sent: Option<(BackendChoice, Plan)>,
     view: View,
     previews: Previews,
 }
@@ -109,7 +107,7 @@ impl Tracer {
             early: None,
             status: Arc::default(),
             asked: Instant::now(),
-            told: None,
+            sent: None,
             view: View::Picture,
             previews: Previews::default(),
         })
@@ -124,11 +122,6 @@ impl Tracer {
     /// The status as of this frame.
     pub fn status(&self) -> &Arc<Status> {
         &self.status
-    }
-
-    /// The status as of now.
-    pub fn newest_status(&self) -> Status {
-        self.progressive.status()
     }
 
     /// The newest picture.
@@ -215,10 +208,10 @@ impl Tracer {
         let mut pictured = None;
         let newest = self.progressive.newest_picture().or(self.early.take());
         let newest = newest.filter(|picture| picture.run == started.run);
-        let is_preview = |shown: &Shown| {
-            shown.divisor > started.preview.divisor && shown.document.has_same_film(&started.document)
-        };
-        let has_preview = self.shown.as_ref().is_some_and(is_preview) && self.status.phase.is_working();
+        let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
+        let has_preview = started.preview.divisor == 1
+            && self.status.phase.is_working()
+            && self.shown.as_ref().is_some_and(is_preview);
         if has_preview && newest.as_ref().is_some_and(|picture| is_confetti(picture, started.at.elapsed())) {
             self.early = newest;
         } else if let Some(picture) = newest {
@@ -230,7 +223,7 @@ impl Tracer {
                 document: started.document.clone(),
                 run: started.run,
             });
-            if !started.is_pictured && (self.previews.is_moving() || started.is_look) {
+            if !started.is_pictured && (self.previews.is_moving() || started.preview.divisor > 1) {
                 let samples = picture.samples_per_pixel as f64;
                 let samples = samples * f64::from(picture.width) * f64::from(picture.height);
                 let seconds = started.at.elapsed().as_secs_f64();
@@ -265,10 +258,10 @@ impl Tracer {
             self.previews.follow_move(want.document)
         } else {
             self.previews.end_move();
-            Preview::NONE
+            self.still(want)
         };
         let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
-        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor || self.is_looking(run)) {
+        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor) {
             self.adjust(want);
             return Ok(());
         }
@@ -277,26 +270,24 @@ impl Tracer {
         if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
-        let look = if want.is_moving || mine.is_some() { None } else { self.first_look(want) };
-        self.start(want, look.unwrap_or(preview), None)?;
-        if let Some(run) = &mut self.started {
-            run.is_look = look.is_some();
-        }
-        Ok(())
+        self.start(want, preview, None)
     }
 
-    /// Whether this render is a first look that has not been seen yet. The picture itself would take longer.
-    fn is_looking(&self, run: &Started) -> bool {
-        run.is_look && !run.is_pictured && self.status.phase.is_working()
-    }
-
-    /// What to show before the first samples of another picture. The same picture at another size is on the screen
-    /// already, and a GPU is fast or has to compile first.
-    fn first_look(&self, want: &Want<'_>) -> Option<Preview> {
+    /// What to render of a picture that does not move. Previews are for the CPU: a GPU is fast or has to compile first.
+    fn still(&self, want: &Want<'_>) -> Preview {
         let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
+        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
+        // The same picture at another size is on the screen already.
         let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
-        let is_new = is_cpu && !self.shown.as_ref().is_some_and(is_there);
-        self.previews.first_look(want.document).filter(|_| is_new)
+        match mine {
+            Some(run) if run.preview.divisor == 1 => Preview::NONE,
+            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.preview,
+            Some(run) if is_cpu => self.previews.look(want.document, Some(run.preview.divisor)),
+            None if is_cpu && !self.shown.as_ref().is_some_and(is_there) => {
+                self.previews.look(want.document, None)
+            }
+            _ => Preview::NONE,
+        }
     }
 
     fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
@@ -309,13 +300,12 @@ impl Tracer {
         self.started = Some(Started {
             document: want.document.clone(),
             preview,
-            is_look: false,
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
             is_held: want.is_paused,
         });
-        self.told = Some((want.backend.clone(), plan));
+        self.sent = Some((want.backend.clone(), plan));
         Ok(())
     }
 
@@ -324,17 +314,99 @@ impl Tracer {
         let Some(run) = &mut self.started else { return };
         run.is_held &= want.is_paused;
         let plan = want.plan(run.is_held, run.preview);
-        let Some((told_backend, told_plan)) = &mut self.told else { return };
-        if told_backend != want.backend {
-            told_backend.clone_from(want.backend);
+        let Some((sent_backend, sent_plan)) = &mut self.sent else { return };
+        if sent_backend != want.backend {
+            sent_backend.clone_from(want.backend);
             self.progressive.switch_backend(want.backend.clone());
         }
-        if *told_plan != plan {
-            told_plan.clone_from(&plan);
+        if *sent_plan != plan {
+            sent_plan.clone_from(&plan);
             self.progressive.set_plan(plan);
         }
     }
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::render_cpu::CpuOptions;
+    use crate::stages::Stage;
+
+    #[test]
+    fn passes_are_short_while_something_moves_and_few_during_a_pause() {
+        let document = Document::new(Origin::usual());
+        let backend = BackendChoice::Cpu(CpuOptions::default());
+        let plan = |stop, is_moving, is_held, preview| {
+            let view = View::Picture;
+            Want { document: &document, backend: &backend, stop, view, is_moving, is_paused: false }
+                .plan(is_held, preview)
+        };
+        let stop = Stop::at_samples(100);
+        let still = plan(stop, false, false, Preview::NONE);
+        assert_eq!((still.pass_target, still.stop, still.preview), (Duration::from_millis(40), stop, None));
+        let moving = plan(stop, true, false, Preview { divisor: 2, samples: 4 });
+        assert_eq!((moving.pass_target, moving.preview), (Duration::from_millis(10), Some(4)));
+        let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
+        assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
+    }
+
+    /// A small picture of a stage.
+    fn small(stage: &str) -> Document {
+        let mut document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+        document.give_size([16, 9]);
+        document
+    }
+
+    fn cpu() -> BackendChoice {
+        BackendChoice::Cpu(CpuOptions::default())
+    }
+
+    /// What a window asks for that shows this document. Its render never ends.
+    fn wish<'a>(document: &'a Document, backend: &'a BackendChoice, is_moving: bool) -> Want<'a> {
+        Want {
+            document,
+            backend,
+            stop: Stop::at_samples(4_000_000_000),
+            view: View::Picture,
+            is_moving,
+            is_paused: false,
+        }
+    }
+
+    #[test]
+    fn a_preview_is_followed_by_the_picture_once_it_has_been_seen() {
+        let (document, backend) = (small("metal"), cpu());
+        let want = wish(&document, &backend, false);
+        for is_pictured in [false, true] {
+            let mut tracer = Tracer::new().unwrap();
+            tracer.start(&want, Preview { divisor: 2, samples: 4 }, None).unwrap();
+            assert!(tracer.is_of(&document) && !tracer.is_full(&document));
+            tracer.started.as_mut().unwrap().is_pictured = is_pictured;
+            tracer.want(&want).unwrap();
+            assert_eq!(tracer.is_full(&document), is_pictured);
+            // The same again goes on.
+            let run = tracer.status().run;
+            tracer.want(&want).unwrap();
+            assert_eq!(tracer.status().run, run);
+            tracer.restart();
+            assert!(!tracer.is_of(&document));
+            tracer.want(&want).unwrap();
+            assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_rendered_is_refused_and_the_render_goes_on() {
+        let (document, backend) = (small("metal"), cpu());
+        let mut tracer = Tracer::new().unwrap();
+        tracer.want(&wish(&document, &backend, false)).unwrap();
+        let run = tracer.status().run;
+        let mut invalid = document.clone();
+        invalid.settings.width = 0;
+        let reason = tracer.want(&wish(&invalid, &backend, false)).unwrap_err();
+        assert!(reason.contains("width"), "{reason}");
+        assert_eq!(tracer.status().run, run);
+        assert!(tracer.is_of(&document) && !tracer.is_of(&invalid));
+    }
+}
