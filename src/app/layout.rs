@@ -156,6 +156,9 @@ impl Window {
             self.tools.paths.list(&self.model.document, pixel, ui.ctx());
             self.model.remembered.dock = Some(Dock::Path);
         }
+        if let Some(said) = touch.said {
+            self.shell.toasts.good(said);
+        }
         if touch.is_lost && !std::mem::replace(&mut self.display.is_home_offered, true) {
             self.shell.toasts.offer("Home brings you back", Command::Home);
         }

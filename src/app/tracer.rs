@@ -5,7 +5,7 @@ use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Picture, Plan, Progressive, RenderRequest, Status, Stop, View};
+use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
@@ -78,18 +78,11 @@ pub struct Shown {
     pub run: u64,
 }
 
-/// Whether a smooth preview looks better than this picture, whose render began so long ago.
-fn is_confetti(picture: &Picture, began: Duration) -> bool {
-    picture.samples_per_pixel < CLEARER_SAMPLES && began < PREVIEW_LIMIT
-}
-
 /// A render thread and its latest results.
 pub struct Tracer {
     progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
-    /// A picture that waits until it is clearer than the preview on the screen.
-    early: Option<Picture>,
     status: Arc<Status>,
     asked: Instant,
     /// The backend and plan last sent to the render thread.
@@ -104,7 +97,6 @@ impl Tracer {
             progressive: Progressive::spawn()?,
             started: None,
             shown: None,
-            early: None,
             status: Arc::default(),
             asked: Instant::now(),
             sent: None,
@@ -206,15 +198,8 @@ impl Tracer {
             self.previews.note_speed(&self.status);
         }
         let mut pictured = None;
-        let newest = self.progressive.newest_picture().or(self.early.take());
-        let newest = newest.filter(|picture| picture.run == started.run);
-        let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
-        let has_preview = started.preview.divisor == 1
-            && self.status.phase.is_working()
-            && self.shown.as_ref().is_some_and(is_preview);
-        if has_preview && newest.as_ref().is_some_and(|picture| is_confetti(picture, started.at.elapsed())) {
-            self.early = newest;
-        } else if let Some(picture) = newest {
+        if let Some(picture) = self.progressive.newest_picture().filter(|picture| picture.run == started.run)
+        {
             let earlier = self.shown.take().map(|shown| shown.texture);
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
@@ -232,13 +217,11 @@ impl Tracer {
             started.is_pictured = true;
             pictured = Some(started.at);
         }
+        let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
-        let interval = if self.previews.is_moving() {
-            Duration::ZERO
-        } else {
-            (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT)
-        };
-        if self.asked.elapsed() >= interval || !started.is_pictured {
+        let interval =
+            if self.previews.is_moving() { Duration::ZERO } else { (age / 20).min(PICTURE_INTERVAL_LIMIT) };
+        if (self.asked.elapsed() >= interval || !is_pictured) && !self.is_confetti() {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
         }
@@ -246,6 +229,17 @@ impl Tracer {
             context.request_repaint_after(interval.max(Duration::from_millis(16)));
         }
         pictured
+    }
+
+    /// Whether the preview on the screen looks better than the picture would now.
+    fn is_confetti(&self) -> bool {
+        let Some(started) = &self.started else { return false };
+        let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
+        started.preview.divisor == 1
+            && self.status.phase.is_working()
+            && self.status.samples_per_pixel < CLEARER_SAMPLES
+            && started.at.elapsed() < PREVIEW_LIMIT
+            && self.shown.as_ref().is_some_and(is_preview)
     }
 
     /// Renders what is wanted, at once or after the next picture.
@@ -295,7 +289,6 @@ impl Tracer {
         let plan = want.plan(want.is_paused, preview);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);
-        self.progressive.ask_for_picture();
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
@@ -306,6 +299,9 @@ impl Tracer {
             is_held: want.is_paused,
         });
         self.sent = Some((want.backend.clone(), plan));
+        if !self.is_confetti() {
+            self.progressive.ask_for_picture();
+        }
         Ok(())
     }
 
@@ -393,6 +389,23 @@ mod tests {
             assert!(!tracer.is_of(&document));
             tracer.want(&want).unwrap();
             assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
+        }
+    }
+
+    /// It takes gigabytes, or is refused where there are too few.
+    #[test]
+    fn a_huge_picture_does_not_delay_the_next_one() {
+        let (mut huge, document, backend) = (small("metal"), small("metal"), cpu());
+        huge.give_size([16384, 16384]);
+        let (mut tracer, context) = (Tracer::new().unwrap(), egui::Context::default());
+        tracer.want(&wish(&huge, &backend, false)).unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        let begin = Instant::now();
+        while !tracer.has_samples(&document) {
+            tracer.want(&wish(&document, &backend, false)).unwrap();
+            tracer.poll(&context);
+            assert!(begin.elapsed() < Duration::from_secs(10));
+            std::thread::sleep(Duration::from_millis(2));
         }
     }
 

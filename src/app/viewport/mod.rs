@@ -17,10 +17,10 @@ use super::model::edit::Edit;
 use super::model::view::Mode;
 use super::navigation;
 use super::spheres::Selected;
+use super::widgets::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
 use moving::Moving;
-use paint::Mark;
 use placement::{Zoom, whole_pixels};
 use selection::Selection;
 use std::time::{Duration, Instant};
@@ -41,7 +41,6 @@ pub struct Viewport {
     pub placement: Placement,
     /// Those of the traced picture, while a kept one is shown or the window presents.
     parked: Option<Placement>,
-    mark: Option<Mark>,
     moving: Moving,
     is_dragging_divider: bool,
     /// The pixel where the context menu was opened.
@@ -79,6 +78,8 @@ pub struct Touch {
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
     pub listed: Option<[u32; 2]>,
+    /// What a click has done, in words.
+    pub said: Option<String>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
     pub is_divider_moved: bool,
@@ -152,9 +153,8 @@ impl Viewport {
         } else {
             rect
         };
-        self.selection.paint(ui, (rect, own.intersect(room)), selected);
+        self.selection.paint(ui, (rect, own.intersect(room)), selected, &document);
         self.moving.paint(ui, own.intersect(room), rect, &document);
-        self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
         touch.hovered = response.hover_pos().and_then(pixel);
@@ -247,25 +247,20 @@ impl Viewport {
         }
         let place = place_at(rect, at);
         let pick = live.pick(camera, place);
-        let mut mark = |place, text: &str| {
-            self.mark = Some(Mark { place, text: text.to_owned(), since: Instant::now() })
-        };
         if response.double_clicked() {
             if let Some(pick) = pick {
                 *camera = navigation::recentre(camera, pick.point);
-                mark([0.5; 2], "Looks at this");
             }
         } else if is_held(ui, |modifiers| modifiers.alt) {
             touch.listed = self.placement.pixel_at(at, live.size());
         } else if is_held(ui, |modifiers| modifiers.command) {
-            if let Some(pick) = pick {
+            let said = pick.map(|pick| {
                 *camera = navigation::focus(camera, pick.point);
                 let is_pinhole = camera.defocus_angle_degrees == 0.0;
                 let note = if is_pinhole { "; a pinhole is sharp everywhere" } else { "" };
-                mark(place, &format!("Focus distance {:.3}{note}", camera.depth_of(pick.point)));
-            } else {
-                mark(place, "The sky has no distance");
-            }
+                format!("Focus distance {}{note}", compact(camera.depth_of(pick.point)))
+            });
+            touch.said = Some(said.unwrap_or_else(|| "The sky has no distance".to_owned()));
         } else {
             touch.select = Some(pick.map(|pick| pick.sphere));
         }

@@ -1,7 +1,6 @@
 //! Draws the viewport: the picture, the second picture, and words over them.
 
 use super::placement::Placement;
-use super::point_at;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::fitted::Fitted;
@@ -18,7 +17,6 @@ use eframe::egui::{
     self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
     vec2,
 };
-use std::time::{Duration, Instant};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
@@ -254,27 +252,6 @@ fn paint_scale(ui: &Ui, painter: &Painter, rect: Rect, scale: &HeatScale) {
     for (value, name) in scale.marks() {
         let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 0.2 * em);
         painter.text(at, Align2::CENTER_TOP, name, font.clone(), visuals.text_color());
-    }
-}
-
-/// The result of a click, shown for a moment.
-pub(super) struct Mark {
-    /// Position in the picture, `0..=1` from the upper left.
-    pub place: [f64; 2],
-    pub text: String,
-    pub since: Instant,
-}
-
-impl Mark {
-    /// Draws it; returns false once its time is over.
-    pub fn paint(&self, ui: &Ui, room: Rect, rect: Rect) -> bool {
-        let Some(left) = Duration::from_millis(1600).checked_sub(self.since.elapsed()) else { return false };
-        let (painter, at) = (ui.painter().with_clip_rect(room), point_at(rect, self.place));
-        painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
-        painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
-        label(ui, &painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &self.text);
-        ui.ctx().request_repaint_after(left);
-        true
     }
 }
 
