@@ -25,6 +25,8 @@ pub struct Display {
     pub values: PixelValues,
     pub identity: Identity,
     pub kept: KeptActions,
+    /// The toast of a lost scene was shown.
+    pub is_home_offered: bool,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,
 }

@@ -21,7 +21,7 @@ use super::navigation;
 use super::places;
 use super::sight::Sighted;
 use super::spheres::grip::{new_body, to_copy};
-use super::spheres::neighbour;
+use super::spheres::{self, Selected, neighbour};
 use super::theme;
 use super::window::Window;
 use super::wording::{grouped, lower_first};
@@ -202,7 +202,7 @@ impl Window {
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
-        match self.spheres.edit(&mut self.model, edit) {
+        match spheres::edit(&mut self.model, edit) {
             Ok(()) => self.note_step(Step::Change),
             Err(reason) => self.shell.toasts.bad(reason),
         }
@@ -234,14 +234,14 @@ impl Window {
     }
 
     pub(super) fn look_at_sphere(&mut self) {
-        if let Some(selected) = self.spheres.selected(&self.model) {
+        if let Some(selected) = Selected::of(&self.model) {
             let camera = navigation::recentre(&self.document().camera, selected.body.center);
             self.model.document.camera = camera;
         }
     }
 
     pub(super) fn focus_sphere(&mut self) {
-        let Some(selected) = self.spheres.selected(&self.model) else { return };
+        let Some(selected) = Selected::of(&self.model) else { return };
         let camera = self.document().camera;
         let towards = (camera.look_from - selected.body.center).normalize_or_zero();
         let nearest = selected.body.center + selected.body.radius * towards;

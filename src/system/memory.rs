@@ -57,27 +57,23 @@ fn check_against(
     Ok(())
 }
 
-/// `count` copies of `value`.
+/// `count` zeros. The system provides each page when it is first written to, so this takes no time.
 ///
 /// # Errors
 /// [`MemoryError`] with this `remedy` if they do not fit.
-pub fn filled<T: Clone>(
+pub fn zeroed<T: bytemuck::Zeroable>(
     count: usize,
-    value: T,
     what: impl Fn() -> String,
     remedy: &'static str,
 ) -> Result<Vec<T>, MemoryError> {
     let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
     check(&what, bytes, remedy)?;
-    let mut items = Vec::new();
-    items.try_reserve_exact(count).map_err(|_| MemoryError {
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| MemoryError {
         what: what(),
         needed_bytes: bytes,
         free_bytes: free_bytes().unwrap_or(0),
         remedy,
-    })?;
-    items.resize(count, value);
-    Ok(items)
+    })
 }
 
 /// Available bytes: the least of what the system and the limits of the process's control groups allow. `None` if the

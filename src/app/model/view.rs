@@ -215,20 +215,6 @@ impl ViewState {
         }
     }
 
-    /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
-    pub fn has_other_camera(&self, document: &Document) -> bool {
-        self.with == With::Stage && document.stage().is_some_and(is_of_cameras)
-    }
-
-    /// Whether the other picture is an earlier stage of the book or an earlier picture, which a wipe shows at the left.
-    pub fn is_other_earlier(&self, document: &Document) -> bool {
-        match (document.stage(), self.compared(document)) {
-            (_, Some(Other::Kept(_))) => true,
-            (Some(mine), Some(Other::Stage(other))) => other.index() < mine.index(),
-            _ => false,
-        }
-    }
-
     /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
     pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
