@@ -1018,7 +1018,7 @@ fn rows() -> Vec<Row> {
         C::ClearPaths,
         "Close the paths",
         "",
-        |w, _| w.tools.paths.forget(),
+        |w, _| w.clear_paths(),
         needs(|f| f.has_paths, NO_PATHS),
         unlisted()
     );

@@ -35,7 +35,7 @@ impl Display {
     /// The film on the screen.
     pub fn subject<'a>(&'a self, model: &'a Model, tracing: &'a Tracing) -> Subject<'a> {
         let live = (&model.document, &tracing.main);
-        Subject::new(&model.view, live, tracing.seconds_before, &self.kept.thread)
+        Subject::new(&model.view, live, tracing.seconds_before)
     }
 
     /// The picture of the film on the screen.
@@ -61,7 +61,7 @@ impl Display {
             self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));
         }
         let live = (document, &tracing.main);
-        let subject = Subject::new(view, live, tracing.seconds_before, &self.kept.thread);
+        let subject = Subject::new(view, live, tracing.seconds_before);
         let is_live_moving = is_moving && !subject.is_kept();
         let fault = self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
         if let Some(reason) = fault {

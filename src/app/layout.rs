@@ -1,6 +1,7 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::command::Command;
+use super::dialogs::Purpose;
 use super::facts::Facts;
 use super::inspector::OtherPixel;
 use super::model::Model;
@@ -16,7 +17,7 @@ use super::spheres::Selected;
 use super::texture::Texture;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{controls, info, plot, status_bar, theme, title_bar};
+use super::{controls, dock, info, status_bar, theme, title_bar};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -36,7 +37,6 @@ impl Window {
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
-        self.display.kept.verdict.ui(ui.ctx());
         let outcome = self.shell.dialogs.ui(ui, &facts, &mut self.commands);
         self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
@@ -90,15 +90,10 @@ impl Window {
 
     /// The picture, with the dock and the card of first steps below.
     fn middle(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
-        if facts.model.has_panels()
-            && let Some(dock) = facts.model.remembered.dock
-        {
-            let Window { model, tools, commands, .. } = self;
-            match dock {
-                Dock::Error => plot::ui(ui, &mut model.document.stop.noise, facts, commands),
-                Dock::Lanes => tools.packet.ui(ui, commands),
-                Dock::Path => {}
-                Dock::Kept => {}
+        if facts.model.has_panels() {
+            let Window { model, tools, display, commands, .. } = self;
+            if dock::ui(ui, model, tools, &mut display.kept, facts, commands) {
+                self.ask_path(ui.ctx(), Purpose::SavePlot);
             }
         }
         if facts.model.presentation.is_some() {

@@ -62,10 +62,8 @@ impl Window {
         let Window { model, tools, display, shell, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
-        } else if display.kept.verdict.is_open() {
-            display.kept.verdict.close();
         } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
-            tools.paths.forget();
+            commands.push(Command::ClearPaths);
         } else if display.sight.is_some() {
             commands.push(Command::ShowMe);
         } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
@@ -325,6 +323,11 @@ impl Window {
         }
     }
 
+    pub(super) fn clear_paths(&mut self) {
+        self.tools.paths.forget();
+        self.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
+    }
+
     // Panels
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
@@ -504,14 +507,10 @@ impl Window {
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
         let kept = &model.view.kept;
-        let Some((place, named)) = kept.chosen().and_then(|place| Some((place, kept.get(place)?))) else {
-            return;
-        };
-        let live = (&model.document, &tracing.main);
-        let subject =
-            super::kept::Subject::new(&model.view, live, tracing.seconds_before, &display.kept.thread).live();
-        let names = [kept.title(place), "the picture".to_owned()];
-        display.kept.verdict.ask(context, &named.kept, &subject, names);
+        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
+            display.kept.verdict.ask(context, &named.kept, (&model.document, &tracing.main));
+            model.remembered.dock = Some(Dock::Kept);
+        }
     }
 
     // Files

@@ -120,8 +120,6 @@ fn visible(rect: Rect, area: Rect, size: [u32; 2]) -> Option<[[u32; 2]; 2]> {
 mod tests {
     use super::*;
     use crate::app::Window;
-    use crate::app::kept::KeptThread;
-
     use crate::app::model::view::ViewState;
     use crate::app::tests::{until, window};
 
@@ -149,8 +147,8 @@ mod tests {
             window.status().phase.is_over() && window.shown().is_some_and(|(_, divisor)| divisor == 1)
         };
         until(&mut window, &context, "the end", is_done);
-        let (thread, view) = (KeptThread::default(), ViewState::default());
-        let subject = Subject::new(&view, (window.document(), &window.tracing.main), None, &thread);
+        let view = ViewState::default();
+        let subject = Subject::new(&view, (window.document(), &window.tracing.main), None);
         let mut values = PixelValues::default();
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 500.0));
         let area = Rect::from_min_size(pos2(150.0, 250.0), vec2(200.0, 200.0));

@@ -147,7 +147,7 @@ impl Second {
             let question = Arc::new(());
             self.waiting = Arc::downgrade(&question);
             let (kept, context) = (Arc::clone(&kept), context.clone());
-            self.picture.run(move || {
+            super::kept::run(move || {
                 kept.means();
                 drop(question);
                 context.request_repaint();
