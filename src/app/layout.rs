@@ -8,7 +8,7 @@ use super::model::Model;
 use super::model::document::Document;
 use super::model::first_steps::Step;
 use super::model::fitted::Fitted;
-use super::model::remembered::{Dock, Tab};
+use super::model::remembered::{Dock, Remembered, Tab};
 use super::model::view::{Mode, ViewState};
 use super::places::Place;
 use super::present::{self, Magnified};
@@ -17,11 +17,11 @@ use super::spheres::Selected;
 use super::texture::Texture;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{controls, dock, info, status_bar, theme, title_bar};
+use super::{controls, dock, right, stage_panel, status_bar, theme, title_bar};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
-const NARROW: f32 = 900.0;
+const NARROW: f32 = 1000.0;
 
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
@@ -50,38 +50,53 @@ impl Window {
         let selected = Selected::of(model);
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
-        let is_narrow = ui.available_width() < NARROW;
+        let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
         Place::Bar.begin(ui);
         title_bar::ui(ui, facts, commands);
         status_bar::ui(ui, facts);
         let mut edits = Vec::new();
-        let mut right = |ui: &mut Ui, commands: &mut Vec<Command>| {
-            match has.tab {
-                Tab::Stage => info::ui(ui, facts, commands),
-                Tab::Code => tools.code.ui(ui, facts, commands),
-                Tab::Check => tools.check.ui(ui),
-            }
-            display.tone.ui(ui, view, facts);
-            let pixel = tools.inspector.pixel();
-            let layer = view.show().layer();
-            let value = pixel.and_then(|pixel| display.layers.value_at(pixel.at)).filter(|_| layer.is_some());
-            let other =
-                pixel.and_then(|pixel| other_pixel(view, &tracing.second, facts.document(), pixel.at));
-            tools.inspector.ui(ui, facts.shown(), value, other);
-        };
-        if has.has_info && !is_narrow {
-            let panel = egui::Panel::right("info").default_size(272.0).size_range(240.0..=640.0);
-            Place::Info.begin(ui);
-            scrolling(ui, panel, |ui| right(ui, commands));
+        let mut tabs = Vec::new();
+        if has.has_info {
+            tabs.extend([Tab::Stage, Tab::Code]);
+            tabs.extend(tools.check.is_open().then_some(Tab::Check));
         }
-        if has.has_controls {
-            let panel = egui::Panel::left("controls").exact_size(232.0);
+        if has.has_controls && is_narrow {
+            tabs.push(Tab::Controls);
+        }
+        let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
+        let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
             Place::Controls.begin(ui);
-            scrolling(ui, panel, |ui| {
-                controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
-                if has.has_info && is_narrow {
-                    Place::Info.begin(ui);
-                    right(ui, commands);
+            controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
+        };
+        if has.has_controls && !is_narrow {
+            let panel = egui::Panel::left("controls").exact_size(232.0);
+            scrolling(ui, panel, |ui| controls(ui, remembered, commands));
+        }
+        if let Some(tab) = wanted {
+            right::panel(tab, room).show(ui, |ui| {
+                Place::Info.begin(ui);
+                let (chosen, is_closed) = right::tabs(ui, &tabs, tab);
+                if chosen != tab {
+                    remembered.tab = chosen;
+                }
+                match tab {
+                    Tab::Stage => {
+                        right::foot(ui, |ui| {
+                            display.tone.ui(ui, view, facts, commands);
+                            let pixel = tools.inspector.pixel();
+                            let layer = view.show().layer();
+                            let value = pixel.and_then(|pixel| display.layers.value_at(pixel.at));
+                            let other = pixel.and_then(|pixel| {
+                                other_pixel(view, &tracing.second, facts.document(), pixel.at)
+                            });
+                            tools.inspector.ui(ui, facts.shown(), value.filter(|_| layer.is_some()), other);
+                        });
+                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts, commands));
+                    }
+                    Tab::Code => tools.code.ui(ui, facts),
+                    Tab::Check if is_closed => tools.check.close(),
+                    Tab::Check => tools.check.ui(ui, commands),
+                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered, commands)),
                 }
             });
         }
@@ -95,6 +110,14 @@ impl Window {
             if dock::ui(ui, model, tools, &mut display.kept, facts, commands) {
                 self.ask_path(ui.ctx(), Purpose::SavePlot);
             }
+        }
+        let Model { remembered, .. } = &facts.model;
+        if facts.model.has_panels()
+            && remembered.has_info
+            && remembered.tab == Tab::Check
+            && let Some(room) = self.tools.check.picture(ui)
+        {
+            return Touch { room: Some(room), ..Touch::default() };
         }
         if facts.model.presentation.is_some() {
             let context = ui.ctx().clone();

@@ -235,11 +235,9 @@ impl ViewState {
     }
 }
 
-/// The stage that `stage` is compared with: its pair, or else the previous stage if it shows the same scene.
+/// The stage that `stage` is compared with, if one teaches something.
 pub fn partner(stage: &Stage) -> Option<&'static Stage> {
-    let pair = stage.pair.and_then(|id| Stage::find(id).ok());
-    let is_of_same_scene = |other: &&Stage| other.recipe().scene == stage.recipe().scene;
-    pair.or_else(|| stage.previous().filter(is_of_same_scene))
+    Stage::find(stage.pair?).ok()
 }
 
 /// Whether `stage` and its partner differ in their cameras, so that each keeps its own.
