@@ -176,7 +176,7 @@ impl Window {
             self.shell.toasts.good(said);
         }
         if touch.is_lost && !std::mem::replace(&mut self.display.is_home_offered, true) {
-            self.shell.toasts.offer("Home brings you back", Command::Home);
+            self.shell.toasts.offer("Home brings you back", &[Command::Home]);
         }
         if touch.is_orbit {
             self.note_step(Step::Orbit);
