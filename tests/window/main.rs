@@ -9,6 +9,7 @@ mod extreme;
 mod faults;
 mod files;
 mod first_steps;
+mod kept;
 mod menus;
 mod moving;
 mod objects;
@@ -26,7 +27,7 @@ mod resuming;
 mod session;
 mod sights;
 mod size;
-mod slots;
+
 mod snapshots;
 mod stages;
 mod thumbnails;
