@@ -27,7 +27,6 @@ mod resuming;
 mod session;
 mod sights;
 mod size;
-
 mod snapshots;
 mod stages;
 mod thumbnails;
