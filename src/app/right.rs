@@ -79,24 +79,21 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
 
 /// What stays at the foot of the panel, at the same height for all stages.
 pub fn foot(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
-    let highest = (0.7 * ui.available_height()).max(80.0);
-    Panel::bottom("foot").resizable(false).frame(theme::panel(Margin::ZERO)).show(ui, |ui| {
-        ScrollArea::vertical()
-            .max_height(highest)
-            .show(ui, |ui| within(ui, Margin::symmetric(16, 4), content));
+    let frame = theme::panel(Margin::symmetric(16, 4));
+    Panel::bottom("foot").resizable(false).frame(frame).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 8.0;
+        content(ui);
     });
 }
 
 /// What scrolls above the foot.
 pub fn scrolling(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     CentralPanel::default().frame(theme::panel(Margin::ZERO)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| within(ui, Margin::same(16), content));
-    });
-}
-
-fn within(ui: &mut Ui, margin: Margin, content: impl FnOnce(&mut Ui)) {
-    theme::panel(margin).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 8.0;
-        content(ui);
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            theme::panel(Margin::same(16)).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 8.0;
+                content(ui);
+            });
+        });
     });
 }

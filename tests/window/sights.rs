@@ -42,8 +42,6 @@ fn every_stage_shows_what_to_look_for_and_escape_returns() {
             Means::Wipe(_) => (Show::Picture, true),
         };
         assert_eq!((harness.state().show(), harness.state().is_comparing()), (show, is_wipe), "{}", stage.id);
-        let told = harness.state().messages();
-        assert!(told.iter().any(|text| text.ends_with("Escape returns")), "{}: {told:?}", stage.id);
         if let Means::Wipe(divider) = stage.sight.means {
             until(&mut harness, stage.id, |window| window.has_other_picture());
             harness.run_steps(20);
