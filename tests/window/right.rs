@@ -56,7 +56,7 @@ fn a_picture_of_another_program_is_checked() {
     harness.run_steps(2);
     control(&harness, "Go to 2.2").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().document().stage().unwrap().section, "2.2");
+    assert_eq!(harness.state().shown_document().stage().unwrap().section, "2.2");
     control(&harness, "Close check").click();
     harness.run_steps(3);
     assert!(harness.state().checked().is_none() && harness.query_by_label("Picture").is_some());

@@ -65,7 +65,7 @@ fn a_sight_ends_with_its_stage_and_with_its_view() {
     assert!(harness.state().picture_rect().width() > 1.5 * fitting.width());
     harness.key_press(Key::PageDown);
     harness.run_steps(4);
-    assert_eq!(harness.state().document().stage().unwrap().id, "glass-tir");
+    assert_eq!(harness.state().shown_document().stage().unwrap().id, "glass-tir");
     assert!(!harness.state().has_sight() && !harness.state().is_comparing());
     assert_eq!(harness.state().picture_rect(), fitting, "the next stage is seen whole");
     // Who chooses another view keeps it, and Escape then leaves that.

@@ -31,7 +31,7 @@ fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
 fn exposure_is_seen_but_not_saved() {
     let mut harness = finished();
     let mean = mean(&mut harness);
-    let transfer = harness.state().document().rules().transfer;
+    let transfer = harness.state().shown_document().rules().transfer;
     let seen = |stops: f64| mean.map(|x| to_byte(x * stops.exp2(), transfer, AT[1] as usize, 18));
     assert_eq!(harness.state().shown_pixel(AT), Some(seen(0.0)));
     for _ in 0..3 {
