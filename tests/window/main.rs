@@ -1,36 +1,7 @@
-//! Tests the window through its real state, as a person would use it: every command, key and control.
-#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
-
-mod commands;
+#![allow(clippy::unwrap_used)]
+#![allow(dead_code)]
 mod common;
-mod device;
-mod edits;
-mod extreme;
-mod faults;
-mod files;
-mod first_steps;
-mod menus;
-mod moving;
-mod objects;
-mod palette;
-mod panels;
-mod paths;
-mod pictures;
-mod plot;
-mod present;
-mod preview;
-mod recent;
-mod recovered;
-mod remembered;
-mod resuming;
 mod right;
-mod session;
+mod scratch;
 mod sights;
-mod size;
-mod slots;
-mod snapshots;
-mod stages;
-mod thumbnails;
 mod tone;
-mod viewport;
-mod wipe;
