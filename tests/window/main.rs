@@ -24,6 +24,7 @@ mod recent;
 mod recovered;
 mod remembered;
 mod resuming;
+mod right;
 mod session;
 mod sights;
 mod size;
