@@ -14,7 +14,7 @@ use super::present::{self, Lens, Seen};
 use super::second::Second;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{controls, info, plot, status_bar, theme, title_bar};
+use super::{bar, controls, first_steps, info, plot, status, theme};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -24,6 +24,7 @@ impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let facts = self.facts();
+        bar::name_window(ui.ctx(), facts.document());
         self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
             self.shell.presenter.ui(ui, &facts);
@@ -35,7 +36,10 @@ impl Window {
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
         self.display.kept.verdict.ui(ui.ctx());
-        if let Some((purpose, path)) = self.shell.dialogs.ui(ui, &facts, &mut self.commands) {
+        let mut edits = Vec::new();
+        let chosen = self.shell.dialogs.ui(ui, &facts, (&mut edits, &mut self.commands));
+        edits.into_iter().for_each(|edit| self.edit(edit));
+        if let Some((purpose, path)) = chosen {
             let context = ui.ctx().clone();
             self.use_path(&context, purpose, path);
         }
@@ -52,8 +56,8 @@ impl Window {
         let has = &facts.model.remembered;
         let is_narrow = ui.available_width() < NARROW;
         Place::Bar.begin(ui);
-        title_bar::ui(ui, facts, commands);
-        status_bar::ui(ui, facts);
+        bar::ui(ui, facts, commands);
+        status::ui(ui, facts, tracing.sizer.offer(), commands);
         let mut edits = Vec::new();
         let mut right = |ui: &mut Ui, commands: &mut Vec<Command>| {
             match has.tab {
@@ -100,6 +104,9 @@ impl Window {
                 Dock::Path => {}
                 Dock::Kept => {}
             }
+        }
+        if facts.model.has_panels() {
+            first_steps::ui(ui, facts, &mut self.commands);
         }
         if facts.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -169,10 +176,6 @@ impl Window {
         }
         touch.edit.into_iter().for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
-            if facts.model.presentation.is_none() {
-                self.shell.first_steps.ui(ui, room, facts, &mut self.commands);
-                self.tracing.sizer.ui(ui, room, &mut self.commands);
-            }
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }

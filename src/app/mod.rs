@@ -7,12 +7,12 @@
 //! thread, and the window's thread never waits for it.
 
 mod answers;
+mod bar;
 mod changes;
 mod check;
 mod code;
 mod command;
 mod controls;
-mod corner_card;
 mod dialogs;
 mod display;
 mod facts;
@@ -48,11 +48,10 @@ mod sizer;
 mod speed;
 mod spheres;
 mod stage_list;
-mod status_bar;
+mod status;
 mod texture;
 mod theme;
 mod tips;
-mod title_bar;
 mod toasts;
 mod tone;
 mod tools;

@@ -38,23 +38,6 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         .filter(|found| found.time < FARTHEST)
 }
 
-/// Text such as "in about 38 s (33 to 44)". A range that rounds to one number is left out.
-pub fn prediction_words(prediction: &Prediction) -> String {
-    let [low, high] = prediction.range;
-    let about = whole(prediction.time);
-    if high < FARTHEST && whole(low) == whole(high) {
-        format!("in about {about} s")
-    } else if high < FARTHEST {
-        format!("in about {about} s ({} to {})", whole(low), whole(high))
-    } else {
-        format!("in about {about} s ({} or more)", whole(low))
-    }
-}
-
-fn whole(seconds: f64) -> String {
-    format!("{:.0}", seconds.ceil())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -137,8 +137,10 @@ fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if let Some(stage) = stage {
-            let place = format!("{} of {}", stage.index() + 1, Stage::ALL.len());
-            ui.label(RichText::new(place).size(2.6 * unit).color(weak));
+            if let Some(place) = Stage::walk().position(|other| other == stage) {
+                let place = format!("{} of {}", place + 1, Stage::walk().count());
+                ui.label(RichText::new(place).size(2.6 * unit).color(weak));
+            }
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let document = facts.document();

@@ -1,7 +1,7 @@
 //! How far the render is on its way to its end.
 
 use crate::app::facts::Facts;
-use crate::app::status_bar::grouped;
+use crate::app::status::grouped;
 use crate::app::theme;
 use crate::progressive::{Phase, Status, Stop};
 use eframe::egui::{Rect, RichText, Role, Sense, Ui, WidgetInfo, vec2};
