@@ -39,6 +39,11 @@ impl Changes {
         }
     }
 
+    /// The document of the frame before.
+    pub fn last(&self) -> &Document {
+        &self.last
+    }
+
     /// Whether there is a change to undo.
     pub fn can_undo(&self, document: &Document) -> bool {
         self.undo.has_undo(document)

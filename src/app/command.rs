@@ -27,6 +27,12 @@ pub enum Command {
     /// Opens the dialog of `Save` with this format.
     SaveAs(OutputFormat),
     ShowInFolder,
+    /// Opens the file that was saved last, with the system's program for it.
+    ViewSaved,
+    StopSaving,
+    /// Goes on with the film of a window that ended early.
+    Recover,
+    NotNow,
     CopyPicture,
     CopyCommand,
     Fresh,
@@ -70,6 +76,8 @@ pub enum Command {
     Code,
     Book,
     Companion,
+    WholeCompanion,
+    StopCompanion,
     ExtremeScenes,
     FirstSteps,
     Help,
@@ -281,7 +289,7 @@ fn rows() -> Vec<Row> {
         C::Save,
         "Save…",
         "Saves the picture, the film or the scene",
-        |w, c| w.ask_save(c, OutputFormat::Png),
+        |w, _| w.ask_save(OutputFormat::Png),
         keys(CTRL, Key::S),
         line(),
         also("export png ppm exr toml download film scene")
@@ -929,7 +937,7 @@ fn rows() -> Vec<Row> {
         C::SaveAs(OutputFormat::P6),
         "Save as PPM…",
         "",
-        |w, c| w.ask_save(c, OutputFormat::P6),
+        |w, _| w.ask_save(OutputFormat::P6),
         keys(CTRL_SHIFT, Key::S),
         unlisted()
     );
@@ -937,8 +945,32 @@ fn rows() -> Vec<Row> {
         C::SaveAs(OutputFormat::Exr),
         "Save film…",
         "",
-        |w, c| w.ask_save(c, OutputFormat::Exr),
+        |w, _| w.ask_save(OutputFormat::Exr),
         keys(CTRL, Key::E),
+        unlisted()
+    );
+    row!(C::ViewSaved, "Open", "Opens it outside of Weekender", |w, c| w.view_saved(c), unlisted());
+    row!(C::StopSaving, "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted());
+    row!(C::Recover, "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted());
+    row!(
+        C::NotNow,
+        "Not now",
+        "Leaves it until the window closes",
+        |w, _| w.shell.toasts.withdraw(Command::NotNow),
+        unlisted()
+    );
+    row!(
+        C::WholeCompanion,
+        "Write the full one",
+        "Renders its pictures at full size and without noise, which takes some minutes",
+        |w, c| w.write_companion(c, false),
+        unlisted()
+    );
+    row!(
+        C::StopCompanion,
+        "Stop",
+        "Leaves out the pictures that are missing",
+        |w, _| w.files.stop_companion(),
         unlisted()
     );
     row!(C::Deselect, "Deselect the sphere", "", |w, _| w.model.selected = None, unlisted());
@@ -988,7 +1020,7 @@ fn rows() -> Vec<Row> {
         C::ClearPaths,
         "Close the paths",
         "",
-        |w, _| w.tools.paths.forget(),
+        |w, _| w.clear_paths(),
         needs(|f| f.has_paths, NO_PATHS),
         unlisted()
     );

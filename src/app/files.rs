@@ -1,22 +1,34 @@
 //! Saves and opens files without blocking the window's thread: the render thread, which has the film, writes; a
-//! separate thread reads.
+//! separate thread reads. A size that is not on the screen is rendered first, beside the picture.
 
 use super::answers::Answers;
+use super::autosave::Autosave;
+use super::command::Command;
 use super::kept::Subject;
 use super::model::document::Document;
 use super::scene_file::SceneFile;
-use crate::film::{Film, key};
-use crate::job::output::{Description, OutputFormat, write_image, write_part};
+use super::toasts::Toasts;
+use crate::backends::BackendChoice;
+use crate::cli::{CompanionOptions, ProgressChoice};
+use crate::film::Film;
+use crate::job::output::{Description, OutputFormat, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
+use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{FilmIdentity, ReferenceMeans};
-use crate::system::files::replace_file;
+use crate::progressive::{
+    FilmIdentity, Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop,
+};
+use crate::render_cpu::CpuOptions;
+use crate::system::files::{cache_directory, replace_file};
+use crate::system::interrupt::Interrupt;
 use eframe::egui::{ColorImage, Context};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// The film that the window resumes at startup.
 pub struct Resumed {
@@ -34,16 +46,26 @@ pub struct NotOpened {
     pub path: PathBuf,
     /// Why, in words.
     pub reason: String,
-    /// It may be a picture of another program, which says nothing about how it was made.
+    /// It is a picture of another program, which says nothing about how it was made.
     pub is_picture: bool,
 }
 
+/// A picture that is rendered at its own size, to be saved.
+struct Sized {
+    progressive: Progressive,
+    document: Document,
+    samples: u64,
+    named: (OutputFormat, PathBuf),
+}
+
 /// Files being read and written. The answers are the path, or why it failed.
-#[derive(Default)]
 pub struct Files {
     pub scene_file: SceneFile,
+    pub autosave: Autosave,
     /// The film of the command line, to go on with.
     pub pending_resume: Option<(PathBuf, RenderJob)>,
+    /// The film of the last window is read, and must not be replaced before.
+    pub is_restoring: bool,
     /// To be saved once there are samples.
     pub pending_save: Option<(OutputFormat, PathBuf)>,
     /// To be copied once there are samples.
@@ -58,12 +80,129 @@ pub struct Files {
     pub copied: Answers<(ColorImage, String)>,
     /// Films to compare with.
     pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
+    /// Whether the companion that was written is the full one.
+    pub companions: Answers<Result<bool, String>>,
+    /// Where the companion is written.
+    pub companion: Option<PathBuf>,
+    /// Stops the companion that is being written.
+    companion_stop: Option<Arc<Interrupt>>,
+    sized: Option<Sized>,
 }
 
 impl Files {
+    pub fn new(autosave: Autosave) -> Self {
+        Files {
+            scene_file: SceneFile::default(),
+            autosave,
+            pending_resume: None,
+            is_restoring: false,
+            pending_save: None,
+            pending_copy: false,
+            saved: Answers::default(),
+            opened: Answers::default(),
+            resumed: Answers::default(),
+            copied: Answers::default(),
+            references: Answers::default(),
+            companions: Answers::default(),
+            companion: cache_directory().map(|cache| cache.join("companion")),
+            companion_stop: None,
+            sized: None,
+        }
+    }
+
     /// Whether the film is needed at the size that it has.
     pub fn needs_film(&self) -> bool {
-        self.pending_save.is_some() || self.pending_copy
+        self.pending_save.is_some() || self.pending_copy || self.is_restoring
+    }
+
+    /// Renders the document with this many samples per pixel, and saves it.
+    ///
+    /// # Errors
+    /// Why it cannot be rendered.
+    pub fn save_rendered(
+        &mut self,
+        context: &Context,
+        (document, samples): (Document, u64),
+        backend: BackendChoice,
+        named: (OutputFormat, PathBuf),
+    ) -> Result<(), String> {
+        let job = document.job(1).map_err(|error| error.to_string())?;
+        let mut progressive = Progressive::spawn().map_err(|error| error.to_string())?;
+        let waker = context.clone();
+        progressive.set_notice(move || waker.request_repaint());
+        progressive.start(RenderRequest::new(job, backend, Plan::until(Stop::at_samples(samples))));
+        self.sized = Some(Sized { progressive, document, samples, named });
+        Ok(())
+    }
+
+    pub fn stop_saving(&mut self) {
+        self.sized = None;
+    }
+
+    /// Reports how far the picture is that is rendered to be saved, and saves it at the end.
+    pub fn follow_sized(&mut self, context: &Context, toasts: &mut Toasts) {
+        let Some(sized) = &self.sized else { return };
+        let status = sized.progressive.status();
+        toasts.withdraw(Command::StopSaving);
+        if !status.phase.is_over() {
+            let [width, height] = sized.document.size();
+            let percent = 100 * status.samples_per_pixel.min(sized.samples) / sized.samples.max(1);
+            let words = format!("Rendering {width} × {height} to save it, {percent} %");
+            toasts.offer(words, &[Command::StopSaving]);
+            context.request_repaint_after(Duration::from_millis(250));
+            return;
+        }
+        let Some(Sized { progressive, document, named: (format, path), .. }) = self.sized.take() else {
+            return;
+        };
+        let work = move || {
+            let film = progressive.finish().filter(|film| film.sample_count() > 0);
+            let film = film.ok_or_else(|| match &status.phase {
+                Phase::Failed(reason) => reason.clone(),
+                _ => "nothing was traced".to_owned(),
+            })?;
+            let describe = describer(&document, &status, Some(0.0));
+            write(&film, &document, describe, (format, path))
+        };
+        self.saved.ask("files", context, work, Err);
+    }
+
+    /// Writes the companion, a quick one with small figures or the full one.
+    ///
+    /// # Errors
+    /// If there is no place for it.
+    pub fn write_companion(&mut self, context: &Context, is_quick: bool) -> Result<(), &'static str> {
+        if self.companion_stop.is_some() {
+            return Ok(());
+        }
+        let out = self.companion.clone().ok_or("There is no home directory to write the companion in")?;
+        let interrupt = Arc::new(Interrupt::unheard());
+        self.companion_stop = Some(Arc::clone(&interrupt));
+        let options = CompanionOptions {
+            out,
+            bench: None,
+            source: None,
+            quick: is_quick,
+            progress: ProgressChoice::Off,
+            backend: BackendChoice::Cpu(CpuOptions::default()),
+        };
+        let work = move || {
+            let written = companion::write(&options, &interrupt);
+            written.map(|_| !is_quick).map_err(|failure| failure.to_string())
+        };
+        self.companions.ask("companion", context, work, Err);
+        Ok(())
+    }
+
+    pub fn stop_companion(&mut self) {
+        if let Some(interrupt) = &self.companion_stop {
+            interrupt.flag().store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// Notes that the companion was written. Returns whether it was stopped before.
+    pub fn end_companion(&mut self) -> bool {
+        self.companion_stop.take().is_some_and(|interrupt| interrupt.is_set())
     }
 
     /// Saves and copies what was asked for, once there are samples.
@@ -80,20 +219,11 @@ impl Files {
     }
 
     /// Writes the film on the screen at the next end of a pass.
-    pub fn save(&self, context: &Context, subject: &Subject<'_>, (format, path): (OutputFormat, PathBuf)) {
-        let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
+    pub fn save(&self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
+        let document = subject.document().clone();
+        let describe = describer(&document, subject.status(), subject.seconds_before());
         let answer = self.saved.answer_or(context, Err);
-        subject.inspect(move |film| {
-            answer.give(if film.sample_count() == 0 {
-                Err("nothing has been traced yet; try again in a moment".to_owned())
-            } else if OutputFormat::from_path(&path).is_ok_and(|of_name| of_name == format) {
-                write_image(&path, film, transfer, &describe(film))
-                    .map(|()| path)
-                    .map_err(|error| error.to_string())
-            } else {
-                Err(format!("{} does not end in {}", path.display(), format.ending()))
-            });
-        });
+        subject.inspect(move |film| answer.give(write(film, &document, describe, named)));
     }
 
     /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
@@ -133,7 +263,7 @@ impl Files {
         let opened = path.clone();
         let work = move || {
             saved::open(&path).map_err(|error| NotOpened {
-                is_picture: matches!(error, OpenError::Picture(_)),
+                is_picture: matches!(error, OpenError::Picture(_)) && is_named_picture(&path),
                 reason: error.to_string(),
                 path,
             })
@@ -163,15 +293,41 @@ impl Files {
     }
 }
 
-/// What makes the description of the film on the screen.
-fn describer(subject: &Subject<'_>) -> impl FnOnce(&Film) -> Description + Send + 'static {
-    let document = subject.document();
+fn is_named_picture(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|ending| ["png", "ppm"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
+fn write(
+    film: &Film,
+    document: &Document,
+    describe: impl FnOnce(&Film) -> Description,
+    (format, path): (OutputFormat, PathBuf),
+) -> Result<PathBuf, String> {
+    if film.sample_count() == 0 {
+        return Err("nothing has been traced yet; try again in a moment".to_owned());
+    }
+    if OutputFormat::from_path(&path).is_ok_and(|of_name| of_name == format) {
+        write_image(&path, film, document.rules().transfer, &describe(film))
+            .map(|()| path)
+            .map_err(|error| error.to_string())
+    } else {
+        Err(format!("{} does not end in {}", path.display(), format.ending()))
+    }
+}
+
+/// What makes the description of a film of the document, whose render has this status.
+pub fn describer(
+    document: &Document,
+    status: &Status,
+    seconds_before: Option<f64>,
+) -> impl FnOnce(&Film) -> Description + Send + use<> {
     let mut recipe = document.recipe();
     let stage = document.stage().filter(|_| !document.has_changed_scene());
-    let (status, seconds_before) = (subject.status().clone(), subject.seconds_before());
+    let (status, held_before) = (status.clone(), status.samples_per_pixel.saturating_sub(status.added()));
     move |film| {
         recipe.samples_per_pixel = film.sample_count().max(1);
-        describe(&recipe, stage, film, &status, seconds_before)
+        describe(&recipe, stage, film, &status.of_film(film, held_before), seconds_before)
     }
 }
 
@@ -190,10 +346,14 @@ mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
 
+    fn files() -> Files {
+        Files::new(Autosave::new(None, Duration::MAX))
+    }
+
     #[test]
     fn a_text_is_written_or_it_is_said_why_not() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
+        let (files, context) = (files(), Context::default());
         let path = directory.path().join("plot.csv");
         files.save_text(&context, &path, "1,2\n");
         assert_eq!(files.saved.take(), Some(Ok(path.clone())));
@@ -205,7 +365,7 @@ mod tests {
     #[test]
     fn a_film_is_saved_under_a_name_of_its_format() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
+        let (files, context) = (files(), Context::default());
         let save = |format: OutputFormat, name: &str| {
             let path = directory.path().join(name);
             let screen = OnScreen::new(small_film(1, 0.5));
@@ -224,39 +384,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_copied_or_cut_out_is_a_part_of_the_picture() {
-        let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
-        let screen = OnScreen::new(small_film(8, 2.0));
-        let crop = |first| Some(Crop { first, size: [3, 2] });
-        for (crop, size, words) in [
-            (None, [4, 2], "picture: 4x2, 8 samples per pixel"),
-            (crop([1, 0]), [3, 2], "crop: 3x2 at 1,0, 8 samples per pixel"),
-            (crop([2, 1]), [2, 1], "crop: 2x1 at 2,1, 8 samples per pixel"),
-            (crop([4, 0]), [4, 2], "picture: 4x2, 8 samples per pixel"),
-        ] {
-            screen.before_answers(|subject| files.copy(&context, subject, crop));
-            let (picture, told) = files.copied.take().unwrap();
-            assert_eq!((picture.size, told.as_str()), (size, words));
-            // The root of a quarter.
-            assert_eq!(picture.pixels.last().map(|pixel| pixel.to_array()), Some([128, 128, 128, 255]));
-        }
-        let path = directory.path().join("crop.png");
-        let save = |first| {
-            let crop = Crop { first, size: [3, 2] };
-            screen.before_answers(|subject| files.save_crop(&context, subject, crop, path.clone()));
-            files.saved.take().unwrap()
-        };
-        assert_eq!(save([4, 0]), Err("the crop, 3x2 at 4,0, is outside of the picture".to_owned()));
-        assert_eq!(save([2, 0]), Ok(path.clone()));
-        let read = image::open(&path).unwrap();
-        assert_eq!([read.width(), read.height()], [2, 2]);
-    }
-
-    #[test]
     fn a_film_without_samples_is_not_saved() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, path) = (Files::default(), directory.path().join("a.png"));
+        let (files, path) = (files(), directory.path().join("a.png"));
         let (screen, context) = (OnScreen::new(Film::new(4, 2, 1)), Context::default());
         let named = (OutputFormat::Png, path.clone());
         screen.before_answers(|subject| files.save(&context, subject, named));
@@ -268,7 +398,7 @@ mod tests {
     #[test]
     fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (Files::default(), Context::default());
+        let (files, context) = (files(), Context::default());
         let white = image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3]));
         white.save(directory.path().join("a.png")).unwrap();
         std::fs::write(directory.path().join("a.toml"), "[camera").unwrap();

@@ -7,6 +7,7 @@
 //! thread, and the window's thread never waits for it.
 
 mod answers;
+mod autosave;
 mod bar;
 mod changes;
 mod check;
@@ -15,21 +16,21 @@ mod command;
 mod controls;
 mod dialogs;
 mod display;
+mod dock;
 mod facts;
 mod files;
 mod first_steps;
 mod frame_log;
 mod identity;
-mod info;
 mod input;
 mod inspector;
 mod kept;
+mod lanes;
 mod layers;
 mod layout;
 mod menu;
 mod model;
 mod navigation;
-mod packet;
 mod paths;
 mod perform;
 mod pixel_values;
@@ -40,6 +41,7 @@ mod present;
 mod preview;
 mod questions;
 mod receive;
+mod right;
 mod scene_file;
 mod second;
 mod shell;
@@ -48,10 +50,10 @@ mod sizer;
 mod speed;
 mod spheres;
 mod stage_list;
+mod stage_panel;
 mod status;
 mod texture;
 mod theme;
-mod tips;
 mod toasts;
 mod tone;
 mod tools;
@@ -94,9 +96,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
-    let state = |name: &str| state_directory().map(|state| state.join(name));
-    let options =
-        WindowOptions { state_directory: state("windows"), settings: state("settings.json"), ..options };
+    let options = WindowOptions { state_directory: state_directory(), ..options };
     let drawn = Arc::new(OnceLock::<egui::Context>::new());
     let waker = Arc::clone(&drawn);
     // SIGTERM, as at the end of a desktop session, closes the window in order.
@@ -110,8 +110,10 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            let mut window = create(options, &context.egui_ctx)?;
-            window.shell.interrupt = Some(heeded);
+            let mut window = Window::with(options, context.storage)?;
+            (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
+            // The first frame would have egui's own style otherwise.
+            window.dress(&context.egui_ctx);
             // A second renderer has a context of its own, but the first one never drew.
             let _ = drawn.set(context.egui_ctx.clone());
             Ok(Box::new(window) as Box<dyn eframe::App>)
@@ -127,13 +129,6 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
-}
-
-/// Makes the window before its first frame, which would have egui's own style otherwise.
-fn create(options: WindowOptions, context: &egui::Context) -> Result<Window> {
-    let mut window = Window::new(options)?;
-    window.dress(context);
-    Ok(window)
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu

@@ -1,7 +1,10 @@
 //! What commands do that need more than one part of the window.
 
+use super::autosave::picture_of;
 use super::command::Command;
-use super::dialogs::{Dialog, PathBox, Purpose};
+use super::dialogs::{
+    Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
+};
 use super::model::companion;
 use super::model::device::{self, Device};
 use super::model::document::Document;
@@ -18,20 +21,18 @@ use super::navigation;
 use super::places;
 use super::sight::Sighted;
 use super::spheres::grip::{new_body, to_copy};
-use super::spheres::neighbour;
+use super::spheres::{self, Selected, neighbour};
 use super::theme;
 use super::window::Window;
-use super::wording::lower_first;
+use super::wording::{grouped, lower_first};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::{BOOK_URL, Stage};
+use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Where the companion is written, from the working directory.
-const COMPANION: &str = "companion/index.html";
 
 impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
@@ -62,10 +63,8 @@ impl Window {
         let Window { model, tools, display, shell, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
-        } else if display.kept.verdict.is_open() {
-            display.kept.verdict.close();
         } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
-            tools.paths.forget();
+            commands.push(Command::ClearPaths);
         } else if display.sight.is_some() {
             commands.push(Command::ShowMe);
         } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
@@ -88,11 +87,15 @@ impl Window {
 
     /// Shows another picture. The user's own way to stop stays, unless the picture has its own.
     pub(super) fn show_origin(&mut self, origin: Origin) {
-        let before = self.document();
-        let (stop, usual) = (before.stop, before.origin.usual_stop());
         let mut document = Document::new(origin);
-        if stop != usual && document.stop.samples.is_none() {
+        if let Some(stop) = self.model.own_stop.filter(|_| document.stop.samples.is_none()) {
             document.stop = stop;
+        }
+        let before = self.document();
+        if before.is_changed() && !before.is_from_file {
+            let place = before.stage().map_or_else(|| before.title(), |stage| stage.section.to_owned());
+            let words = format!("Your changes to {place} are kept in Undo");
+            self.shell.toasts.good_with(words, &[Command::Undo]);
         }
         self.show_document(document);
     }
@@ -132,10 +135,15 @@ impl Window {
     // Undo
 
     pub(super) fn undo(&mut self) {
+        let before = self.document().clone();
         self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
+        let words = format!("Undone: {}", self.document().difference(&before));
+        self.shell.toasts.withdraw(Command::Redo);
+        self.shell.toasts.good_with(words, &[Command::Redo]);
     }
 
     pub(super) fn redo(&mut self) {
+        self.shell.toasts.withdraw(Command::Redo);
         self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
     }
 
@@ -193,7 +201,7 @@ impl Window {
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
-        match self.spheres.edit(&mut self.model, edit) {
+        match spheres::edit(&mut self.model, edit) {
             Ok(()) => self.note_step(Step::Change),
             Err(reason) => self.shell.toasts.bad(reason),
         }
@@ -225,14 +233,14 @@ impl Window {
     }
 
     pub(super) fn look_at_sphere(&mut self) {
-        if let Some(selected) = self.spheres.selected(&self.model) {
+        if let Some(selected) = Selected::of(&self.model) {
             let camera = navigation::recentre(&self.document().camera, selected.body.center);
             self.model.document.camera = camera;
         }
     }
 
     pub(super) fn focus_sphere(&mut self) {
-        let Some(selected) = self.spheres.selected(&self.model) else { return };
+        let Some(selected) = Selected::of(&self.model) else { return };
         let camera = self.document().camera;
         let towards = (camera.look_from - selected.body.center).normalize_or_zero();
         let nearest = selected.body.center + selected.body.radius * towards;
@@ -314,6 +322,11 @@ impl Window {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }
+    }
+
+    pub(super) fn clear_paths(&mut self) {
+        self.tools.paths.forget();
+        self.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
     }
 
     // Panels
@@ -495,14 +508,10 @@ impl Window {
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
         let kept = &model.view.kept;
-        let Some((place, named)) = kept.chosen().and_then(|place| Some((place, kept.get(place)?))) else {
-            return;
-        };
-        let live = (&model.document, &tracing.main);
-        let subject =
-            super::kept::Subject::new(&model.view, live, tracing.seconds_before, &display.kept.thread).live();
-        let names = [kept.title(place), "the picture".to_owned()];
-        display.kept.verdict.ask(context, &named.kept, &subject, names);
+        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
+            display.kept.verdict.ask(context, &named.kept, (&model.document, &tracing.main));
+            model.remembered.dock = Some(Dock::Kept);
+        }
     }
 
     // Files
@@ -515,30 +524,131 @@ impl Window {
         self.ask_path(context, Purpose::Check);
     }
 
-    pub(super) fn ask_save(&mut self, context: &Context, format: OutputFormat) {
-        self.ask_path(context, Purpose::Save(format));
+    pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
+        let mut from = self.folder();
+        if purpose == Purpose::SavePlot {
+            from.push(format!("{}.csv", file_name(self.document())));
+        }
+        self.shell.dialogs.system.ask(context, purpose, from);
     }
 
-    pub(super) fn ask_path(&mut self, _: &Context, purpose: Purpose) {
-        let name = self.display.subject(&self.model, &self.tracing).document().name();
-        let path_box = PathBox::new(purpose, &name, self.model.remembered.directory.as_deref());
-        self.shell.dialogs.open(Dialog::Path(path_box));
+    /// Opens the dialog of saving with this format chosen.
+    pub(super) fn ask_save(&mut self, format: OutputFormat) {
+        let folder = self.folder();
+        let folder = if self.model.remembered.directory.as_ref() == Some(&folder) {
+            folder
+        } else {
+            default_folder().unwrap_or(folder)
+        };
+        let subject = self.display.subject(&self.model, &self.tracing);
+        let document = subject.document();
+        let save = SaveBox::new(&file_name(document), folder, What::Picture(format), document.size());
+        self.shell.dialogs.open(Dialog::Save(save));
     }
 
-    pub(super) fn use_path(&mut self, context: &Context, purpose: Purpose, path: std::path::PathBuf) {
+    /// The folder in which the user is at work.
+    fn folder(&self) -> PathBuf {
+        let last = self.model.remembered.directory.clone().filter(|folder| folder.is_dir());
+        last.or_else(|| default_folder().filter(|folder| folder.is_dir()))
+            .or_else(|| std::env::current_dir().ok())
+            .or_else(home_directory)
+            .unwrap_or_default()
+    }
+
+    pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
+        match outcome {
+            Outcome::Named(purpose, path) => self.use_path(context, purpose, path),
+            Outcome::Size(size) => {
+                self.tracing.sizer.accepted = Some(size);
+                self.model.document.give_size(size);
+            }
+            Outcome::Stay | Outcome::Close => {}
+        }
+    }
+
+    fn use_path(&mut self, context: &Context, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open => self.files.open(context, path),
             Purpose::Check => self.tools.check.begin(context, &path, None),
-            Purpose::Save(format) => self.files.pending_save = Some((format, path)),
-            Purpose::SaveScene => {
-                let subject = self.display.subject(&self.model, &self.tracing);
-                self.files.save_scene(context, path, subject.document());
-            }
+            Purpose::ReferenceFilm => self.files.load_reference(context, path),
             Purpose::SavePlot => {
                 let csv = super::plot::csv(&self.tracing.main.status().history);
                 self.files.save_text(context, &path, &csv);
             }
-            Purpose::ReferenceFilm => self.files.load_reference(context, path),
+            Purpose::Save(what, size) => {
+                if let Some(folder) =
+                    path.parent().filter(|folder| default_folder().as_deref() == Some(folder))
+                {
+                    // If this fails, writing the file tells why.
+                    let _ = std::fs::create_dir_all(folder);
+                }
+                self.save_as(context, what, size, path);
+            }
+            Purpose::Place(_) => {}
+        }
+    }
+
+    fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
+        let subject = self.display.subject(&self.model, &self.tracing);
+        let document = subject.document();
+        match what {
+            What::Scene => self.files.save_scene(context, path, document),
+            What::Picture(format) if size == document.size() => {
+                self.files.pending_save = Some((format, path));
+            }
+            What::Picture(format) => {
+                let samples = samples_wanted(document, subject.status());
+                let mut document = document.clone();
+                document.give_size(size);
+                let backend = self.model.backend();
+                let named = (format, path);
+                let begun = self.files.save_rendered(context, (document, samples), backend, named);
+                if let Err(reason) = begun {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                }
+            }
+        }
+    }
+
+    /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
+    pub(super) fn ask_about_size(&mut self) {
+        let (size, before) = (self.document().size(), self.changes.last());
+        if size == before.size() || self.tracing.film.is_some() || self.tracing.sizer.accepted == Some(size) {
+            return;
+        }
+        let before = if Arc::ptr_eq(&before.origin, &self.document().origin) {
+            (before.size(), before.has_own_size)
+        } else {
+            let room = self.display.viewport.room_pixels();
+            (self.document().origin.size_in(room).unwrap_or(before.size()), true)
+        };
+        if let Some(large) = LargeSize::of(&self.facts(), size, before.0) {
+            self.model.document.set_size(before.0);
+            self.model.document.has_own_size = before.1;
+            self.shell.dialogs.open(Dialog::Large(large));
+        }
+    }
+
+    /// Offers the film of a window that ended early.
+    pub(super) fn offer_left(&mut self) {
+        let Some((document, samples)) = self.files.autosave.left().and_then(|path| picture_of(&path)) else {
+            return;
+        };
+        let name = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
+        let samples = grouped(samples);
+        let words =
+            format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
+        self.shell.toasts.offer(words, &[Command::Recover, Command::NotNow]);
+    }
+
+    pub(super) fn recover(&mut self, context: &Context) {
+        let Some(path) = self.files.autosave.left() else { return };
+        match picture_of(&path).map(|(document, _)| (document.job(1), document)) {
+            Some((Ok(job), document)) => {
+                self.show_document(document);
+                self.files.resume(context, path, job, &self.model.document);
+            }
+            _ => self.files.open(context, path),
         }
     }
 
@@ -558,30 +668,74 @@ impl Window {
     }
 
     pub(super) fn show_in_folder(&mut self, context: &Context) {
-        if let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) {
-            self.open_page(context, format!("file://{}", folder.display()));
+        let folder = self.model.remembered.recent.first().and_then(|path| path.parent());
+        if let Some(url) = folder.map(companion::file_url) {
+            self.open_or_tell(context, url);
+        }
+    }
+
+    pub(super) fn view_saved(&mut self, context: &Context) {
+        if let Some(url) = self.model.remembered.recent.first().map(|path| companion::file_url(path)) {
+            self.open_or_tell(context, url);
+        }
+    }
+
+    fn open_or_tell(&mut self, context: &Context, url: String) {
+        if !self.open_page(context, url.clone()) {
+            self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
     }
 
     pub(super) fn open_book(&mut self, context: &Context) {
         let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
-        self.open_page(context, url);
+        self.open_or_tell(context, url);
     }
 
     pub(super) fn open_companion(&mut self, context: &Context) {
-        let page = std::path::absolute(COMPANION).unwrap_or_default();
-        if page.is_file() {
-            self.open_page(context, companion::url(&page, self.document().stage()));
-        } else {
-            self.shell.toasts.bad(format!(
-                "There is no {COMPANION} here; write it with: weekender companion --out companion"
-            ));
+        self.write_companion(context, true);
+    }
+
+    pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
+        match self.files.write_companion(context, is_quick) {
+            Ok(()) => {
+                let time = if is_quick { "about 3 s" } else { "some minutes" };
+                let words = format!("Writing the companion, {time}…");
+                self.shell.toasts.offer(words, &[Command::StopCompanion]);
+            }
+            Err(reason) => self.shell.toasts.bad(reason),
         }
     }
 
-    fn open_page(&mut self, context: &Context, url: String) {
-        self.shell.toasts.good(format!("Opening {url}"));
-        context.open_url(egui::OpenUrl::new_tab(url));
+    /// Opens the companion that was written at the stage that is shown.
+    pub(super) fn show_companion(&mut self, context: &Context, written: Result<bool, String>) {
+        let is_stopped = self.files.end_companion();
+        self.shell.toasts.withdraw(Command::StopCompanion);
+        let Some(folder) = self.files.companion.clone() else { return };
+        match written {
+            Ok(_) if is_stopped => {}
+            Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
+            Ok(false) => {
+                let url = companion::url(&folder.join("index.html"), self.document().stage());
+                if self.open_page(context, url) {
+                    let words = "The companion is open in your browser";
+                    self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
+                } else {
+                    let folder = folder.display();
+                    let words = format!("No browser could be started. The companion is in {folder}");
+                    self.shell.toasts.good(words);
+                }
+            }
+            Err(reason) => self.shell.toasts.bad(format!("The companion was not written: {reason}")),
+        }
+    }
+
+    /// Whether there is a browser to open the page with.
+    fn open_page(&mut self, context: &Context, url: String) -> bool {
+        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
+        if has_browser {
+            context.open_url(egui::OpenUrl::new_tab(url));
+        }
+        has_browser
     }
 
     /// Copies the command that renders the picture, and says what it needs.

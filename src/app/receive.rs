@@ -1,5 +1,6 @@
 //! What background threads have answered.
 
+use super::command::Command;
 use super::files::{NotOpened, Resumed};
 use super::kept::Reopened;
 use super::model::document::Document;
@@ -22,28 +23,31 @@ impl Window {
                 Ok(path) => {
                     self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
-                    self.shell.toasts.good(format!("Saved {}", path.display()));
+                    let name = path.file_name().unwrap_or(path.as_os_str()).display();
+                    let offers = [Command::ViewSaved, Command::ShowInFolder];
+                    self.shell.toasts.good_with(format!("Saved {name}"), &offers);
                 }
-                Err(reason) => self.shell.toasts.bad(format!("Not saved: {reason}")),
+                Err(reason) => {
+                    self.shell.toasts.bad(format!("Not saved: {reason}"));
+                    self.shell.toasts.add_offer(Command::Save);
+                }
             }
         }
         while let Some(outcome) = self.files.opened.take() {
             match outcome {
                 Ok(opened) => self.show_opened(opened),
-                // A picture of another program: the user's own, to be checked.
+                // A picture of another program is the user's own, to be checked.
                 Err(NotOpened { path, is_picture: true, .. }) if path.exists() => {
                     self.tools.check.begin(context, &path, None);
                 }
                 Err(NotOpened { reason, .. }) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        match self.tools.check.follow() {
-            Some(Ok(path)) => {
-                self.model.remembered.note_recent(&path);
-                (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
-            }
-            Some(Err(reason)) => self.shell.toasts.bad(format!("Not checked: {reason}")),
-            None => {}
+        if let Some(path) = self.tools.check.follow() {
+            self.model.remembered.note_recent(&path);
+        }
+        if self.tools.check.take_news() {
+            (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
         }
         while let Some((picture, what)) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
@@ -67,6 +71,10 @@ impl Window {
                 Ok(resumed) => self.go_on(resumed),
                 Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
             }
+            self.files.is_restoring = false;
+        }
+        while let Some(outcome) = self.files.companions.take() {
+            self.show_companion(context, outcome);
         }
         while let Some(outcome) = self.files.references.take() {
             match outcome {
@@ -74,11 +82,8 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not subtracted: {reason}")),
             }
         }
-        while let Some(outcome) = self.shell.dialogs.browsed() {
-            match outcome {
-                Ok((purpose, path)) => self.use_path(context, purpose, path),
-                Err(reason) => self.shell.toasts.bad(reason),
-            }
+        if let Some(outcome) = self.shell.dialogs.chosen() {
+            self.end_dialog(context, outcome);
         }
         self.follow_scene_file(context);
         let device = &mut self.model.remembered.device;
@@ -98,7 +103,9 @@ impl Window {
             document.stop = Stop::at_samples(samples);
         }
         self.show_document(document);
-        self.shell.toasts.good(format!("Opened {}", path.display()));
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let words = format!("Opened {name}; its size and samples hold for this picture only");
+        self.shell.toasts.good(words);
         if let Content::Film(film) = content {
             self.tracing.adopt(film);
             self.changes.adopt(&self.model.document);
@@ -109,11 +116,13 @@ impl Window {
     pub(super) fn go_on(&mut self, resumed: Resumed) {
         let path = resumed.path.display();
         if self.document().has_same_film(&resumed.begun) {
-            self.shell.toasts.good(format!("Continuing {path}"));
-            self.model.remembered.note_recent(&resumed.path);
+            if !self.files.is_restoring {
+                self.shell.toasts.good(format!("Continuing {path}"));
+                self.model.remembered.note_recent(&resumed.path);
+            }
             self.tracing.adopt(resumed.film);
             self.changes.adopt(&self.model.document);
-        } else {
+        } else if !self.files.is_restoring {
             self.shell.toasts.bad(format!(
                 "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
             ));

@@ -89,7 +89,7 @@ impl Window {
         while let Some(changed) = self.files.scene_file.changed.take() {
             let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
             if Arc::ptr_eq(&changed, &origin) && !is_own {
-                self.shell.toasts.offer(format!("{name} has changed"), Command::Reload);
+                self.shell.toasts.offer(format!("{name} has changed"), &[Command::Reload]);
             }
         }
         while let Some(outcome) = self.files.scene_file.reread.take() {

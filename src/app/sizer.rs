@@ -47,6 +47,8 @@ pub struct Sizer {
     /// When the size was changed without the user's asking, oldest first.
     changes: VecDeque<Instant>,
     is_asked: bool,
+    /// A large size that the user wants.
+    pub accepted: Option<[u32; 2]>,
     offer: Option<[u32; 2]>,
 }
 

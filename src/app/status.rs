@@ -4,8 +4,10 @@ use super::command::Command;
 use super::facts::Facts;
 use super::model::sizing::Sizing;
 use super::prediction::prediction;
+use super::spheres;
 use super::theme;
 use super::widgets::{compact, tip};
+use super::wording::grouped;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::progressive::{EndReason, Phase, Status};
@@ -44,7 +46,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut 
                         facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
                     tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
                     left_out(ui, facts.status.rejected_samples);
-                    if let Some([width, height]) = offered {
+                    if spheres::inside(facts.document()) && facts.document().case().is_none() {
+                        ui.label("The camera is inside a sphere.");
+                        if ui.button("Home").on_hover_text(Command::Home.help()).clicked() {
+                            commands.push(Command::Home);
+                        }
+                    } else if let Some([width, height]) = offered {
                         ui.label("This picture is scaled.");
                         let command = Command::Size(Sizing::Viewport);
                         let response = ui.button(format!("Render at {width} × {height}"));
@@ -263,19 +270,6 @@ pub fn time(seconds: f64) -> String {
         3600..86_400 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
         _ => "more than a day".to_owned(),
     }
-}
-
-/// A number with thin spaces between groups of thousands.
-pub fn grouped(n: u64) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) && n > 9999 {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ struct Toast {
     /// The run of the render whose picture it is about, if it is about a picture.
     run: Option<u64>,
     /// What it offers to do.
-    offer: Option<Command>,
+    offers: Vec<Command>,
     /// Its lower edge above that of the picture, and its height, points. It never moves.
     place: Option<(f32, f32)>,
 }
@@ -40,14 +40,14 @@ pub struct Toasts(Vec<Toast>);
 impl Toasts {
     /// Reports a success.
     pub fn good(&mut self, text: impl Into<String>) {
-        self.add(text.into(), false, None);
+        self.add(text.into(), false);
     }
 
     /// Reports a failure, both in the window and on the terminal. It stays until it is closed.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
         console::note(&format!("weekender: {text}"));
-        self.add(text, true, None);
+        self.add(text, true);
     }
 
     /// Reports what is wrong with the picture of the render with this run, in the window and on the terminal.
@@ -63,14 +63,20 @@ impl Toasts {
         self.0.retain(|toast| toast.run.is_none_or(|of| of == run));
     }
 
-    /// Reports something with a button for what may come next.
-    pub fn good_with(&mut self, text: impl Into<String>, command: Command) {
-        self.add(text.into(), false, Some(command));
+    /// Reports a success, and offers commands that follow from it.
+    pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
+        self.good(text);
+        offers.iter().for_each(|offer| self.add_offer(*offer));
+    }
+
+    /// Adds a command to the newest message.
+    pub fn add_offer(&mut self, command: Command) {
+        self.0.last_mut().into_iter().for_each(|toast| toast.offers.push(command));
     }
 
     /// The same, until it is closed or withdrawn.
-    pub fn offer(&mut self, text: impl Into<String>, command: Command) {
-        self.good_with(text, command);
+    pub fn offer(&mut self, text: impl Into<String>, offers: &[Command]) {
+        self.good_with(text, offers);
         if let Some(toast) = self.0.last_mut() {
             toast.stays = true;
         }
@@ -78,13 +84,21 @@ impl Toasts {
 
     /// Removes the messages that offer this command.
     pub fn withdraw(&mut self, command: Command) {
-        self.0.retain(|toast| toast.offer != Some(command));
+        self.0.retain(|toast| !toast.offers.contains(&command));
     }
 
-    fn add(&mut self, text: String, is_error: bool, offer: Option<Command>) {
+    fn add(&mut self, text: String, is_error: bool) {
         self.0.retain(|toast| toast.text != text);
         let since = Instant::now();
-        self.0.push(Toast { text, is_error, since, stays: is_error, run: None, offer, place: None });
+        self.0.push(Toast {
+            text,
+            is_error,
+            since,
+            stays: is_error,
+            run: None,
+            offers: Vec::new(),
+            place: None,
+        });
     }
 
     /// The visible messages, oldest first.
@@ -142,13 +156,14 @@ impl Toast {
                 let label = ui.add(Label::new(RichText::new(&self.text).color(color)).wrap());
                 let live = if self.is_error { Live::Assertive } else { Live::Polite };
                 label.ctx.accesskit_node_builder(label.id, |node| node.set_live(live));
-                if let Some(command) = self.offer {
-                    let response = ui.button(command.name()).on_hover_text(command.help());
-                    if response.clicked() {
-                        commands.push(command);
-                        is_closed = true;
+                ui.horizontal_wrapped(|ui| {
+                    for command in &self.offers {
+                        if ui.button(command.name()).on_hover_text(command.help()).clicked() {
+                            commands.push(*command);
+                            is_closed = true;
+                        }
                     }
-                }
+                });
             });
             is_closed |= sign_button(ui, Sign::Close, 20.0, "Close this message").clicked();
         });
@@ -188,7 +203,7 @@ mod tests {
         toasts.bad("failed");
         let context = egui::Context::default();
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
-        let mut draw = |toasts: &mut Toasts| {
+        let draw = |toasts: &mut Toasts| {
             let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
         };
         draw(&mut toasts);

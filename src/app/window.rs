@@ -1,6 +1,7 @@
 //! The window: its parts, and the order of a frame. Only this file and `perform`, `receive` and `layout`, which extend it,
 //! know all parts.
 
+use super::autosave::{Autosave, picture_of};
 use super::changes::Changes;
 use super::command::Command;
 use super::display::Display;
@@ -11,15 +12,14 @@ use super::model::Model;
 use super::model::device::{Device, DeviceOptions};
 use super::model::document::Document;
 use super::model::origin::{Origin, Source};
+use super::model::remembered::Stored;
 use super::model::view::ViewState;
 use super::shell::Shell;
-use super::spheres::Spheres;
 use super::theme;
 use super::tools::Tools;
 use super::tracing::Tracing;
 use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;
-use crate::stages::Stage;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use std::time::{Duration, Instant};
@@ -30,7 +30,6 @@ pub struct Window {
     pub(super) model: Model,
     /// What can be undone.
     pub(super) changes: Changes,
-    pub(super) spheres: Spheres,
     pub(super) tracing: Tracing,
     pub(super) display: Display,
     pub(super) tools: Tools,
@@ -46,32 +45,46 @@ impl Window {
     /// # Errors
     /// If the render thread cannot be started, or the frame log cannot be written.
     pub fn new(options: WindowOptions) -> Result<Self> {
-        let mut remembered = super::model::remembered::Remembered::default();
+        Window::with(options, None)
+    }
+
+    /// A window of these options that begins where the last one ended.
+    ///
+    /// # Errors
+    /// Those of [`Window::new`].
+    pub fn with(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
+        let (mut remembered, exposure) = Stored::read(storage);
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
         let has_first_steps = !options.is_picture_given && !remembered.first_steps.is_over;
-        let document = match Stage::ALL.last().filter(|_| has_first_steps) {
-            // The picture of the book's cover.
-            Some(last) => {
-                let document = Document::new(Origin::of_stage(last));
-                Document { stop: options.stop.unwrap_or(document.stop), ..document }
-            }
-            None => document_of(&options),
-        };
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
-        let mut files = Files::default();
-        if let Some(path) = options.resume {
-            files.pending_resume = Some((path, options.recipe.job()?));
-        }
+        let mut files = Files::new(Autosave::new(options.state_directory.as_deref(), options.autosave_every));
+        let last = files.autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
+        let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
+        let mut document = match &last {
+            Some((document, _)) => document.clone(),
+            None if options.is_picture_given => document_of(&options),
+            None => Document::new(Origin::usual()),
+        };
+        document.stop = options.stop.unwrap_or(document.stop);
+        files.is_restoring = last.is_some();
+        files.pending_resume = match (options.resume, last) {
+            (Some(path), _) => Some((path, options.recipe.job()?)),
+            (None, Some((document, path))) => Some((path, document.job(1)?)),
+            (None, None) => None,
+        };
+        let mut view = ViewState::default();
+        view.tone.exposure = exposure;
         Ok(Window {
             changes: Changes::new(document.clone()),
             model: Model {
                 document,
                 selected: None,
-                view: ViewState::default(),
+                view,
+                own_stop: None,
                 remembered,
                 devices: DeviceOptions::of(&options.backend),
                 is_paused: false,
@@ -79,7 +92,6 @@ impl Window {
                 has_first_steps,
                 presentation: None,
             },
-            spheres: Spheres::default(),
             tracing: Tracing::new().context("cannot start the render thread")?,
             display: Display::default(),
             tools: Tools::default(),
@@ -145,6 +157,7 @@ impl Window {
         if let Some((path, job)) = self.files.pending_resume.take() {
             self.files.resume(context, path, job, &self.model.document);
         }
+        self.offer_left();
     }
 
     fn poll(&mut self, context: &egui::Context) {
@@ -201,8 +214,12 @@ impl Window {
 
     /// Starts what the changes of this frame ask for.
     fn follow(&mut self, context: &egui::Context) {
-        if let Err(reason) = self.spheres.follow(context, &mut self.model) {
-            self.shell.toasts.bad(reason);
+        // The selection may be of another scene.
+        let count = self.document().scene().spheres.len();
+        self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
+        self.ask_about_size();
+        if !self.document().is_from_file {
+            self.model.own_stop = self.document().own_stop();
         }
         let room = self.display.viewport.room_pixels();
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
@@ -219,14 +236,19 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, spheres, tracing, display, tools, files, shell, .. } = self;
+        let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
         let subject = display.subject(model, tracing);
         files.follow(context, &subject);
-        tools.follow(context, model, &subject, is_moving);
-        if let Some(words) = spheres.told(&model.document, &tracing.main) {
-            shell.toasts.good(words);
+        files.follow_sized(context, &mut shell.toasts);
+        if !files.is_restoring
+            && let Some(reason) = files.autosave.follow(context, &model.document, tracing)
+        {
+            let words =
+                format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
+            shell.toasts.bad(words);
         }
+        tools.follow(context, model, &subject, is_moving);
         display.place_divider(model, tracing);
         if !has_second {
             model.view.end_comparison();
@@ -253,7 +275,30 @@ fn document_of(options: &WindowOptions) -> Document {
     document
 }
 
+impl Drop for Window {
+    /// A panic does not lose the film.
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.end();
+        }
+    }
+}
+
+impl Window {
+    fn end(&mut self) {
+        self.files.autosave.end(&self.model, &mut self.tracing, self.files.is_restoring);
+    }
+}
+
 impl eframe::App for Window {
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        Stored::new(&self.model.remembered, self.model.view.tone.exposure).write(storage);
+    }
+
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        self.end();
+    }
+
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(log) = &mut self.shell.frame_log {
             let cpu = Duration::from_secs_f32(frame.info().cpu_usage.unwrap_or_default());

@@ -38,7 +38,7 @@ pub struct Stage {
     pub sight: Sight,
     /// Description for those who cannot see the picture.
     pub alt: &'static str,
-    /// The stage that the wipe compares with by default.
+    /// The stage to compare with: the same scene, but another picture.
     pub pair: Option<&'static str>,
     pub setup: Setup,
 }

@@ -142,8 +142,7 @@ impl Interrupt {
         Ok(Interrupt(shared))
     }
 
-    /// An instance that ignores signals, for tests.
-    #[cfg(test)]
+    /// An instance that ignores signals; only its flag ends the work.
     pub(crate) fn unheard() -> Self {
         Interrupt(Arc::default())
     }

@@ -88,6 +88,6 @@ fn pictures_of_the_window() {
     });
     take("window-lanes", "--stage hollow-glass", Theme::Dark, SIZE, |harness| {
         press(harness, Key::N);
-        until(harness, "the packet", |window| window.packet_steps().is_some());
+        until(harness, "the lanes", |window| window.lane_steps().is_some());
     });
 }

@@ -1,26 +1,23 @@
 //! Dialogs, which block the window until they are answered or closed.
 
 mod about;
+mod files;
 mod help;
 mod outcome;
 mod palette;
-mod path_box;
-mod purpose;
 mod sky;
 
+pub use files::{
+    Chosen, LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
+};
 pub use help::Keys;
+pub use outcome::Outcome;
 pub use palette::Palette;
-pub use path_box::PathBox;
-pub use purpose::Purpose;
 
-use super::answers::Answers;
 use super::command::Command;
 use super::facts::Facts;
 use super::model::edit::Edit;
 use eframe::egui::{Context, Id, Modal, PointerState, Ui};
-use outcome::Outcome;
-use path_box::Chosen;
-use std::path::PathBuf;
 
 /// The dialog that is open.
 pub enum Dialog {
@@ -32,8 +29,12 @@ pub enum Dialog {
     Sky,
     /// Version and licences.
     About,
-    /// The entry of a file's name.
-    Path(PathBox),
+    /// Saving the picture, the film or the scene.
+    Save(SaveBox),
+    /// The entry of a path.
+    Path(PathField),
+    /// A size that needs much memory or time.
+    Large(LargeSize),
 }
 
 /// The open dialog, if any, and the system's file dialog.
@@ -42,7 +43,7 @@ pub struct Dialogs {
     open: Option<Dialog>,
     /// The pointer, while what is behind a dialog is drawn.
     pointer: Option<PointerState>,
-    browsed: Answers<(Purpose, Chosen)>,
+    pub system: files::System,
     /// The commands that were used, the last one first.
     used: Vec<Command>,
 }
@@ -74,17 +75,17 @@ impl Dialogs {
         }
     }
 
-    /// Draws the dialog. Returns the chosen file and its purpose, if one was chosen.
+    /// Draws the dialog. Returns how it closes.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
         facts: &Facts,
         (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
-    ) -> Option<(Purpose, PathBuf)> {
+    ) -> Outcome {
         if let Some(pointer) = self.pointer.take() {
             ui.ctx().input_mut(|input| input.pointer = pointer);
         }
-        let dialog = self.open.as_mut()?;
+        let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
         let modal = Modal::new(Id::unique("dialog")).show(ui.ctx(), |ui| {
             ui.set_max_width((room.x - 64.0).min(512.0));
@@ -95,37 +96,28 @@ impl Dialogs {
                 Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
                 Dialog::Sky => sky::ui(ui, facts, edits),
                 Dialog::About => about::ui(ui, facts),
-                Dialog::Path(path_box) => path_box.ui(ui, &self.browsed),
+                Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
+                Dialog::Path(field) => field.ui(ui),
+                Dialog::Large(large) => large.ui(ui),
             }
         });
         if modal.should_close() || !matches!(modal.inner, Outcome::Stay) {
             self.open = None;
         }
-        match modal.inner {
-            Outcome::Named(purpose, path) => Some((purpose, path)),
-            Outcome::Stay | Outcome::Close => None,
-        }
+        modal.inner
     }
 
-    /// The result of the system's file dialog: a file and its purpose, or a message that no dialog is available.
-    pub fn browsed(&mut self) -> Option<Result<(Purpose, PathBuf), &'static str>> {
-        match self.browsed.take()? {
-            (_, Chosen::NoDialog) => {
-                Some(Err("The system's file dialog cannot be shown; type the file's name in the box"))
-            }
-            (purpose, Chosen::Path(path)) => {
-                if matches!(self.open, Some(Dialog::Path(_))) {
-                    self.open = None;
-                }
-                match PathBox::chosen(purpose, path) {
-                    Ok(path) => Some(Ok((purpose, path))),
-                    Err(asks) => {
-                        self.open(Dialog::Path(asks));
-                        None
-                    }
-                }
-            }
+    /// Takes what was chosen in the system's dialog: a file and its purpose. If there was no dialog, opens a field
+    /// for the path.
+    pub fn chosen(&mut self) -> Option<Outcome> {
+        let Chosen { purpose, from, path } = self.system.chosen()?;
+        match (purpose, path, &mut self.open) {
+            (Purpose::Place(_), Some(path), Some(Dialog::Save(save))) => save.place(&path),
+            (Purpose::Place(_), ..) => self.system.is_there = false,
+            (_, Some(path), _) => return Some(Outcome::Named(purpose, path)),
+            (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }
+        None
     }
 }
 
@@ -133,21 +125,7 @@ impl Dialogs {
 mod tests {
     use super::*;
     use crate::app::tests::{facts_of, part, rest_at};
-    use crate::job::output::OutputFormat;
     use eframe::egui;
-
-    const PNG: Purpose = Purpose::Save(OutputFormat::Png);
-
-    #[test]
-    fn without_a_dialog_of_the_system_the_box_stays_and_the_user_is_told() {
-        let mut dialogs = Dialogs::default();
-        dialogs.open(Dialog::Path(PathBox::new(PNG, "a", None)));
-        assert_eq!(dialogs.browsed(), None, "there is no answer yet");
-        dialogs.browsed.answer(&Context::default()).give((PNG, Chosen::NoDialog));
-        let told = dialogs.browsed().unwrap().unwrap_err();
-        assert!(told.contains("cannot be shown") && dialogs.is_open(), "{told}");
-        assert_eq!(dialogs.browsed(), None, "it is told once");
-    }
 
     #[test]
     fn what_is_behind_a_dialog_does_not_see_the_pointer() {
@@ -161,7 +139,7 @@ mod tests {
             let mut harness = part([800.0, 600.0], |ui| {
                 dialogs.begin(ui.ctx());
                 let behind = ui.ctx().input(|input| input.pointer.hover_pos());
-                assert_eq!(dialogs.ui(ui, &facts, (&mut Vec::new(), &mut Vec::new())), None);
+                dialogs.ui(ui, &facts, (&mut Vec::new(), &mut Vec::new()));
                 seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
             });
             rest_at(&mut harness, egui::pos2(400.0, 300.0));

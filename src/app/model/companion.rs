@@ -6,15 +6,19 @@ use std::path::Path;
 
 /// The URL of the companion with this absolute path, at the first figure that shows the stage.
 pub fn url(page: &Path, stage: Option<&Stage>) -> String {
-    // Characters that end or change a path in a URL.
-    let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
-    let path = path.replace(' ', "%20").replace('\\', "/");
     let shows = |stage: &Stage| {
         let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage() == stage);
         Figure::ALL.iter().find(has_stage)
     };
     let anchor = stage.and_then(shows).map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
-    format!("file:///{}{anchor}", path.trim_start_matches('/'))
+    format!("{}{anchor}", file_url(page))
+}
+
+/// The URL of a file or folder with this absolute path.
+pub fn file_url(path: &Path) -> String {
+    // Characters that end or change a path in a URL.
+    let path = path.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
+    format!("file:///{}", path.replace(' ', "%20").replace('\\', "/").trim_start_matches('/'))
 }
 
 #[cfg(test)]

@@ -30,6 +30,8 @@ pub struct Document {
     pub has_own_size: bool,
     /// When the render ends.
     pub stop: Stop,
+    /// The picture is a file's: its stop is not the user's choice for others.
+    pub is_from_file: bool,
 }
 
 impl PartialEq for Document {
@@ -61,6 +63,7 @@ impl Document {
             stop: origin.usual_stop(),
             checked: Arc::clone(&origin.scene),
             has_own_size: origin.keeps_size(),
+            is_from_file: matches!(origin.source, Source::File(_) | Source::Embedded),
             camera,
             settings,
             origin,
@@ -70,7 +73,8 @@ impl Document {
     /// The document of a recipe that a film or picture describes.
     pub fn of_film(recipe: &Recipe, stage: Option<&'static Stage>) -> Self {
         let document = Document::new(Origin::guess(recipe, stage));
-        Document { camera: recipe.camera, settings: recipe.settings, has_own_size: true, ..document }
+        let Recipe { camera, settings, .. } = *recipe;
+        Document { camera, settings, has_own_size: true, is_from_file: true, ..document }
     }
 
     /// Resets everything to the origin's values. A size that follows the viewport or the book stays.
@@ -78,6 +82,40 @@ impl Document {
         let before = std::mem::replace(self, Document::of(Arc::clone(&self.origin)));
         if !before.has_own_size && !self.has_own_size {
             self.set_size(before.size());
+        }
+    }
+
+    /// The user's own way to stop, which other pictures take over; none if it is this picture's alone.
+    pub fn own_stop(&self) -> Option<Stop> {
+        let is_own = self.stop != self.origin.usual_stop() && self.stop.samples.is_none();
+        (is_own && !self.is_from_file).then_some(self.stop)
+    }
+
+    /// What differs from `other`, to name a change.
+    pub fn difference(&self, other: &Document) -> &'static str {
+        let (mine, theirs) = (&self.camera, &other.camera);
+        if !Arc::ptr_eq(&self.origin, &other.origin) {
+            "another picture"
+        } else if !Arc::ptr_eq(&self.checked, &other.checked) {
+            match self.scene().spheres.len().cmp(&other.scene().spheres.len()) {
+                std::cmp::Ordering::Equal if self.scene().sky != other.scene().sky => "sky",
+                std::cmp::Ordering::Equal => "sphere",
+                _ => "number of spheres",
+            }
+        } else if mine.vfov_degrees != theirs.vfov_degrees {
+            "field of view"
+        } else if mine.defocus_angle_degrees != theirs.defocus_angle_degrees {
+            "defocus angle"
+        } else if mine.focus_distance != theirs.focus_distance {
+            "focus distance"
+        } else if mine != theirs {
+            "camera"
+        } else if self.stop != other.stop {
+            "stop"
+        } else if self.chosen_settings() != other.chosen_settings() {
+            "settings"
+        } else {
+            "size"
         }
     }
 

@@ -22,6 +22,7 @@ pub mod view;
 pub mod viewpoint;
 
 use crate::backends::BackendChoice;
+use crate::progressive::Stop;
 use device::DeviceOptions;
 use document::Document;
 use presentation::Presentation;
@@ -33,6 +34,8 @@ use view::ViewState;
 pub struct Model {
     /// The picture being edited.
     pub document: Document,
+    /// The user's own way to stop, which other stages take over.
+    pub own_stop: Option<Stop>,
     /// The selected sphere.
     pub selected: Option<usize>,
     /// The current view and comparison.

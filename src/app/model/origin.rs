@@ -1,7 +1,6 @@
 //! The origin of a picture.
 
 use super::checked::{CheckedScene, stamp_of};
-use crate::cli::DEFAULT_SCENE;
 use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
@@ -75,9 +74,9 @@ impl Origin {
         Origin::new(stage.recipe(), Source::Stage(stage))
     }
 
-    /// The origin of the picture that is shown if none is named.
+    /// The origin of the picture that is shown if none is named: the last stage, which is on the book's cover.
     pub fn usual() -> Self {
-        Recipe::builtin(DEFAULT_SCENE).map_or_else(|| Origin::of_stage(&Stage::ALL[0]), Origin::of_builtin)
+        Origin::of_stage(Stage::ALL.last().unwrap_or(&Stage::ALL[0]))
     }
 
     /// The origin of a built-in scene. One that is also a stage is opened as that stage.

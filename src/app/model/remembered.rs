@@ -5,6 +5,7 @@ use super::first_steps::FirstSteps;
 use super::sizing::Sizing;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
+use eframe::Storage;
 use glam::DVec3;
 use serde::{Deserialize, Serialize, Serializer};
 use std::path::{Path, PathBuf};
@@ -69,6 +70,8 @@ pub enum Tab {
     Stage,
     Code,
     Check,
+    /// The controls, if the window is too narrow for two panels.
+    Controls,
 }
 
 /// A saved camera.
@@ -160,6 +163,35 @@ impl Default for Remembered {
             recent: Vec::new(),
             first_steps: FirstSteps::default(),
         }
+    }
+}
+
+/// What eframe stores for the next window.
+#[derive(Serialize, Deserialize)]
+pub struct Stored {
+    version: u32,
+    remembered: Remembered,
+    exposure: f64,
+}
+
+impl Stored {
+    /// Settings of another version are not read.
+    const VERSION: u32 = 1;
+    const KEY: &str = "settings";
+
+    pub fn new(remembered: &Remembered, exposure: f64) -> Self {
+        Stored { version: Stored::VERSION, remembered: remembered.clone(), exposure }
+    }
+
+    /// Settings and exposure of the last window, or the usual ones.
+    pub fn read(storage: Option<&dyn Storage>) -> (Remembered, f64) {
+        let stored: Option<Stored> = storage.and_then(|storage| eframe::get_value(storage, Stored::KEY));
+        let stored = stored.filter(|stored| stored.version == Stored::VERSION);
+        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.exposure))
+    }
+
+    pub fn write(&self, storage: &mut dyn Storage) {
+        eframe::set_value(storage, Stored::KEY, self);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Paths drawn as lines over the picture, and the directions that the explained ray's successor was chosen from.
+//! Paths drawn as lines over the picture, and the directions that the next ray was chosen from.
 
 use super::{Path, Paths};
 use crate::app::model::document::Document;
@@ -25,6 +25,9 @@ const NORMAL: Color32 = Color32::from_rgb(90, 200, 250);
 /// The directions that the next ray was chosen from.
 const LOBE: Color32 = Color32::from_rgb(255, 214, 10);
 
+/// So many of the other paths are drawn, faintly.
+const FAINT: usize = 16;
+
 /// The number of points of a circle.
 const CIRCLE: usize = 48;
 
@@ -40,25 +43,28 @@ impl Paths {
             rect,
             is_from_eye: listed.document.camera == document.camera,
         };
-        for (index, path) in listed.paths.iter().enumerate() {
-            if Some(index) != self.selected {
+        for (index, path) in listed.paths.iter().enumerate().take(FAINT) {
+            if index != self.selected {
                 let (shade, line) = (Color32::from_black_alpha(50), accent.gamma_multiply(0.5));
                 view.paint_lines(path, painter, [Stroke::new(2.0, shade), Stroke::new(1.0, line)]);
             }
         }
-        if let Some(path) = self.selected() {
+        if let Some(path) = self.path() {
             let shade = Color32::from_black_alpha(150);
             view.paint_lines(path, painter, [Stroke::new(4.5, shade), Stroke::new(2.0, accent)]);
-            if let Some((step, _)) = path.steps.get(self.ray) {
-                view.paint_step(step, painter);
+            if let Some(line) = path.get(self.point).and_then(|(ray, _)| view.line(ray.origin, end_of(ray))) {
+                painter.line_segment(line, Stroke::new(3.0, Color32::WHITE));
             }
-            view.paint_numbers(path, self.ray, painter, accent, TextStyle::Small.resolve(ui.style()));
+            if let Some((ray, _)) = self.point.checked_sub(1).and_then(|before| path.get(before)) {
+                view.paint_choice(ray, painter);
+            }
+            view.paint_numbers(path, self.point, painter, accent, TextStyle::Small.resolve(ui.style()));
         }
     }
 }
 
 /// The end of a ray, or the point up to which it is drawn.
-pub(super) fn end_of(step: &Step) -> DVec3 {
+fn end_of(step: &Step) -> DVec3 {
     step.hit.map_or(step.origin + step.direction * SKY_LENGTH, |hit| hit.point)
 }
 
@@ -94,7 +100,7 @@ impl View<'_> {
     fn paint_lines(&self, path: &Path, painter: &Painter, strokes: [Stroke; 2]) {
         let first = usize::from(self.is_from_eye);
         for stroke in strokes {
-            for (step, _) in path.steps.iter().skip(first) {
+            for (step, _) in path.iter().skip(first) {
                 if let Some(line) = self.line(step.origin, end_of(step)) {
                     painter.line_segment(line, stroke);
                 }
@@ -102,11 +108,8 @@ impl View<'_> {
         }
     }
 
-    /// The explained ray, with the normal where it ends and what the next direction was chosen from.
-    fn paint_step(&self, step: &Step, painter: &Painter) {
-        if let Some(line) = self.line(step.origin, end_of(step)) {
-            painter.line_segment(line, Stroke::new(3.0, Color32::WHITE));
-        }
+    /// The normal where a ray ends, and what the next direction was chosen from.
+    fn paint_choice(&self, step: &Step, painter: &Painter) {
         let Some(hit) = step.hit else { return };
         let unit = UNIT_SHARE * hit.point.distance(self.camera.look_from);
         self.paint_arrow(hit.point, hit.normal * unit, NORMAL, painter);
@@ -150,12 +153,12 @@ impl View<'_> {
         }
     }
 
-    fn paint_numbers(&self, path: &Path, ray: usize, painter: &Painter, colour: Color32, font: FontId) {
-        for (index, (step, _)) in path.steps.iter().enumerate() {
+    fn paint_numbers(&self, path: &Path, point: usize, painter: &Painter, colour: Color32, font: FontId) {
+        for (index, (step, _)) in path.iter().enumerate() {
             let Some(at) = self.place(end_of(step)) else { continue };
-            let (radius, fill) = if index == ray { (6.0, Color32::WHITE) } else { (4.0, colour) };
+            let (radius, fill) = if index + 1 == point { (6.0, Color32::WHITE) } else { (4.0, colour) };
             painter.circle(at, radius, fill, Stroke::new(1.0, Color32::BLACK));
-            let (number, corner) = ((index + 1).to_string(), at + vec2(7.0, -6.0));
+            let (number, corner) = ((index + 2).to_string(), at + vec2(7.0, -6.0));
             let place = painter.layout_no_wrap(number.clone(), font.clone(), Color32::WHITE).size();
             let behind = Rect::from_min_size(corner - vec2(0.0, place.y), place).expand2(vec2(3.0, 1.0));
             painter.rect_filled(behind, 3.0, Color32::from_black_alpha(235));

@@ -38,8 +38,17 @@ const BENCH_LIMIT: u64 = 16 << 20;
 /// Writes the page and renders the stills that changed. [`Failure::Input`] if nothing was written;
 /// [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
-    let page = build(options).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let index = options.out.join("index.html");
+    write(options, &interrupt)?.report("figure", &index, &interrupt)
+}
+
+/// Writes the page and renders the stills that changed, until `interrupt` is set.
+///
+/// # Errors
+/// Those of [`run`].
+pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<gallery::Outcome, Failure> {
+    let page = build(options).map_err(Failure::Input)?;
     let out = &options.out;
     std::fs::create_dir_all(out)
         .with_context(|| format!("cannot create the directory {}; choose another with --out", out.display()))
@@ -56,7 +65,7 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
         progress: options.progress,
         prints_stills: false,
     };
-    gallery::render(&order, &interrupt)?.report("figure", &index, &interrupt)
+    gallery::render(&order, interrupt)
 }
 
 fn build(options: &CompanionOptions) -> Result<Page> {

@@ -1,10 +1,11 @@
 //! Checks the properties of a prepared scene that kernels rely on: lists of the right length, ties in order, boxes that
 //! enclose their contents.
 
-use super::PreparedScene;
-use super::hierarchy::Hierarchy;
-use crate::job::render::RenderJob;
-use crate::kernel::{COUNT_MASK, EYE, Features, LoadShading, Node, Real, STACK_SIZE};
+use super::*;
+use crate::job::recipe::Recipe;
+use crate::kernel::{COUNT_MASK, EYE, LoadShading, Node, STACK_SIZE};
+use crate::scene::builtin::BuiltinScene;
+use crate::stages::Stage;
 
 /// Returns a message unless a condition holds.
 macro_rules! ensure {
@@ -18,9 +19,9 @@ macro_rules! ensure {
 }
 
 impl<R: Real> PreparedScene<R> {
-    /// Checks what kernels rely on in the prepared scene of `job`. The error describes the first violation. Debug
-    /// builds check every prepared scene.
-    pub fn validate(&self, job: &RenderJob) -> Result<(), String> {
+    /// Checks what kernels rely on in the prepared scene of `job`. The error describes the first violation. Unit tests
+    /// check every scene that is prepared.
+    pub(super) fn validate(&self, job: &RenderJob) -> Result<(), String> {
         let listed = self.opaque.len() + self.two_root.len();
         let count = listed + self.anchored.len();
         ensure!(count < EYE as usize, "{count} spheres have no numbers below {EYE}");
@@ -134,91 +135,100 @@ fn holds<R: Real>(node: &Node<R>, low: [R; 3], high: [R; 3]) -> bool {
     (0..3).all(|axis| node.low[axis] <= low[axis] && high[axis] <= node.high[axis])
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::job::recipe::Recipe;
-    use crate::scene::builtin::BuiltinScene;
-    use crate::stages::Stage;
-    use glam::DVec3;
+fn job(scene: &str) -> RenderJob {
+    Recipe::find(scene).expect("a built-in scene").job().expect("valid")
+}
 
-    fn job(scene: &str) -> RenderJob {
-        Recipe::find(scene).expect("a built-in scene").job().expect("valid")
+/// A job whose prepared scene has anchored spheres beside a hierarchy.
+fn on_the_ground() -> RenderJob {
+    let job = job("field:300");
+    let mut camera = *job.camera();
+    camera.look_from = DVec3::new(4.0, 1e-3, 3.0);
+    job.seen_by(camera, *job.settings()).expect("valid")
+}
+
+fn assert_valid(name: &str, job: &RenderJob) {
+    assert_eq!(PreparedScene::<f32>::new(job).validate(job), Ok(()), "{name}");
+    assert_eq!(PreparedScene::<f64>::new(job).validate(job), Ok(()), "{name}");
+    assert_eq!(PreparedScene::<f32>::as_list(job).validate(job), Ok(()), "{name}");
+}
+
+#[test]
+fn prepared_stages_and_scenes_are_valid() {
+    Stage::ALL.iter().for_each(|stage| assert_valid(stage.id, &stage.recipe().job().expect("valid")));
+    BuiltinScene::ALL.iter().for_each(|scene| assert_valid(scene.name, &job(scene.name)));
+    assert_valid("ground", &on_the_ground());
+    for case in crate::measure::stress::cases().iter().filter(|case| case.recipe.scene.spheres.len() < 5000) {
+        case.forms()
+            .iter()
+            .for_each(|form| assert_valid(&case.id, &case.recipe_in(*form).job().expect("valid")));
     }
+}
 
-    /// A job whose prepared scene has anchored spheres beside a hierarchy.
-    fn on_the_ground() -> RenderJob {
-        let job = job("field:300");
-        let mut camera = *job.camera();
-        camera.look_from = DVec3::new(4.0, 1e-3, 3.0);
-        job.seen_by(camera, *job.settings()).expect("valid")
+#[test]
+fn scene_following_camera_is_valid() {
+    let before = job("field:300");
+    let mut camera = *before.camera();
+    camera.look_from.x += 0.25;
+    let moved = before.seen_by(camera, *before.settings()).expect("valid");
+    let mut prepared = PreparedScene::<f32>::new(&before);
+    assert!(prepared.follow(&before, &moved));
+    assert_eq!(prepared.validate(&moved), Ok(()));
+}
+
+#[test]
+fn damaged_scenes_are_refused() {
+    type Damage = fn(&mut PreparedScene<f32>);
+    fn tree(prepared: &mut PreparedScene<f32>) -> &mut Hierarchy<f32> {
+        prepared.hierarchy.as_mut().expect("a hierarchy")
     }
-
-    fn assert_valid(name: &str, job: &RenderJob) {
-        assert_eq!(PreparedScene::<f32>::new(job).validate(job), Ok(()), "{name}");
-        assert_eq!(PreparedScene::<f64>::new(job).validate(job), Ok(()), "{name}");
-        assert_eq!(PreparedScene::<f32>::as_list(job).validate(job), Ok(()), "{name}");
+    fn leaf(prepared: &mut PreparedScene<f32>) -> &mut Node<f32> {
+        let nodes = &mut tree(prepared).nodes;
+        nodes.iter_mut().rfind(|node| node.count & COUNT_MASK > 0).expect("a leaf")
     }
-
-    #[test]
-    fn prepared_stages_and_scenes_are_valid() {
-        Stage::ALL.iter().for_each(|stage| assert_valid(stage.id, &stage.recipe().job().expect("valid")));
-        BuiltinScene::ALL.iter().for_each(|scene| assert_valid(scene.name, &job(scene.name)));
-        assert_valid("ground", &on_the_ground());
-    }
-
-    #[test]
-    fn scene_following_camera_is_valid() {
-        let before = job("field:300");
-        let mut camera = *before.camera();
-        camera.look_from.x += 0.25;
-        let moved = before.seen_by(camera, *before.settings()).expect("valid");
-        let mut prepared = PreparedScene::<f32>::new(&before);
-        assert!(prepared.follow(&before, &moved));
-        assert_eq!(prepared.validate(&moved), Ok(()));
-    }
-
-    #[test]
-    fn damaged_scenes_are_refused() {
-        type Damage = fn(&mut PreparedScene<f32>);
-        fn tree(prepared: &mut PreparedScene<f32>) -> &mut Hierarchy<f32> {
-            prepared.hierarchy.as_mut().expect("a hierarchy")
-        }
-        fn leaf(prepared: &mut PreparedScene<f32>) -> &mut Node<f32> {
-            let nodes = &mut tree(prepared).nodes;
-            nodes.iter_mut().rfind(|node| node.count & COUNT_MASK > 0).expect("a leaf")
-        }
-        let of_lists: &[Damage] = &[
-            |prepared| prepared.records.truncate(1),
-            |prepared| prepared.scene_index.swap(0, 1),
-            |prepared| prepared.features.two_root = false,
-            |prepared| prepared.block_limit = 3,
-            |prepared| prepared.groups.two_root.reverse(),
-            |prepared| prepared.two_root[0][3] = -0.25,
-            |prepared| prepared.records.swap(0, 1),
-            |prepared| prepared.records[0].0[4] = f32::NAN,
-        ];
-        let of_trees: &[Damage] = &[
-            |prepared| tree(prepared).ranks[0] = tree(prepared).ranks[1],
-            |prepared| tree(prepared).ranks.swap(0, 1),
-            |prepared| prepared.two_root[0][3] *= -1.0,
-            |prepared| tree(prepared).nodes[0].first = 0,
-            |prepared| tree(prepared).nodes[0].first = 1 << 20,
-            |prepared| tree(prepared).nodes[0].low[0] += 0.5,
-            |prepared| leaf(prepared).high[1] = leaf(prepared).low[1],
-            |prepared| tree(prepared).extent = 1.0,
-            |prepared| leaf(prepared).count += 1000,
-            |prepared| leaf(prepared).count -= 1,
-            |prepared| prepared.anchored[0].anchor[0] += 1.0,
-            |prepared| prepared.anchored.clear(),
-        ];
-        for (job, damages) in [(job("three-spheres"), of_lists), (on_the_ground(), of_trees)] {
-            let whole = PreparedScene::<f32>::new(&job);
-            for (place, damage) in damages.iter().enumerate() {
-                let mut damaged = whole.clone();
-                damage(&mut damaged);
-                assert!(damaged.validate(&job).is_err(), "{place}");
-            }
+    let of_lists: &[Damage] = &[
+        |prepared| prepared.records.truncate(1),
+        |prepared| prepared.scene_index.swap(0, 1),
+        |prepared| prepared.features.two_root = false,
+        |prepared| prepared.block_limit = 3,
+        |prepared| prepared.groups.two_root.reverse(),
+        |prepared| prepared.two_root[0][3] = -0.25,
+        |prepared| prepared.records.swap(0, 1),
+        |prepared| prepared.records[0].0[4] = f32::NAN,
+    ];
+    let of_trees: &[Damage] = &[
+        |prepared| tree(prepared).ranks[0] = tree(prepared).ranks[1],
+        |prepared| tree(prepared).ranks.swap(0, 1),
+        |prepared| prepared.two_root[0][3] *= -1.0,
+        |prepared| tree(prepared).nodes[0].first = 0,
+        |prepared| tree(prepared).nodes[0].first = 1 << 20,
+        |prepared| tree(prepared).nodes[0].low[0] += 0.5,
+        |prepared| leaf(prepared).high[1] = leaf(prepared).low[1],
+        |prepared| tree(prepared).extent = 1.0,
+        |prepared| leaf(prepared).count += 1000,
+        |prepared| leaf(prepared).count -= 1,
+        |prepared| prepared.anchored[0].anchor[0] += 1.0,
+        |prepared| prepared.anchored.clear(),
+    ];
+    for (job, damages) in [(job("three-spheres"), of_lists), (on_the_ground(), of_trees)] {
+        let whole = PreparedScene::<f32>::new(&job);
+        for (place, damage) in damages.iter().enumerate() {
+            let mut damaged = whole.clone();
+            damage(&mut damaged);
+            assert!(damaged.validate(&job).is_err(), "{place}");
         }
     }
+}
+
+#[test]
+fn block_sum_fits_32_bits() {
+    let limit = |units: f64| block_limit(units / FIXED_POINT_SCALE);
+    for power in 1..=7 {
+        // 2^power samples of this many units are 2^32 - 2^power, and one unit more makes 2^32.
+        let units = f64::from(1_u32 << (32 - power)) - 1.0;
+        assert_eq!(limit(units), 1_u32 << power, "{power}");
+        assert_eq!([limit(units + 0.5), limit(units + 1.0)], [1_u32 << (power - 1); 2], "{power}");
+    }
+    assert_eq!([0.0, 0.3, 1.0, 1000.0].map(limit), [128; 4]);
+    assert_eq!([4_294_967_295.0, 1e12].map(limit), [1; 2]);
 }

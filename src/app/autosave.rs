@@ -1,0 +1,256 @@
+//! The film that the window saves by itself: at intervals, at the end and on a panic. The next window goes on with it.
+//! A lock keeps several windows apart; a window that does not end in order leaves it behind.
+
+use super::answers::Answers;
+use super::files::describer;
+use super::model::Model;
+use super::model::checked::CheckedScene;
+use super::model::document::Document;
+use super::model::origin::{Origin, Source};
+use super::tracing::Tracing;
+use crate::film::{Description, Film, checkpoint};
+use crate::job::recipe::file;
+use crate::job::saved::{self, Saved};
+use crate::progressive::Stop;
+use crate::progressive::describe::counted;
+use crate::stages::Stage;
+use crate::system::console;
+use crate::system::files::lock_path;
+use eframe::egui::Context;
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Writing a film takes at most one part in this many of the time.
+const SHARE: u32 = 20;
+
+/// How long a window waits for another that is about to end.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// The entry of a film's description with the [`Note`].
+const NOTE: &str = "Window";
+
+/// What the window adds to the description of its film, as JSON.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Note {
+    stage: Option<String>,
+    file: Option<String>,
+    samples: Option<u64>,
+    seconds: Option<f64>,
+    noise: Option<f64>,
+    has_own_size: bool,
+    is_from_file: bool,
+}
+
+impl Note {
+    fn of(document: &Document) -> Self {
+        let file = match &document.origin.source {
+            Source::File(path) => path.to_str().map(str::to_owned),
+            _ => None,
+        };
+        let Stop { samples, seconds, noise } = document.stop;
+        Note {
+            stage: document.stage().map(|stage| stage.id.to_owned()),
+            file,
+            samples,
+            seconds,
+            noise,
+            has_own_size: document.has_own_size,
+            is_from_file: document.is_from_file,
+        }
+    }
+
+    fn origin(&self) -> Option<Origin> {
+        match (&self.stage, &self.file) {
+            (Some(id), _) => Stage::find(id).ok().map(Origin::of_stage),
+            (None, Some(path)) => {
+                let path = PathBuf::from(path);
+                file::load(&path).ok().map(|recipe| Origin::new(recipe, Source::File(path)))
+            }
+            (None, None) => None,
+        }
+    }
+}
+
+/// The picture of a film that was saved by a window, and how many samples per pixel it has.
+pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
+    let saved = Saved::describe(path).ok()?;
+    let recipe = saved.recipe().ok()?;
+    let note = saved.description.get(NOTE).and_then(|note| serde_json::from_str::<Note>(note).ok());
+    let Some(note) = note else {
+        return Some((Document::of_film(&recipe, saved.stage()), saved.samples()?));
+    };
+    let origin = note.origin().filter(|origin| origin.recipe.rules == recipe.rules);
+    let mut document = Document::new(origin.unwrap_or_else(|| Origin::guess(&recipe, saved.stage())));
+    if *document.scene() != *recipe.scene {
+        document.checked = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
+    }
+    (document.camera, document.settings) = (recipe.camera, recipe.settings);
+    (document.has_own_size, document.is_from_file) = (note.has_own_size, note.is_from_file);
+    document.stop = Stop { samples: note.samples, seconds: note.seconds, noise: note.noise };
+    Some((document, saved.samples()?))
+}
+
+/// The files of the window that has locked them.
+struct Place {
+    directory: PathBuf,
+    _lock: File,
+}
+
+impl Place {
+    /// `None` if another window has it, or nothing can be written.
+    fn claim(directory: &Path) -> Option<Self> {
+        fs::create_dir_all(directory).ok()?;
+        let path = directory.join("window.lock");
+        let has_ended_early = path.exists();
+        let lock = lock_path(&path, PATIENCE)
+            .inspect_err(|error| log::info!("this window does not save its film by itself: {error}"))
+            .ok()?;
+        let place = Place { directory: directory.to_owned(), _lock: lock };
+        if has_ended_early {
+            // So that this window's own film does not replace it. There may be none.
+            let _ = fs::rename(place.film(), place.left());
+        } else {
+            let _ = fs::remove_file(place.left());
+        }
+        Some(place)
+    }
+
+    fn film(&self) -> PathBuf {
+        self.directory.join("autosave.exr")
+    }
+
+    /// The film of a window that ended early.
+    fn left(&self) -> PathBuf {
+        self.directory.join("recovered.exr")
+    }
+
+    fn release(&self) {
+        let _ = fs::remove_file(self.directory.join("window.lock"));
+    }
+}
+
+pub struct Autosave {
+    place: Option<Place>,
+    every: Duration,
+    due: Instant,
+    /// Run and samples per pixel of the film that was written, or is being written.
+    written: (u64, u64),
+    is_writing: bool,
+    outcomes: Answers<(Instant, Result<(), String>)>,
+    has_failed: bool,
+}
+
+impl Autosave {
+    /// Films that took longer than `every` are saved in `directory`, and again each `every`.
+    pub fn new(directory: Option<&Path>, every: Duration) -> Self {
+        Autosave {
+            place: directory.and_then(Place::claim),
+            every,
+            due: Instant::now(),
+            written: (0, 0),
+            is_writing: false,
+            outcomes: Answers::default(),
+            has_failed: false,
+        }
+    }
+
+    /// The film of the last window, if that ended in order.
+    pub fn last(&self) -> Option<PathBuf> {
+        self.place.as_ref().map(Place::film).filter(|path| path.exists())
+    }
+
+    /// The film of the last window, if that ended early.
+    pub fn left(&self) -> Option<PathBuf> {
+        self.place.as_ref().map(Place::left).filter(|path| path.exists())
+    }
+
+    /// Has the film written if it is time. The render thread only copies it. Returns why it could not be written, once.
+    pub fn follow(&mut self, context: &Context, document: &Document, tracing: &Tracing) -> Option<String> {
+        let mut told = None;
+        while let Some((begun, outcome)) = self.outcomes.take() {
+            self.is_writing = false;
+            self.due = Instant::now() + self.every.max(begun.elapsed() * SHARE);
+            let has_failed = std::mem::replace(&mut self.has_failed, outcome.is_err());
+            told = outcome.err().filter(|_| !has_failed);
+        }
+        let place = self.place.as_ref()?;
+        let status = tracing.main.status();
+        let now = (status.run, status.samples_per_pixel);
+        let is_long = tracing.main.has_samples(document) && tracing.seconds() >= self.every.as_secs_f64();
+        if !is_long || self.is_writing || now == self.written {
+            return told;
+        }
+        let wait = self.due.saturating_duration_since(Instant::now());
+        if !wait.is_zero() {
+            context.request_repaint_after(wait);
+            return told;
+        }
+        (self.is_writing, self.written) = (true, now);
+        let begun = Instant::now();
+        let (path, describe) = (place.film(), describe(document, tracing));
+        // A film that is gone before it is copied is no failure.
+        let answer = self.outcomes.answer_or(context, move |_| (begun, Ok(())));
+        tracing.main.inspect(move |film| {
+            let write = move |film: &Film| (begun, write(&path, film, &describe(film)));
+            match film.try_copy() {
+                Ok(copy) => answer.give_from("autosave", move || write(&copy)),
+                Err(_) => answer.give(write(film)),
+            }
+        });
+        told
+    }
+
+    /// Saves the film at the end of the window. Where it has no place of its own, a panic saves it elsewhere.
+    pub fn end(&mut self, model: &Model, tracing: &mut Tracing, is_restoring: bool) {
+        if std::mem::take(&mut self.is_writing) {
+            let _ = self.outcomes.wait();
+        }
+        let is_panic = std::thread::panicking();
+        let is_kept = self.place.is_some() || is_panic;
+        if is_kept && !is_restoring && tracing.main.has_samples(&model.document) {
+            let describe = describe(&model.document, tracing);
+            if let Some(film) = tracing.main.take_film().filter(|film| film.sample_count() > 0) {
+                let description = describe(&film);
+                let place = self.place.as_ref();
+                let saved = place.and_then(|place| write(&place.film(), &film, &description).ok());
+                let words = format!("the picture's {} per pixel", counted(film.sample_count(), "sample"));
+                match (saved, place) {
+                    (Some(()), Some(place)) if is_panic => console::note(&format!(
+                        "{words} were saved; the next window offers them, or continue with --resume {}",
+                        place.film().display()
+                    )),
+                    (Some(()), _) => {}
+                    _ => {
+                        let name = &model.document.name();
+                        console::note(&saved::rescue(&[], name, &film, &description).map_or_else(
+                            |lost| lost,
+                            |path| format!("{words} were saved; continue with --resume {}", path.display()),
+                        ));
+                    }
+                }
+            }
+        }
+        if let Some(place) = self.place.as_ref().filter(|_| !is_panic) {
+            place.release();
+        }
+    }
+}
+
+fn describe(document: &Document, tracing: &Tracing) -> impl FnOnce(&Film) -> Description + Send + 'static {
+    let note = serde_json::to_string(&Note::of(document)).unwrap_or_default();
+    let describe = describer(document, tracing.main.status(), tracing.seconds_before);
+    move |film| {
+        let mut description = describe(film);
+        description.set(NOTE, note);
+        description
+    }
+}
+
+fn write(path: &Path, film: &Film, description: &Description) -> Result<(), String> {
+    log::info!("autosave: {} samples per pixel in {}", film.sample_count(), path.display());
+    checkpoint::save(path, film, description).map_err(|error| error.to_string())
+}
