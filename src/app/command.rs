@@ -1,6 +1,6 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Palette};
+use super::dialogs::{Dialog, Keys, Palette};
 use super::facts::Facts;
 use super::model::device::Device;
 use super::model::origin::Source;
@@ -116,6 +116,8 @@ pub enum Command {
     Bookmark(usize),
     /// Looks at a kept picture, counted from 0.
     Kept(usize),
+    /// Goes to the field of this name in the left panel.
+    Field(&'static str),
 }
 
 /// The menus, and the submenus of View.
@@ -763,7 +765,7 @@ fn rows() -> Vec<Row> {
         C::Help,
         "Keys and mouse",
         "All keys, and what the mouse does",
-        |w, _| w.shell.dialogs.open(Dialog::Help),
+        |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())),
         key(Key::F1),
         also("shortcuts keyboard help")
     );
@@ -1103,6 +1105,7 @@ impl Command {
             Command::Recent(place) => format!("Recent file {}", place + 1),
             Command::Bookmark(place) => format!("Bookmark {}", place + 1),
             Command::Kept(place) => format!("Kept picture {}", place + 1),
+            Command::Field(name) => name.to_owned(),
             _ => self.row().map_or_else(String::new, |row| row.name.to_owned()),
         }
     }
@@ -1114,6 +1117,7 @@ impl Command {
             Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
             Command::Recent(_) => "Opens it again",
             Command::Bookmark(_) => "Jumps to this camera",
+            Command::Field(_) => "Goes to this field of the controls",
             _ => self.row().map_or("", |row| row.help),
         }
     }
@@ -1156,6 +1160,11 @@ impl Command {
             Command::Extreme(case) => window.show_case(case),
             Command::Recent(place) => window.open_recent(context, place),
             Command::Bookmark(place) => window.jump_to_bookmark(place),
+            Command::Field(name) => {
+                let remembered = &mut window.model.remembered;
+                (remembered.has_panels, remembered.has_controls) = (true, true);
+                super::widgets::focus(context, name);
+            }
             _ => {
                 if let Some(row) = self.row() {
                     (row.run)(window, context);

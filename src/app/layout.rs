@@ -17,7 +17,7 @@ use super::spheres::Selected;
 use super::texture::Texture;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{controls, dock, right, stage_panel, status_bar, theme, title_bar};
+use super::{bar, controls, dock, first_steps, right, stage_panel, status, theme};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -27,6 +27,7 @@ impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let facts = self.facts();
+        bar::name_window(ui.ctx(), facts.document());
         self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
             self.shell.presenter.ui(ui, &facts);
@@ -37,7 +38,9 @@ impl Window {
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
-        let outcome = self.shell.dialogs.ui(ui, &facts, &mut self.commands);
+        let mut edits = Vec::new();
+        let outcome = self.shell.dialogs.ui(ui, &facts, (&mut edits, &mut self.commands));
+        edits.into_iter().for_each(|edit| self.edit(edit));
         self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
@@ -52,8 +55,8 @@ impl Window {
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
         Place::Bar.begin(ui);
-        title_bar::ui(ui, facts, commands);
-        status_bar::ui(ui, facts);
+        bar::ui(ui, facts, commands);
+        status::ui(ui, facts, tracing.sizer.offer(), commands);
         let mut edits = Vec::new();
         let mut tabs = Vec::new();
         if has.has_info {
@@ -110,6 +113,9 @@ impl Window {
             if dock::ui(ui, model, tools, &mut display.kept, facts, commands) {
                 self.ask_path(ui.ctx(), Purpose::SavePlot);
             }
+        }
+        if facts.model.has_panels() {
+            first_steps::ui(ui, facts, &mut self.commands);
         }
         let Model { remembered, .. } = &facts.model;
         if facts.model.has_panels()
@@ -192,10 +198,6 @@ impl Window {
         }
         touch.edit.into_iter().for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
-            if facts.model.presentation.is_none() {
-                self.shell.first_steps.ui(ui, room, facts, &mut self.commands);
-                self.tracing.sizer.ui(ui, room, &mut self.commands);
-            }
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }

@@ -8,12 +8,12 @@
 
 mod answers;
 mod autosave;
+mod bar;
 mod changes;
 mod check;
 mod code;
 mod command;
 mod controls;
-mod corner_card;
 mod dialogs;
 mod display;
 mod dock;
@@ -51,11 +51,9 @@ mod speed;
 mod spheres;
 mod stage_list;
 mod stage_panel;
-mod status_bar;
+mod status;
 mod texture;
 mod theme;
-mod tips;
-mod title_bar;
 mod toasts;
 mod tone;
 mod tools;

@@ -38,6 +38,7 @@ impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &Context, command: Command) {
         self.shell.performed = Some(command);
+        self.shell.dialogs.note_used(command);
         let facts = self.facts();
         if let Some(log) = &mut self.shell.frame_log {
             log.command(&facts.name(command));

@@ -134,7 +134,8 @@ fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
     }
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if let Some(stage) = stage {
-            let place = format!("{} of {}", stage.index() + 1, Stage::ALL.len());
+            let place = Stage::walk().take_while(|other| other.index() <= stage.index()).count();
+            let place = format!("{place} of {}", Stage::walk().count());
             ui.label(RichText::new(place).size(2.25 * unit).color(colours.weak));
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

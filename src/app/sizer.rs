@@ -1,10 +1,8 @@
 //! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
 
-use super::command::Command;
-use super::corner_card::shown_card;
 use super::model::document::Document;
 use super::model::sizing::Sizing;
-use eframe::egui::{self, Align2, Color32, Context, Pos2, Rect, TextStyle, Ui, Vec2, pos2, vec2};
+use eframe::egui::Context;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -103,44 +101,6 @@ impl Sizer {
             }
             Verdict::Wait(time) => context.request_repaint_after(time),
             Verdict::Keep => self.offer = Some(wanted),
-        }
-    }
-
-    /// Draws the offer, if there is one, at the right of `over`, or beside a card that is there. Where a card leaves no
-    /// room, the offer waits until it is closed.
-    pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
-        let Some([width, height]) = self.offer else { return };
-        let label = format!("Render at {width}x{height}");
-        let font = TextStyle::Button.resolve(ui.style());
-        let text = ui.painter().layout_no_wrap(label.clone(), font, Color32::WHITE).size();
-        let size = text + 2.0 * ui.spacing().button_padding;
-        // Above the axes.
-        let usual = over.right_bottom() - vec2(12.0, 124.0);
-        let Some(corner) = free_corner(usual, size, over, shown_card(ui.ctx())) else { return };
-        egui::Area::new(egui::Id::unique("size offer"))
-            .pivot(Align2::RIGHT_BOTTOM)
-            .fixed_pos(corner)
-            .constrain_to(over)
-            .show(ui.ctx(), |ui| {
-                let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
-                            lost; this renders it anew, one pixel of the picture per pixel of the screen";
-                if ui.button(label).on_hover_text(help).clicked() {
-                    commands.push(Command::Size(Sizing::Viewport));
-                }
-            });
-    }
-}
-
-/// The lower right corner of something of this size: the usual one, or one beside the card, if that is in the way. `None` if
-/// there is no room for it in `over`.
-fn free_corner(usual: Pos2, size: Vec2, over: Rect, card: Option<Rect>) -> Option<Pos2> {
-    const GAP: f32 = 8.0;
-    let card = card.map(|card| card.expand(GAP));
-    match card.filter(|card| card.intersects(Align2::RIGHT_BOTTOM.anchor_size(usual, size))) {
-        None => Some(usual),
-        Some(card) => {
-            let beside = pos2(card.left(), usual.y);
-            (beside.x - size.x >= over.left()).then_some(beside)
         }
     }
 }

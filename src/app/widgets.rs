@@ -35,9 +35,24 @@ impl<'a> About<'a> {
     }
 }
 
-/// Gives a widget a name for assistive technology.
+/// Gives a widget a name for assistive technology, and for [`focus`].
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    let wanted: Option<String> = response.ctx.data(|data| data.get_temp(wanted()));
+    if wanted.as_deref() == Some(name) {
+        response.ctx.data_mut(|data| data.remove::<String>(self::wanted()));
+        response.scroll_to_me(None);
+        response.request_focus();
+    }
+}
+
+/// Gives the keyboard focus to the first widget of this name that is drawn next.
+pub fn focus(context: &egui::Context, name: &str) {
+    context.data_mut(|data| data.insert_temp(wanted(), name.to_owned()));
+}
+
+fn wanted() -> Id {
+    Id::unique("widget to focus")
 }
 
 /// Adds a tooltip, which ends with the reason if the control is disabled. In a column it stands beside that, so that it

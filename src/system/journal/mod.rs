@@ -85,7 +85,7 @@ fn keep(line: String) {
 }
 
 /// The kept lines, oldest first.
-fn kept_text() -> String {
+pub fn kept_text() -> String {
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     kept.iter().map(String::as_str).collect::<Vec<_>>().join("\n")
 }
