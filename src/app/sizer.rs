@@ -1,10 +1,9 @@
 //! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
 
 use super::command::Command;
-use super::corner_card::shown_card;
 use super::model::document::Document;
 use super::model::sizing::Sizing;
-use eframe::egui::{self, Align2, Color32, Context, Pos2, Rect, TextStyle, Ui, Vec2, pos2, vec2};
+use eframe::egui::{self, Align2, Context, Rect, Ui};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -60,11 +59,6 @@ impl Sizer {
         self.is_asked = true;
     }
 
-    /// The size that fits, if the picture was kept at another one.
-    pub fn offer(&self) -> Option<[u32; 2]> {
-        self.offer
-    }
-
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
     /// the screen.
     pub fn follow(
@@ -106,42 +100,21 @@ impl Sizer {
         }
     }
 
-    /// Draws the offer, if there is one, at the right of `over`, or beside a card that is there. Where a card leaves no
-    /// room, the offer waits until it is closed.
+    /// Draws the offer, if there is one, in the lower right corner of `over`.
     pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
         let Some([width, height]) = self.offer else { return };
-        let label = format!("Render at {width}x{height}");
-        let font = TextStyle::Button.resolve(ui.style());
-        let text = ui.painter().layout_no_wrap(label.clone(), font, Color32::WHITE).size();
-        let size = text + 2.0 * ui.spacing().button_padding;
-        // Above the axes.
-        let usual = over.right_bottom() - vec2(12.0, 124.0);
-        let Some(corner) = free_corner(usual, size, over, shown_card(ui.ctx())) else { return };
         egui::Area::new(egui::Id::unique("size offer"))
             .pivot(Align2::RIGHT_BOTTOM)
-            .fixed_pos(corner)
+            // Above the axes.
+            .fixed_pos(over.right_bottom() - egui::vec2(12.0, 124.0))
             .constrain_to(over)
             .show(ui.ctx(), |ui| {
-                let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
-                            lost; this renders it anew, one pixel of the picture per pixel of the screen";
-                if ui.button(label).on_hover_text(help).clicked() {
+                let help = "This picture is scaled, because its samples would be lost; this renders it anew, one pixel of \
+                            the picture per pixel of the screen";
+                if ui.button(format!("Render at {width} × {height}")).on_hover_text(help).clicked() {
                     commands.push(Command::Size(Sizing::Viewport));
                 }
             });
-    }
-}
-
-/// The lower right corner of something of this size: the usual one, or one beside the card, if that is in the way. `None` if
-/// there is no room for it in `over`.
-fn free_corner(usual: Pos2, size: Vec2, over: Rect, card: Option<Rect>) -> Option<Pos2> {
-    const GAP: f32 = 8.0;
-    let card = card.map(|card| card.expand(GAP));
-    match card.filter(|card| card.intersects(Align2::RIGHT_BOTTOM.anchor_size(usual, size))) {
-        None => Some(usual),
-        Some(card) => {
-            let beside = pos2(card.left(), usual.y);
-            (beside.x - size.x >= over.left()).then_some(beside)
-        }
     }
 }
 
@@ -204,16 +177,16 @@ mod tests {
             assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{size:?} has fitted");
             assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
             assert_eq!(sizer.changes.len(), usize::from(expected == [320, 180]));
-            assert_eq!(sizer.offer(), None);
+            assert_eq!(sizer.offer, None);
         }
         let mut sizer = settled([320, 180]);
         sizer.offer = Some([1, 1]);
         let old = Present { seconds: 99.0, ..YOUNG };
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90]);
-        assert_eq!((sizer.offer(), sizer.changes.len()), (Some([320, 180]), 0));
+        assert_eq!((sizer.offer, sizer.changes.len()), (Some([320, 180]), 0));
         sizer.ask();
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
-        assert_eq!((sizer.offer(), sizer.changes.len()), (None, 0));
+        assert_eq!((sizer.offer, sizer.changes.len()), (None, 0));
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
     }
 

@@ -72,13 +72,6 @@ impl Toasts {
         self.0.retain(|toast| toast.run.is_none_or(|of| of == run));
     }
 
-    /// Says that a setting is on or off now, in place of an earlier word about it.
-    pub fn switched(&mut self, name: &str, is_on: bool) {
-        let words = |is_on| format!("{name} {}", if is_on { "on" } else { "off" });
-        self.0.retain(|toast| toast.text != words(!is_on));
-        self.good(words(is_on));
-    }
-
     /// Reports a success, and offers commands that follow from it.
     pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
         self.good(text);
@@ -187,10 +180,6 @@ mod tests {
             toasts.good(text);
         }
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first"]);
-        toasts.switched("Error plot", true);
-        toasts.switched("Axes", false);
-        toasts.switched("Error plot", false);
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first", "Axes off", "Error plot off"]);
         assert!(toasts.0.iter().all(|toast| toast.tone == Tone::Good));
     }
 

@@ -313,7 +313,11 @@ impl SaveBox {
             field
         });
         let mut output = field.inner;
-        let field = named(output.response.response, "Name");
+        // A typed ending chooses the format.
+        let typed = Path::new(self.name.trim()).extension();
+        let named = |what: &What| typed.is_some_and(|typed| typed.eq_ignore_ascii_case(what.ending()));
+        self.what = What::ALL.into_iter().find(named).unwrap_or(self.what);
+        let field = self::named(output.response.response, "Name");
         if std::mem::take(&mut self.is_new) {
             field.request_focus();
             let all = egui::text::CCursor::new(self.name.chars().count());
