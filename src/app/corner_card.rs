@@ -14,7 +14,7 @@ const MARGIN: f32 = 12.0;
 pub fn corner_card(ui: &Ui, over: Rect, place: Place, title: &'static str, content: impl FnOnce(&mut Ui)) {
     const INNER: Margin = Margin::symmetric(16, 12);
     let [width, height] = [over.width(), over.height()].map(|room| (room - 2.0 * MARGIN).max(80.0));
-    let shown = egui::Area::new(egui::Id::unique(title))
+    egui::Area::new(egui::Id::unique(title))
         .accessible_name(title)
         .pivot(Align2::RIGHT_TOP)
         .fixed_pos(over.right_top() + vec2(-MARGIN, MARGIN))
@@ -34,16 +34,4 @@ pub fn corner_card(ui: &Ui, over: Rect, place: Place, title: &'static str, conte
                 });
             });
         });
-    let frame = ui.ctx().cumulative_frame_nr();
-    ui.ctx().data_mut(|data| data.insert_temp(place_of_card(), (frame, shown.response.rect)));
-}
-
-fn place_of_card() -> egui::Id {
-    egui::Id::unique("place of a card")
-}
-
-/// The place of the card that has been shown in this frame.
-pub fn shown_card(context: &egui::Context) -> Option<Rect> {
-    let (frame, rect): (u64, Rect) = context.data(|data| data.get_temp(place_of_card()))?;
-    (frame == context.cumulative_frame_nr()).then_some(rect)
 }

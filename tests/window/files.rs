@@ -1,7 +1,7 @@
 //! Saving, opening, dropping, and the companion.
 
 use crate::common::{SMALL, control, has_samples, name_file, open, save, send, until};
-use eframe::egui::{self, Key};
+use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -120,6 +120,8 @@ fn a_file_is_replaced_only_with_a_warning() {
     until(&mut harness, "a picture", has_samples(1));
     send(&mut harness, Command::Save);
     assert!(harness.query_by_label("Replace").is_none());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
     control(&harness, "Name").type_text(path.to_str().unwrap());
     harness.run_steps(3);
     harness.get_by_label("Replace").click();
@@ -139,6 +141,8 @@ fn a_picture_of_another_size_is_rendered_beside_the_one_that_is_shown() {
     control(&harness, "Twice as large").click();
     harness.step();
     control(&harness, "Name").focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
     control(&harness, "Name").type_text(path.to_str().unwrap());
     harness.run_steps(2);

@@ -69,9 +69,9 @@ fn the_film_of_a_window_that_ended_early_is_offered() {
     until(&mut first, "a film", |_| film.exists());
     // Not in order.
     drop(first);
-    let samples = checkpoint::load(&film).unwrap().film.sample_count();
 
     let mut next = window("--device cpu", state.path(), 0);
+    let samples = checkpoint::load(&state.path().join("recovered.exr")).unwrap().film.sample_count();
     assert_ne!(next.state().shown_document().camera.vfov_degrees, 31.0, "it was opened unasked");
     until(&mut next, "a film of its own", |_| film.exists());
     next.get_by_label("Go on with it").click();

@@ -41,11 +41,17 @@ impl What {
         }
     }
 
-    fn ending(self) -> &'static str {
+    fn endings(self) -> &'static [&'static str] {
         match self {
-            What::Picture(format) => &format.ending()[1..],
-            What::Scene => "toml",
+            What::Picture(OutputFormat::Png) => &["png"],
+            What::Picture(OutputFormat::P6) => &["ppm"],
+            What::Picture(OutputFormat::Exr) => &["exr"],
+            What::Scene => &["toml"],
         }
+    }
+
+    fn ending(self) -> &'static str {
+        self.endings()[0]
     }
 }
 
@@ -86,12 +92,7 @@ impl Purpose {
             Purpose::Check => &["png", "ppm"],
             Purpose::ReferenceFilm => &["exr"],
             Purpose::SavePlot => &["csv"],
-            Purpose::Save(what, _) | Purpose::Place(what) => match what {
-                What::Picture(OutputFormat::Png) => &["png"],
-                What::Picture(OutputFormat::P6) => &["ppm"],
-                What::Picture(OutputFormat::Exr) => &["exr"],
-                What::Scene => &["toml"],
-            },
+            Purpose::Save(what, _) | Purpose::Place(what) => what.endings(),
         }
     }
 }
