@@ -92,7 +92,7 @@ impl Window {
             document.stop = stop;
         }
         let before = self.document();
-        if before.is_changed() && !before.is_from_file {
+        if before.is_edited() && !before.is_from_file {
             let place = before.stage().map_or_else(|| before.title(), |stage| stage.section.to_owned());
             let words = format!("Your changes to {place} are kept in Undo");
             self.shell.toasts.good_with(words, &[Command::Undo]);
