@@ -160,6 +160,7 @@ impl Window {
 
     pub(super) fn home(&mut self) {
         self.model.document.camera = self.document().origin.recipe.camera;
+        self.shell.toasts.withdraw(Command::Home);
     }
 
     /// Lets the focus follow the point looked at, or keeps it where it is now.
