@@ -385,7 +385,6 @@ impl Window {
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
                 self.model.view.look(None);
-                self.display.viewport.placement.fit();
                 self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
