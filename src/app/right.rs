@@ -4,8 +4,8 @@ use super::model::remembered::Tab;
 use super::theme;
 use super::widgets::{Sign, sign_button, tip};
 use eframe::egui::{
-    Align, Button, CentralPanel, Layout, Margin, Panel, Rangef, RichText, ScrollArea, Sense, Stroke, Ui,
-    UiBuilder, WidgetInfo, accesskit::Role, vec2,
+    Align, Button, CentralPanel, Layout, Margin, Panel, Rangef, RichText, Role, ScrollArea, Sense, Stroke,
+    Ui, UiBuilder, WidgetInfo, vec2,
 };
 
 /// Height of the tabs, points.
@@ -56,7 +56,7 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
         let is_on = *tab == shown;
         let text = RichText::new(tab.name()).color(if is_on { colours.strong } else { colours.weak });
         let response = row.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)));
-        response.widget_info(|| WidgetInfo::selected(Role::Tab.into(), true, is_on, tab.name()));
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, tab.name()));
         if is_on {
             let stroke = Stroke::new(2.0, colours.accent);
             row.painter().hline(response.rect.x_range().expand(8.0), rect.bottom() - 1.0, stroke);
