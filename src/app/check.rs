@@ -18,38 +18,33 @@ use std::path::{Path, PathBuf};
 /// Width of the wipe's handle, points.
 const HANDLE: f32 = 24.0;
 
+/// A size, and mine, ours and the difference, if the picture could be compared.
+type Compared<T> = Option<([u32; 2], [T; 3])>;
+
 /// A picture that was checked.
 struct Checked {
     number: u64,
     answer: Answer,
-    /// Size and format of the picture, if it could be read.
-    figures: String,
-    /// Its size, and mine, ours and the difference, RGB, if they could be compared.
-    views: Option<([u32; 2], [Vec<u8>; 3])>,
-}
-
-/// An answer on the screen.
-struct Shown {
-    answer: Answer,
-    figures: String,
-    pictures: Option<([u32; 2], [Texture; 3])>,
+    rgb8: Compared<Vec<u8>>,
 }
 
 /// What the middle of the window shows of the two pictures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 enum Side {
     Yours,
+    #[default]
     Wipe,
     Ours,
     Difference,
 }
 
 /// The check of a picture, made by a background thread.
+#[derive(Default)]
 pub struct Check {
     number: u64,
     /// The picture that is checked or was checked last.
     path: Option<PathBuf>,
-    shown: Option<Shown>,
+    shown: Option<(Answer, Compared<Texture>)>,
     /// Something is to be shown that was not there before.
     has_news: bool,
     side: Side,
@@ -57,60 +52,42 @@ pub struct Check {
     answers: Answers<Checked>,
 }
 
-impl Default for Check {
-    fn default() -> Self {
-        Check {
-            number: 0,
-            path: None,
-            shown: None,
-            has_news: false,
-            side: Side::Wipe,
-            divider: 0.5,
-            answers: Answers::default(),
-        }
-    }
-}
-
 impl Check {
     /// Checks a picture; it is one of `stage` if that is known.
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
-        self.number += 1;
+        self.close();
         let (number, checked) = (self.number, path.to_owned());
         let work = move || {
-            let outcome = Mine::read(&checked).map(|mine| {
-                let figures = format!("{}, {} × {} pixels", mine.format, mine.width, mine.height);
-                match judge(&mine, stage) {
-                    Ok(finding) => {
-                        let views =
-                            pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
-                        (finding.answer(&mine), figures, Some(([mine.width, mine.height], views)))
-                    }
-                    Err(error) => (Answer::cannot_check(&error), figures, None),
+            let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
+            let found = mine.and_then(|mine| judge(&mine, stage).map(|finding| (mine, finding)));
+            match found {
+                Ok((mine, finding)) => {
+                    let views =
+                        pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
+                    let rgb8 = Some(([mine.width, mine.height], views));
+                    Checked { number, answer: finding.answer(&mine), rgb8 }
                 }
-            });
-            let (answer, figures, views) = outcome.unwrap_or_else(|error| {
-                (Answer::cannot_check(&unreadable(&checked, error)), String::new(), None)
-            });
-            Checked { number, answer, figures, views }
+                Err(error) => Checked { number, answer: Answer::cannot_check(&error), rgb8: None },
+            }
         };
-        let substitute = move |reason: String| Checked {
-            number,
-            answer: Answer::cannot_check(&anyhow::Error::msg(reason)),
-            figures: String::new(),
-            views: None,
+        let substitute = move |reason: String| {
+            let answer = Answer::cannot_check(&anyhow::Error::msg(reason));
+            Checked { number, answer, rgb8: None }
         };
         self.answers.ask("check", context, work, substitute);
-        (self.path, self.shown, self.has_news) = (Some(path.to_owned()), None, true);
+        (self.path, self.has_news) = (Some(path.to_owned()), true);
+        (self.side, self.divider) = (Side::Wipe, 0.5);
     }
 
-    /// Takes answers. Returns the picture that was checked, if it could be read.
+    /// Takes answers. Returns the picture that was checked, if it could be compared.
     pub fn follow(&mut self) -> Option<PathBuf> {
         let checked = self.answers.take().filter(|checked| checked.number == self.number)?;
-        let Checked { answer, figures, views, .. } = checked;
-        let pictures = views.map(|(size, views)| (size, views.map(|rgb8| Texture::new(size, &rgb8, None))));
-        (self.side, self.has_news) = (Side::Wipe, true);
-        let path = self.path.clone().filter(|_| !figures.is_empty());
-        self.shown = Some(Shown { answer, figures, pictures });
+        let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
+            (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
+        };
+        let path = checked.rgb8.as_ref().and(self.path.clone());
+        self.shown = Some((checked.answer, checked.rgb8.map(textures)));
+        self.has_news = true;
         path
     }
 
@@ -121,7 +98,7 @@ impl Check {
 
     /// The answer, once there is one.
     pub fn answer(&self) -> Option<&Answer> {
-        self.shown.as_ref().map(|shown| &shown.answer)
+        self.shown.as_ref().map(|(answer, _)| answer)
     }
 
     /// Whether an answer is shown or awaited.
@@ -143,7 +120,7 @@ impl Check {
     /// Draws the answer, or that it is awaited.
     pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let name = self.name();
-        let Some(Shown { answer, figures, pictures }) = &self.shown else {
+        let Some((answer, pictures)) = &self.shown else {
             scrolling(ui, |ui| {
                 hint(ui, &format!("Comparing {name} with every stage and every known mistake…"));
                 ui.horizontal(|ui| {
@@ -195,7 +172,6 @@ impl Check {
                 let header = Header { title: "How sure is this?", summary, ..Header::default() };
                 fold(ui, header, false, |ui| _ = hint(ui, why));
                 fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
-                    hint(ui, &format!("{name}: {figures}."));
                     for line in &answer.evidence {
                         hint(ui, &format!("{line}."));
                     }
@@ -210,7 +186,7 @@ impl Check {
     /// Draws the two pictures in the middle of the window, in place of the traced one, if there are any. Returns the room.
     pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
         let name = self.name();
-        let Shown { answer, pictures, .. } = self.shown.as_mut()?;
+        let (answer, pictures) = self.shown.as_mut()?;
         let (size, [yours, ours, difference]) = pictures.as_mut()?;
         let room = ui.available_rect_before_wrap();
         ui.painter().rect_filled(room, 0, theme::surround(ui));
@@ -384,7 +360,7 @@ mod tests {
         give(&check, 1, "first");
         assert_eq!((check.follow(), check.answer()), (None, None));
         give(&check, 2, "second");
-        assert_eq!(check.follow(), Some("second.ppm".into()));
+        assert_eq!(check.follow(), None, "it could not be compared");
         assert_eq!(check.answer().unwrap().explanation, "Second");
         check.close();
         give(&check, 2, "second");
@@ -421,7 +397,7 @@ mod tests {
         let stage = Stage::find("ppm-tiny").unwrap();
         check.begin(&context, &path, Some(stage));
         let checked = check.answers.wait().unwrap();
-        let (size, views) = checked.views.as_ref().unwrap();
+        let (size, views) = checked.rgb8.as_ref().unwrap();
         assert!(*size == [16, 9] && views[0] == rgb8, "the first picture is the reader's");
         check.answers.answer(&context).give(checked);
         assert_eq!(check.follow(), Some(path));

@@ -15,7 +15,7 @@ use crate::system::memory::words;
 use eframe::egui::{
     self, Align, Align2, Button, Color32, ColorImage, CornerRadius, Frame, Key, Label, Layout, Margin, Rect,
     Response, RichText, Role, ScrollArea, Sense, Shape, Sides, Stroke, StrokeKind, TextEdit, TextStyle,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
+    TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
@@ -70,7 +70,7 @@ pub fn ui(
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
     egui::Panel::bottom("dock")
-        .frame(Frame::new().fill(theme::colours(ui).panel))
+        .frame(theme::panel(Margin::ZERO))
         .resizable(true)
         .default_size(usual)
         .size_range(LEAST..=(0.5 * height).max(LEAST))
@@ -165,12 +165,12 @@ fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
             _ => facts.is_on(*command),
         };
         let (left, right) = (u8::from(place != 1 && place != 2) * 4, u8::from(place > 1) * 4);
+        ui.spacing_mut().item_spacing.x = if matches!(place, 1 | 2) { 0.0 } else { 8.0 };
         let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
         let response = ui.add_enabled(reason.is_none(), choice(ui, is_on, *name).corner_radius(corners));
         if tip(ui, response, help, reason.as_deref()).clicked() {
             commands.push(*command);
         }
-        ui.spacing_mut().item_spacing.x = if matches!(place, 1 | 2) { 0.0 } else { 8.0 };
     }
 }
 
@@ -246,9 +246,12 @@ fn card(
 
     let name = below.with_min_y(below.bottom() - 16.0);
     let number = named.kept.number();
+    let layout = Layout::left_to_right(Align::Center);
+    let mut within = ui.new_child(UiBuilder::new().max_rect(name).layout(layout));
     match &mut cards.renamed {
         Some((renamed, text)) if *renamed == number => {
-            let edit = ui.put(name, TextEdit::singleline(text).font(TextStyle::Small).margin(Margin::ZERO));
+            let edit = TextEdit::singleline(text).font(TextStyle::Small).margin(Margin::ZERO);
+            let edit = within.add(edit);
             if edit.lost_focus() {
                 let is_given_up = ui.input(|input| input.key_pressed(Key::Escape)) || text.trim().is_empty();
                 if let Some(name) = view.kept.name_mut(place).filter(|_| !is_given_up) {
@@ -259,7 +262,7 @@ fn card(
                 edit.request_focus();
             }
         }
-        _ => _ = ui.put(name, Label::new(RichText::new(&named.name).small()).halign(Align::LEFT).truncate()),
+        _ => _ = within.add(Label::new(RichText::new(&named.name).small()).truncate()),
     }
 
     let is_at_name = response.interact_pointer_pos().is_some_and(|at| at.y > picture.bottom());
@@ -354,14 +357,10 @@ pub fn data_colours(ui: &Ui) -> [Color32; 5] {
 
 /// An entry of a legend.
 pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
-    let order = Layout::left_to_right(Align::Center);
-    let text = RichText::new(name).small().color(ui.visuals().weak_text_color());
-    let width = 18.0
-        + ui.painter().layout_no_wrap(name.to_owned(), TextStyle::Small.resolve(ui.style()), colour).size().x;
-    ui.allocate_ui_with_layout(vec2(width, 16.0), order, |ui| {
-        ui.spacing_mut().item_spacing.x = 6.0;
-        let (place, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-        ui.painter().rect_filled(place, 2, colour);
-        ui.add(Label::new(text).extend());
-    });
+    let font = TextStyle::Small.resolve(ui.style());
+    let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().weak_text_color());
+    let (rect, response) = ui.allocate_exact_size(text.size() + vec2(16.0, 0.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+    ui.painter().rect_filled(Align2::LEFT_CENTER.align_size_within_rect(vec2(10.0, 10.0), rect), 2, colour);
+    ui.painter().galley(rect.min + vec2(16.0, 0.0), text, colour);
 }

@@ -129,6 +129,11 @@ impl Window {
         self.tools.paths.len()
     }
 
+    /// The verdict about the picture that was checked.
+    pub fn checked(&self) -> Option<&str> {
+        self.tools.check.answer().map(|answer| answer.title.as_str())
+    }
+
     pub fn is_paused(&self) -> bool {
         self.model.is_paused
     }

@@ -4,8 +4,8 @@ use super::model::remembered::Tab;
 use super::theme;
 use super::widgets::{Sign, sign_button, tip};
 use eframe::egui::{
-    Align, Button, CentralPanel, Layout, Margin, Panel, Rangef, RichText, ScrollArea, Sense, Stroke, Ui,
-    UiBuilder, WidgetInfo, accesskit::Role, vec2,
+    Align, Button, CentralPanel, Layout, Margin, Panel, Rangef, RichText, Role, ScrollArea, Sense, Stroke,
+    Ui, UiBuilder, WidgetInfo, vec2,
 };
 
 /// Height of the tabs, points.
@@ -56,7 +56,7 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
         let is_on = *tab == shown;
         let text = RichText::new(tab.name()).color(if is_on { colours.strong } else { colours.weak });
         let response = row.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)));
-        response.widget_info(|| WidgetInfo::selected(Role::Tab.into(), true, is_on, tab.name()));
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, tab.name()));
         if is_on {
             let stroke = Stroke::new(2.0, colours.accent);
             row.painter().hline(response.rect.x_range().expand(8.0), rect.bottom() - 1.0, stroke);
@@ -79,24 +79,21 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
 
 /// What stays at the foot of the panel, at the same height for all stages.
 pub fn foot(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
-    let highest = (0.7 * ui.available_height()).max(80.0);
-    Panel::bottom("foot").resizable(false).frame(theme::panel(Margin::ZERO)).show(ui, |ui| {
-        ScrollArea::vertical()
-            .max_height(highest)
-            .show(ui, |ui| within(ui, Margin::symmetric(16, 4), content));
+    let frame = theme::panel(Margin::symmetric(16, 4));
+    Panel::bottom("foot").resizable(false).frame(frame).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 8.0;
+        content(ui);
     });
 }
 
 /// What scrolls above the foot.
 pub fn scrolling(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     CentralPanel::default().frame(theme::panel(Margin::ZERO)).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| within(ui, Margin::same(16), content));
-    });
-}
-
-fn within(ui: &mut Ui, margin: Margin, content: impl FnOnce(&mut Ui)) {
-    theme::panel(margin).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 8.0;
-        content(ui);
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            theme::panel(Margin::same(16)).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 8.0;
+                content(ui);
+            });
+        });
     });
 }

@@ -123,6 +123,13 @@ mod tests {
         let rest = (9 << 30) - BASE_BYTES;
         assert_eq!(check(rest, 9 << 30), Ok(()));
         assert!(check(rest + 1, 9 << 30).is_err(), "the program needs the rest");
+
+        let fill = |count: usize| zeroed::<u64>(count, || "a list".to_owned(), "make it shorter");
+        assert_eq!(fill(3).unwrap(), [0; 3]);
+        for count in [1 << 50, usize::MAX] {
+            let message = fill(count).unwrap_err().to_string();
+            assert!(message.starts_with("a list needs") && message.ends_with("make it shorter"), "{message}");
+        }
     }
 
     #[test]

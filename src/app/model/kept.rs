@@ -208,11 +208,7 @@ impl KeptList {
             return;
         }
         self.pictures.remove(place);
-        let after = |other: usize| match other.cmp(&place) {
-            std::cmp::Ordering::Less => Some(other),
-            std::cmp::Ordering::Equal => None,
-            std::cmp::Ordering::Greater => Some(other - 1),
-        };
+        let after = |other: usize| (other != place).then(|| other - usize::from(other > place));
         self.looked = self.looked.and_then(after);
         self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
     }

@@ -117,7 +117,7 @@ impl Paths {
     /// Shows a path, from its first hit on.
     fn select(&mut self, path: usize) {
         self.selected = path.min(self.len().saturating_sub(1));
-        self.point = 1;
+        self.point = self.path().map_or(0, |path| path.len().min(1));
     }
 
     /// Explains the next or the previous point of the path.
