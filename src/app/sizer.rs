@@ -58,6 +58,11 @@ impl Sizer {
         self.is_asked = true;
     }
 
+    /// The size at which the picture could be rendered anew, if it is only scaled.
+    pub fn offer(&self) -> Option<[u32; 2]> {
+        self.offer
+    }
+
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
     /// the screen.
     pub fn follow(

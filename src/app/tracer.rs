@@ -152,6 +152,12 @@ impl Tracer {
         self.is_full(document) && self.status.samples_per_pixel > 0
     }
 
+    /// Takes the film, and waits for the end of its pass. The next request starts a new one.
+    pub fn take_film(&mut self) -> Option<Film> {
+        self.started = None;
+        self.progressive.take_film()
+    }
+
     /// Runs `look` with the film on the render thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         self.progressive.inspect(look);
