@@ -206,7 +206,8 @@ mod tests {
             tone,
             since: Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap(),
             run: None,
-            offer: None,
+            offers: Vec::new(),
+            stays: false,
         };
         let mut toasts = Toasts(ages.into_iter().map(toast).collect());
         let context = egui::Context::default();

@@ -165,41 +165,15 @@ fn device_after(chosen: Device, seen: usize, status: &Status) -> (Device, usize)
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use crate::app::tests::window;
-    use crate::film::Film;
-    use crate::job::recipe::Recipe;
     use crate::job::render::BackendInfo;
-    use crate::job::saved::SavedFilm;
-    use eframe::egui::Context;
-
-    #[test]
-    fn a_film_is_not_resumed_after_the_picture_was_changed() {
-        let mut window = window("weekender --stage normals --size 16x9 --samples 1");
-        let resumed = |begun: &Document| Resumed {
-            path: PathBuf::from("/of/mine.exr"),
-            begun: begun.clone(),
-            film: SavedFilm { film: Film::new(16, 9, 1), seconds: None, backend: None },
-        };
-        window.go_on(resumed(&Document::new(Origin::usual())));
-        let told = window.messages();
-        let reason = "Not resumed: the picture was changed before /of/mine.exr had been read";
-        assert!(told[0].starts_with(reason) && window.pending_film.is_none(), "{told:?}");
-        assert!(window.model.remembered.recent.is_empty());
-        let mine = window.document().clone();
-        window.go_on(resumed(&mine));
-        assert!(window.pending_film.is_some());
-        assert_eq!(window.messages().pop().as_deref(), Some("Continuing /of/mine.exr"));
-        assert_eq!(window.model.remembered.recent, [PathBuf::from("/of/mine.exr")]);
-    }
 
     #[test]
     fn each_message_of_a_run_is_told_once() {
         let messages = ["a", "b"].map(str::to_owned).to_vec();
         let status = Status { run: 2, messages, ..Status::default() };
-        assert_eq!(untold((1, 1), &status), ["a", "b"], "those of another run");
-        assert_eq!(untold((2, 1), &status), ["b"]);
-        assert!(untold((2, 2), &status).is_empty());
+        assert_eq!(unseen((1, 1), &status), ["a", "b"], "those of another run");
+        assert_eq!(unseen((2, 1), &status), ["b"]);
+        assert!(unseen((2, 2), &status).is_empty());
     }
 
     #[test]
@@ -216,63 +190,5 @@ mod tests {
         assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
         assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
         assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
-    }
-
-    #[test]
-    fn what_was_written_or_read_is_told_and_remembered() {
-        let (mut window, context) = (window("weekender --stage normals --size 16x9"), Context::default());
-        let path = |name: &str| PathBuf::from("/of").join(name);
-        window.files.saved.answer(&context).give(Ok(path("a.png")));
-        window.files.saved.answer(&context).give(Ok(path("b.CSV")));
-        window.files.saved.answer(&context).give(Err("there is no room".to_owned()));
-        window.files.resumed.answer(&context).give(Err("there is no film".to_owned()));
-        window.files.references.answer(&context).give(Err("it is not a film".to_owned()));
-        let reason = "it cannot be read".to_owned();
-        let not_opened = NotOpened { path: path("not there.png"), reason, is_picture: true };
-        window.files.opened.answer(&context).give(Err(not_opened));
-        let copied =
-            (egui::ColorImage::from_rgb([1, 1], &[0; 3]), "picture: 1x1, 4 samples per pixel".to_owned());
-        window.files.copied.answer(&context).give(copied);
-        window.receive(&context);
-        let told = [
-            "Saved /of/a.png",
-            "Saved /of/b.CSV",
-            "Not saved: there is no room",
-            "Not opened: it cannot be read",
-            "Copied the picture: 1x1, 4 samples per pixel",
-            "Not resumed: there is no film",
-            "Reference not loaded: it is not a film",
-        ];
-        assert_eq!(window.messages(), told);
-        assert_eq!(window.model.remembered.recent, [path("a.png")], "a plot cannot be opened");
-        assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
-        window.remember_directory(Path::new("c.png"));
-        let here = std::env::current_dir().unwrap();
-        assert_eq!(window.model.remembered.directory.as_ref(), Some(&here), "a bare name");
-        window.remember_directory(Path::new("to/c.png"));
-        assert_eq!(window.model.remembered.directory, Some(here.join("to")));
-    }
-
-    #[test]
-    fn what_is_opened_keeps_its_size_and_a_picture_its_end() {
-        let recipe = Recipe::builtin("three-spheres").unwrap();
-        for (content, samples) in [
-            (Content::Scene, None),
-            (Content::Picture { samples: Some(7) }, Some(7)),
-            (Content::Picture { samples: None }, None),
-        ] {
-            let mut window = window("weekender --stage normals --size 16x9");
-            let is_scene = matches!(content, Content::Scene);
-            let path = PathBuf::from("/of/mine.toml");
-            let (recipe, job) = (recipe.clone(), recipe.job().unwrap());
-            window.show_opened(Opened { path: path.clone(), recipe, job, stage: None, content });
-            let document = window.document();
-            assert!(document.has_own_size);
-            assert_eq!(document.stop.samples, samples);
-            assert_eq!(document.origin.source == Source::File(path.clone()), is_scene);
-            assert_eq!(window.model.remembered.recent, [path]);
-            assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
-            assert_eq!(window.messages(), ["Opened /of/mine.toml"]);
-        }
     }
 }
