@@ -147,7 +147,12 @@ pub fn switch<T: PartialEq + Copy>(
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         let mut clicked = None;
-        for (index, (value, about)) in options.iter().enumerate() {
+        let mut order: Vec<_> = options.iter().enumerate().collect();
+        // At the right of a row, what is drawn first is the last one.
+        if ui.layout().prefer_right_to_left() {
+            order.reverse();
+        }
+        for (index, (value, about)) in order {
             let (left, right) = (u8::from(index == 0) * 4, u8::from(index + 1 == options.len()) * 4);
             let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
             let is_on = *value == chosen;
