@@ -26,7 +26,7 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<ExitCode, Failure> {
-    journal::start(cli::log_file(std::env::args_os())?.as_deref()).map_err(Failure::input)?;
+    journal::start(cli::log_file(std::env::args_os()).as_deref()).map_err(Failure::input)?;
     log::info!("{}", BUILD.line());
     match cli::parse(std::env::args_os())? {
         Request::Version { is_verbose } => {
@@ -41,7 +41,7 @@ fn run() -> Result<ExitCode, Failure> {
         ))),
         Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
-        Request::SaveScene(options) => batch::save_scene(&options),
+        Request::SaveScene(recipe, path) => batch::save_scene(&recipe, &path),
         Request::Plan(options) => batch::plan(&options),
         Request::Part(options) => batch::render_part(*options),
         Request::Merge(options) => merge::run(&options),

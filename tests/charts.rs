@@ -4,7 +4,7 @@
 
 use std::path::Path;
 use weekender::numbers::chart::{
-    Axis, Bar, BarChart, ChartError, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series, save,
+    Axis, Bar, BarChart, ChartError, Corner, Figure, LineChart, Look, Panel, Point, Series, save,
 };
 
 const SIZE: [u32; 2] = [480, 360];
@@ -20,8 +20,8 @@ fn series(name: &str, look: Look, law: impl Fn(f64) -> f64) -> Series {
 fn lines() -> Panel {
     Panel::Lines(LineChart {
         title: "Error".to_owned(),
-        x: Axis::new("seconds", Scale::Log),
-        y: Axis::new("RMSE", Scale::Log),
+        x: Axis::new("seconds"),
+        y: Axis::new("RMSE"),
         series: vec![
             series("slope -1/2", Look::Guide, |x| 0.3 / x.sqrt()),
             series("independent", Look::Measured, |x| 0.1 / x.sqrt()),
@@ -95,7 +95,7 @@ fn what_cannot_be_shown_is_left_out() {
         Series { name: "odd".to_owned(), points, look: Look::Measured },
         Series { name: "none".to_owned(), points: Vec::new(), look: Look::Guide },
     ];
-    let axis = Axis::new("x", Scale::Log);
+    let axis = Axis::new("x");
     let chart =
         LineChart { title: String::new(), x: axis.clone(), y: axis, series, legend: Some(Corner::LowerLeft) };
     save(&path, &figure(vec![Panel::Lines(chart)])).unwrap();

@@ -232,7 +232,7 @@ fn incomparable_pictures_exit_with_2() {
         (&["a.exr", "text.png"], &["text.png", "not a PFM, EXR, PNG or PPM"]),
         (&["a.exr", "small.exr"], &["160x90", "80x45", "the same size"]),
         (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
-        (&["cpu", "reference", "--stage", "all"], &["--stage all", "choose one"]),
+        (&["cpu", "reference", "--stage", "all"], &["all", "--list"]),
     ];
     for (arguments, parts) in cases {
         let (code, text, message) = compare(arguments, at);

@@ -179,17 +179,6 @@ fn report_resumes() {
     assert_eq!(third["runs"].as_array().unwrap().len(), 4);
     assert_eq!(third["runs"][3]["points"][5]["mse"], first["runs"][3]["points"][5]["mse"]);
     assert_eq!(fs::metadata(at.join("found/reference-three-spheres.exr")).unwrap().modified().unwrap(), kept);
-    // The saved reference can be given with --reference.
-    let given = ["--reference", "found/reference-three-spheres.exr"];
-    let (code, _, errors) = report(&[&sobol[..], &given[..]].concat(), at);
-    assert_eq!(code, 0, "{errors}");
-    assert_eq!(data(at)["runs"][0]["points"][5]["mse"], first["runs"][0]["points"][5]["mse"]);
-    // A film of other paths is no reference.
-    let film = ["--batch", "--scene", "three-spheres", "--size", "48x27", "--samples", "4", "--depth", "3"];
-    let mut other = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    assert!(other.args(film).args(["--out", "other.exr"]).current_dir(at).output().unwrap().status.success());
-    let (code, _, errors) = report(&[&sobol[..], &["--reference", "other.exr"]].concat(), at);
-    assert!(code != 0 && errors.contains("other.exr is not a picture of three-spheres at 48x27"), "{errors}");
 }
 
 #[test]
@@ -304,14 +293,12 @@ fn bad_requests_fail_before_rendering() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     fs::write(at.join("file"), "").unwrap();
-    let cases: [(&[&str], &[&str]); 8] = [
+    let cases: [(&[&str], &[&str]); 6] = [
         (&[], &["--out"]),
         (&["--out", "file"], &["file", "choose another"]),
         (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "three-spheres"]),
         (&["--out", "o", "--scenes", "book,metals,book"], &["two scenes called book", "leave one out"]),
         (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar", "c89"]),
-        (&["--out", "o", "--reference", "x.exr"], &["--reference", "--scenes"]),
-        (&["--out", "o", "--scenes", "book", "--reference", "x.exr"], &["x.exr"]),
         (&["--out", "o", "--backends", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
     ];
     for (arguments, parts) in cases {

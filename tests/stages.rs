@@ -24,7 +24,11 @@ fn every_stage_can_be_rendered_shown_and_compared() {
         recipe.job().expect(stage.id);
         assert_eq!(recipe, stage.recipe(), "{} differs from itself", stage.id);
         if let Some(pair) = stage.pair {
-            assert_eq!(self::stage(pair).pair, Some(stage.id));
+            let other = self::stage(pair).recipe();
+            let spheres = |recipe: &Recipe| recipe.scene.spheres.clone();
+            assert_eq!(spheres(&recipe), spheres(&other), "{}: another scene teaches nothing", stage.id);
+            let looks = |recipe: &Recipe| (recipe.camera, recipe.rules, recipe.scene.clone());
+            assert!(looks(&recipe) != looks(&other), "{}: the same picture", stage.id);
         }
         // "Show me" must not show the picture as it is, or something outside of it.
         let [left, top, right, bottom] = stage.sight.part.unwrap_or([0.0, 0.0, 1.0, 1.0]);

@@ -1,159 +1,343 @@
-//! A picture of another program, dropped on the window: what is wrong with it, and where.
+//! A picture of another program: what is wrong with it, and where.
 
 use super::answers::Answers;
+use super::command::Command;
+use super::right::scrolling;
+use super::stage_panel::paragraph;
 use super::texture::Texture;
-use crate::pictures::check::{Mine, judge, pictures, text};
+use super::theme;
+use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, switch, tip};
+use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
-use eframe::egui::{self, Align2, RichText, TextureOptions, vec2};
+use eframe::egui::{
+    self, Align2, Color32, Label, Pos2, Rect, RichText, Sense, Stroke, TextStyle, TextureOptions, Ui,
+    WidgetInfo, pos2, vec2,
+};
 use std::path::{Path, PathBuf};
 
-/// The largest width of each of the three pictures, in points.
-const PICTURE_WIDTH: f32 = 300.0;
+/// Width of the wipe's handle, points.
+const HANDLE: f32 = 24.0;
+
+/// A size, and mine, ours and the difference, if the picture could be compared.
+type Compared<T> = Option<([u32; 2], [T; 3])>;
 
 /// A picture that was checked.
 struct Checked {
     number: u64,
-    path: PathBuf,
-    /// The finding, or why the picture cannot be checked.
-    outcome: Result<Found, String>,
+    answer: Answer,
+    rgb8: Compared<Vec<u8>>,
 }
 
-/// What was found.
-struct Found {
-    words: String,
-    size: [u32; 2],
-    /// Mine, ours and the difference, RGB.
-    views: [Vec<u8>; 3],
-}
-
-/// A finding on the screen.
-struct Shown {
-    path: PathBuf,
-    words: String,
-    size: [u32; 2],
-    textures: [Texture; 3],
+/// What the middle of the window shows of the two pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+enum Side {
+    Yours,
+    #[default]
+    Wipe,
+    Ours,
+    Difference,
 }
 
 /// The check of a picture, made by a background thread.
 #[derive(Default)]
 pub struct Check {
     number: u64,
-    waiting: Option<PathBuf>,
-    shown: Option<Shown>,
+    /// The picture that is checked or was checked last.
+    path: Option<PathBuf>,
+    shown: Option<(Answer, Compared<Texture>)>,
+    /// Something is to be shown that was not there before.
+    has_news: bool,
+    side: Side,
+    divider: f32,
     answers: Answers<Checked>,
 }
 
 impl Check {
     /// Checks a picture; it is one of `stage` if that is known.
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
-        self.number += 1;
-        let (number, path) = (self.number, path.to_owned());
-        let checked = path.clone();
+        self.close();
+        let (number, checked) = (self.number, path.to_owned());
         let work = move || {
-            let read = Mine::read(&checked).map_err(|error| unreadable(&checked, error.to_string()));
-            let outcome = read.and_then(|mine| {
-                let finding = judge(&mine, stage).map_err(|error| error.to_string())?;
-                let views = pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
-                let words = text(&checked, &mine, &finding, &[]);
-                Ok(Found { words, size: [mine.width, mine.height], views })
-            });
-            Checked { number, path: checked, outcome }
-        };
-        let asked = path.clone();
-        let substitute = move |reason: String| Checked { number, path: asked, outcome: Err(reason) };
-        self.answers.ask("check", context, work, substitute);
-        self.waiting = Some(path);
-    }
-
-    /// Takes findings. Returns the picture that was checked, or why it could not be.
-    pub fn follow(&mut self) -> Option<Result<PathBuf, String>> {
-        let checked = self.answers.take()?;
-        if checked.number != self.number {
-            return None;
-        }
-        self.waiting = None;
-        match checked.outcome {
-            Ok(Found { words, size, views }) => {
-                let textures = views.map(|rgb8| Texture::new(size, &rgb8, None));
-                self.shown = Some(Shown { path: checked.path.clone(), words, size, textures });
-                Some(Ok(checked.path))
+            let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
+            let found = mine.and_then(|mine| judge(&mine, stage).map(|finding| (mine, finding)));
+            match found {
+                Ok((mine, finding)) => {
+                    let views =
+                        pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
+                    let rgb8 = Some(([mine.width, mine.height], views));
+                    Checked { number, answer: finding.answer(&mine), rgb8 }
+                }
+                Err(error) => Checked { number, answer: Answer::cannot_check(&error), rgb8: None },
             }
-            Err(reason) => Some(Err(reason)),
-        }
+        };
+        let substitute = move |reason: String| {
+            let answer = Answer::cannot_check(&anyhow::Error::msg(reason));
+            Checked { number, answer, rgb8: None }
+        };
+        self.answers.ask("check", context, work, substitute);
+        (self.path, self.has_news) = (Some(path.to_owned()), true);
+        (self.side, self.divider) = (Side::Wipe, 0.5);
     }
 
-    /// The finding in words, while it is shown.
-    pub fn words(&self) -> Option<&str> {
-        self.shown.as_ref().map(|shown| shown.words.as_str())
+    /// Takes answers. Returns the picture that was checked, if it could be compared.
+    pub fn follow(&mut self) -> Option<PathBuf> {
+        let checked = self.answers.take().filter(|checked| checked.number == self.number)?;
+        let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
+            (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
+        };
+        let path = checked.rgb8.as_ref().and(self.path.clone());
+        self.shown = Some((checked.answer, checked.rgb8.map(textures)));
+        self.has_news = true;
+        path
     }
 
-    /// Whether a finding is shown or awaited.
+    /// Whether a check has begun or ended since this was asked.
+    pub fn take_news(&mut self) -> bool {
+        std::mem::take(&mut self.has_news)
+    }
+
+    /// The answer, once there is one.
+    pub fn answer(&self) -> Option<&Answer> {
+        self.shown.as_ref().map(|(answer, _)| answer)
+    }
+
+    /// Whether an answer is shown or awaited.
     pub fn is_open(&self) -> bool {
-        self.waiting.is_some() || self.shown.is_some()
+        self.path.is_some()
     }
 
-    /// Closes the finding. One that is awaited is not shown.
+    /// Closes the answer. One that is awaited is not shown.
     pub fn close(&mut self) {
         self.number += 1;
-        (self.waiting, self.shown) = (None, None);
+        (self.path, self.shown) = (None, None);
     }
 
-    /// Draws the finding, or that it is awaited.
-    pub fn ui(&mut self, context: &egui::Context) {
-        if let Some(path) = &self.waiting {
-            egui::Window::new("Checking your picture")
-                .id(egui::Id::unique("checking"))
-                .pivot(Align2::CENTER_CENTER)
-                .default_pos(context.content_rect().center())
-                .collapsible(false)
-                .show(context, |ui| {
-                    ui.horizontal(|ui| {
-                        ui.spinner();
-                        ui.label(format!("{}: rendering what it could be", path.display()));
-                    });
+    fn name(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        name.map_or_else(String::new, |name| name.display().to_string())
+    }
+
+    /// Draws the answer, or that it is awaited.
+    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let name = self.name();
+        let Some((answer, pictures)) = &self.shown else {
+            scrolling(ui, |ui| {
+                hint(ui, &format!("Comparing {name} with every stage and every known mistake…"));
+                ui.horizontal(|ui| {
+                    if ui.button("Stop").clicked() {
+                        self.close();
+                    }
+                    ui.spinner();
                 });
-        }
-        let Some(shown) = &mut self.shown else { return };
-        let mut is_open = true;
-        egui::Window::new("Your picture")
-            .id(egui::Id::unique("check"))
-            .open(&mut is_open)
-            .pivot(Align2::CENTER_CENTER)
-            .default_pos(context.content_rect().center())
-            .default_width(3.0 * PICTURE_WIDTH + 40.0)
-            .show(context, |ui| {
-                ui.label(RichText::new(shown.path.display().to_string()).weak());
-                ui.horizontal_wrapped(|ui| {
-                    let width = (ui.available_width() / 3.0 - 8.0).clamp(80.0, PICTURE_WIDTH);
-                    let height = width * shown.size[1] as f32 / shown.size[0] as f32;
-                    for (name, texture) in
-                        ["yours", "ours", "difference"].into_iter().zip(&mut shown.textures)
-                    {
-                        ui.vertical(|ui| {
-                            let id = texture.id(context, TextureOptions::LINEAR);
-                            ui.image((id, vec2(width, height)));
-                            ui.label(RichText::new(name).small());
-                        });
+            });
+            return;
+        };
+        let mut is_again = false;
+        super::right::foot(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.set_height(32.0);
+                is_again = ui.button("Check again").clicked();
+                if ui.button("Another picture…").clicked() {
+                    commands.push(Command::CheckPicture);
+                }
+            });
+        });
+        scrolling(ui, |ui| {
+            verdict(ui, answer);
+            if let Some(stage) = answer.stage {
+                ui.add_space(4.0);
+                let text = format!("Your picture shows stage {} {}.", stage.section, stage.title);
+                ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
+            }
+            if let Some(remedy) = &answer.remedy {
+                paragraph(ui, "What to change", &format!("{remedy}."));
+            }
+            for Damage { title, remedy } in &answer.damages {
+                paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
+            }
+            links(ui, answer, commands);
+            if pictures.is_some() {
+                ui.add_space(4.0);
+                ui.label(RichText::new("Compare").small().color(theme::colours(ui).weak));
+                let sides = [
+                    (Side::Yours, About::new("Yours", "Your picture")),
+                    (Side::Wipe, About::new("Wipe", "Drag a divider between the two")),
+                    (Side::Ours, About::new("Ours", "The same stage by Weekender")),
+                    (Side::Difference, About::new("Difference", "Where the two differ, and by how much")),
+                ];
+                self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
+                ui.add_space(8.0);
+                panel_line(ui);
+                let (summary, why) = certainty(answer.kind);
+                let header = Header { title: "How sure is this?", summary, ..Header::default() };
+                fold(ui, header, false, |ui| _ = hint(ui, why));
+                fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
+                    for line in &answer.evidence {
+                        hint(ui, &format!("{line}."));
                     }
                 });
-                ui.add_space(4.0);
-                ui.add(egui::Label::new(RichText::new(shown.words.trim_end()).monospace()).wrap());
-            });
-        if !is_open {
-            self.shown = None;
+            }
+        });
+        if let Some(path) = self.path.clone().filter(|_| is_again) {
+            self.begin(ui.ctx(), &path, None);
         }
+    }
+
+    /// Draws the two pictures in the middle of the window, in place of the traced one, if there are any. Returns the room.
+    pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
+        let name = self.name();
+        let (answer, pictures) = self.shown.as_mut()?;
+        let (size, [yours, ours, difference]) = pictures.as_mut()?;
+        let room = ui.available_rect_before_wrap();
+        ui.painter().rect_filled(room, 0, theme::surround(ui));
+        let size = size.map(|pixels| pixels as f32);
+        let scale = ((room.width() - 16.0) / size[0]).min((room.height() - 16.0) / size[1]).max(0.0);
+        let rect = Rect::from_center_size(room.center(), vec2(size[0], size[1]) * scale);
+        let response = ui.allocate_rect(room, Sense::drag());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Your picture and ours"));
+        let image = |texture: &mut Texture, clip: Rect| {
+            let options = if scale < 4.0 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
+            let id = texture.id(ui.ctx(), options);
+            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            ui.painter().with_clip_rect(clip).image(id, rect, whole, Color32::WHITE);
+        };
+        let yours_is = format!("Yours: {name}");
+        let ours_is = answer
+            .stage
+            .map_or("Ours".to_owned(), |stage| format!("Ours: {} {}", stage.section, stage.title));
+        let [left, right] = [(rect.left_top(), Align2::LEFT_TOP), (rect.right_top(), Align2::RIGHT_TOP)];
+        match self.side {
+            Side::Wipe => {
+                if let Some(pointer) = response.interact_pointer_pos() {
+                    self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+                }
+                let x = rect.left() + self.divider * rect.width();
+                image(yours, rect.with_max_x(x));
+                image(ours, rect.with_min_x(x));
+                label(ui, rect.with_max_x(x), left, &yours_is);
+                label(ui, rect.with_min_x(x), right, &ours_is);
+                divider(ui, rect, x);
+            }
+            Side::Yours => {
+                image(yours, rect);
+                label(ui, rect, left, &yours_is);
+            }
+            Side::Ours => {
+                image(ours, rect);
+                label(ui, rect, right, &ours_is);
+            }
+            Side::Difference => image(difference, rect),
+        }
+        Some(room)
     }
 }
 
 /// Why a file cannot be read as a picture. By its name, it may have been meant as a file of another kind.
-fn unreadable(path: &Path, reason: String) -> String {
+fn unreadable(path: &Path, reason: anyhow::Error) -> anyhow::Error {
     let is_ending = |ending: &std::ffi::OsStr| {
         ["png", "ppm", "pnm"].iter().any(|known| ending.eq_ignore_ascii_case(known))
     };
     if path.extension().is_some_and(is_ending) || !path.is_file() {
         return reason;
     }
-    format!("{} is neither a PNG nor a PPM; scene files end in .toml and films in .exr", path.display())
+    let path = path.display();
+    anyhow::anyhow!("{path} is neither a PNG nor a PPM; scene files end in .toml and films in .exr")
+}
+
+/// The verdict with its sign, and one sentence.
+fn verdict(ui: &mut Ui, answer: &Answer) {
+    let colours = theme::colours(ui);
+    let color = match answer.kind {
+        AnswerKind::Right => colours.good,
+        AnswerKind::Mistake | AnswerKind::LikelyMistake | AnswerKind::Unknown => colours.warn,
+        AnswerKind::CannotCheck => colours.bad,
+    };
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
+        if answer.kind == AnswerKind::Right {
+            let tick = [[-8.0, 0.0], [-2.0, 6.0], [8.0, -7.0]].map(|[x, y]| rect.center() + vec2(x, y));
+            ui.painter().line(tick.to_vec(), Stroke::new(2.5, color));
+        } else {
+            paint_sign(ui.painter(), rect, Sign::Alert, color);
+        }
+        ui.vertical(|ui| {
+            ui.spacing_mut().item_spacing.y = 4.0;
+            ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
+            let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
+            ui.add(Label::new(text).wrap());
+        });
+    });
+}
+
+/// Buttons that lead to the section of the mistake, or on.
+fn links(ui: &mut Ui, answer: &Answer, commands: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
+        if let Some(next) = next
+            && primary(ui, format!("Next: {}", next.section)).clicked()
+        {
+            commands.push(Command::Stage(next));
+        }
+        if let Some(section) = &answer.section {
+            let stage = section.stage;
+            let go = primary(ui, format!("Go to {}", stage.section));
+            if tip(ui, go, stage.title, None).clicked() {
+                commands.push(Command::Stage(stage));
+            }
+            let read = ui.button(format!("Read {} in the book", section.number));
+            if tip(ui, read, &section.url, None).clicked() {
+                ui.open_url(egui::OpenUrl::new_tab(&section.url));
+            }
+        }
+    });
+}
+
+/// How sure an answer is, and why.
+fn certainty(kind: AnswerKind) -> (&'static str, &'static str) {
+    match kind {
+        AnswerKind::Right => (
+            "very",
+            "No part of your picture differs from ours by more than chance, and neither do its edges.",
+        ),
+        AnswerKind::Mistake => (
+            "very",
+            "With this mistake built into ours, no part of the two pictures differs by more than chance.",
+        ),
+        AnswerKind::LikelyMistake => (
+            "fairly",
+            "Of all known mistakes this one comes closest, but parts of the pictures still differ by more than chance.",
+        ),
+        AnswerKind::Unknown | AnswerKind::CannotCheck => {
+            ("not", "The pictures differ by more than chance, and no known mistake comes close.")
+        }
+    }
+}
+
+/// A label in a corner of a picture, if it fits.
+fn label(ui: &Ui, within: Rect, (corner, align): (Pos2, Align2), text: &str) {
+    let colours = theme::colours(ui);
+    let font = TextStyle::Small.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, colours.strong);
+    let inwards = if align == Align2::LEFT_TOP { 8.0 } else { -8.0 };
+    let rect = align.anchor_size(corner + vec2(inwards, 8.0), galley.size() + vec2(16.0, 8.0));
+    if within.contains_rect(rect) {
+        ui.painter().rect_filled(rect, 4, colours.panel.gamma_multiply(0.9));
+        ui.painter().galley(rect.min + vec2(8.0, 4.0), galley, colours.strong);
+    }
+}
+
+/// The divider of the wipe, with a round handle.
+fn divider(ui: &Ui, rect: Rect, x: f32) {
+    let painter = ui.painter();
+    for (width, color) in [(4.0, Color32::from_black_alpha(160)), (2.0, Color32::WHITE)] {
+        painter.vline(x, rect.y_range(), Stroke::new(width, color));
+    }
+    let handle = Rect::from_center_size(pos2(x, rect.center().y), vec2(HANDLE, HANDLE));
+    painter.circle_filled(handle.center(), 0.5 * HANDLE, Color32::WHITE);
+    for (sign, by) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
+        paint_sign(painter, handle.translate(vec2(by, 0.0)), sign, Color32::BLACK);
+    }
 }
 
 #[cfg(test)]
@@ -161,42 +345,46 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_the_last_picture_that_was_asked_about_is_told_of() {
-        let context = egui::Context::default();
-        let mut check = Check { number: 2, waiting: Some("second".into()), ..Check::default() };
-        let answer = |check: &Check, number, outcome| {
-            check.answers.answer(&context).give(Checked { number, path: "mine.ppm".into(), outcome });
+    fn only_the_last_picture_is_answered() {
+        let (context, mut check) = (egui::Context::default(), Check::default());
+        let give = |check: &Check, number, reason: &str| {
+            let answer = Answer::cannot_check(&anyhow::anyhow!("{reason}"));
+            check.answers.answer(&context).give(Checked {
+                number,
+                answer,
+                figures: "PNG".into(),
+                views: None,
+            });
         };
-        let found = || Found { words: "mine".to_owned(), size: [1, 1], views: [(); 3].map(|()| vec![0; 3]) };
-        answer(&check, 1, Ok(found()));
-        assert!(check.follow().is_none() && check.waiting.is_some() && check.words().is_none());
-        answer(&check, 2, Err("it is damaged".to_owned()));
-        assert_eq!(check.follow(), Some(Err("it is damaged".to_owned())));
-        assert!(check.waiting.is_none() && check.words().is_none());
-        answer(&check, 2, Ok(found()));
-        assert_eq!(check.follow(), Some(Ok("mine.ppm".into())));
-        assert_eq!(check.words(), Some("mine"));
-        check.begin(&context, Path::new("/of/nothing.ppm"), None);
-        assert_eq!((check.number, check.waiting.as_deref()), (3, Some(Path::new("/of/nothing.ppm"))));
+        (check.number, check.path) = (2, Some("second.ppm".into()));
+        give(&check, 1, "first");
+        assert_eq!((check.follow(), check.answer()), (None, None));
+        give(&check, 2, "second");
+        assert_eq!(check.follow(), None, "it could not be compared");
+        assert_eq!(check.answer().unwrap().explanation, "Second");
+        check.close();
+        give(&check, 2, "second");
+        assert_eq!((check.follow(), check.is_open()), (None, false), "it was stopped");
     }
 
     #[test]
-    fn a_file_that_is_no_picture_is_told_and_ends_the_wait() {
+    fn a_file_that_is_no_picture_gets_an_answer() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("notes.txt");
         std::fs::write(&path, "no picture").unwrap();
         let (context, mut check) = (egui::Context::default(), Check::default());
         check.begin(&context, &path, None);
-        assert!(check.is_open() && check.words().is_none());
-        let answer = check.answers.wait().unwrap();
-        check.answers.answer(&context).give(answer);
-        let told = check.follow().unwrap().unwrap_err();
-        assert_eq!(told, unreadable(&path, String::new()));
-        assert!(!check.is_open());
+        assert!(check.is_open() && check.take_news() && check.answer().is_none());
+        let checked = check.answers.wait().unwrap();
+        check.answers.answer(&context).give(checked);
+        assert_eq!(check.follow(), None);
+        let answer = check.answer().unwrap();
+        assert_eq!(answer.kind, AnswerKind::CannotCheck);
+        assert!(answer.explanation.contains("neither a PNG nor a PPM"), "{}", answer.explanation);
     }
 
     #[test]
-    fn a_finding_is_about_the_picture_that_was_checked() {
+    fn an_answer_is_about_the_picture_that_was_checked() {
         // The tiny picture of the book, as the first lines of its program print it.
         let [width, height] = [16_u32, 9];
         let share = |at: u32, count: u32| (255.999 * f64::from(at) / f64::from(count - 1)) as u8;
@@ -206,14 +394,13 @@ mod tests {
         let path = directory.path().join("mine.ppm");
         std::fs::write(&path, [b"P6\n16 9\n255\n".as_slice(), &rgb8].concat()).unwrap();
         let (context, mut check) = (egui::Context::default(), Check::default());
-        check.begin(&context, &path, Some(Stage::find("ppm-tiny").unwrap()));
-        let answer = check.answers.wait().unwrap();
-        let found = answer.outcome.as_ref().unwrap();
-        assert_eq!((found.size, answer.number, &answer.path), ([16, 9], 1, &path));
-        assert!(found.views[0] == rgb8, "the first picture is the reader's");
-        assert!(found.views.iter().all(|view| view.len() == rgb8.len()));
-        check.answers.answer(&context).give(answer);
-        assert_eq!(check.follow(), Some(Ok(path)));
-        assert!(check.words().is_some_and(|words| words.contains("mine.ppm")), "{:?}", check.words());
+        let stage = Stage::find("ppm-tiny").unwrap();
+        check.begin(&context, &path, Some(stage));
+        let checked = check.answers.wait().unwrap();
+        let (size, views) = checked.rgb8.as_ref().unwrap();
+        assert!(*size == [16, 9] && views[0] == rgb8, "the first picture is the reader's");
+        check.answers.answer(&context).give(checked);
+        assert_eq!(check.follow(), Some(path));
+        assert_eq!(check.answer().unwrap().stage, Some(stage));
     }
 }

@@ -25,6 +25,8 @@ pub struct Display {
     pub values: PixelValues,
     pub identity: Identity,
     pub kept: KeptActions,
+    /// The toast of a lost scene was shown.
+    pub is_home_offered: bool,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,
 }
@@ -33,7 +35,7 @@ impl Display {
     /// The film on the screen.
     pub fn subject<'a>(&'a self, model: &'a Model, tracing: &'a Tracing) -> Subject<'a> {
         let live = (&model.document, &tracing.main);
-        Subject::new(&model.view, live, tracing.seconds_before, &self.kept.thread)
+        Subject::new(&model.view, live, tracing.seconds_before)
     }
 
     /// The picture of the film on the screen.
@@ -59,7 +61,7 @@ impl Display {
             self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));
         }
         let live = (document, &tracing.main);
-        let subject = Subject::new(view, live, tracing.seconds_before, &self.kept.thread);
+        let subject = Subject::new(view, live, tracing.seconds_before);
         let is_live_moving = is_moving && !subject.is_kept();
         let fault = self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
         if let Some(reason) = fault {

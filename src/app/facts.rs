@@ -190,6 +190,3 @@ impl Facts {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,16 +3,21 @@
 use super::answers::Answers;
 use super::kept::{FilmId, Subject};
 use super::model::document::Document;
-use super::widgets::compact;
+use super::theme;
+use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
 use crate::film::to_byte;
 use crate::progressive::standard_error;
 use crate::scene::Scene;
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, Ui, UiBuilder, vec2};
 use std::sync::{Arc, Weak};
 
 /// With more spheres than this, searching for the one under the pointer would stall the window.
 const PICK_LIMIT: usize = 50_000;
+
+/// Height of a row and distance of the columns of numbers, points.
+const ROW: f32 = 16.0;
+const COLUMN: f32 = 56.0;
 
 /// A pixel of the film.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +108,7 @@ impl Inspector {
         });
     }
 
-    /// Draws the panel. `layer` is the displayed layer and its value at the pixel; `other` is what is at that place in the
+    /// Draws the pixel. `layer` is the displayed layer and its value there; `other` is what is at that place in the
     /// picture that is compared with this one.
     pub fn ui(
         &self,
@@ -112,14 +117,19 @@ impl Inspector {
         layer: Option<(Layer, [f64; 3])>,
         other: Option<OtherPixel>,
     ) {
-        ui.label(RichText::new("Pixel").strong());
-        match &self.pixel {
-            Some(pixel) => pixel_ui(document, pixel, layer, other, ui),
-            None => {
-                let text = "Move the pointer over the picture.";
-                ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
-            }
-        }
+        ui.spacing_mut().item_spacing.y = 0.0;
+        // The header and four rows, so that what is above stays where it is.
+        ui.set_min_height(24.0 + 4.0 * ROW);
+        let Some(pixel) = &self.pixel else {
+            ui.add_sized(
+                [ui.available_width(), 24.0],
+                egui::Label::new(RichText::new("Pixel").strong()).halign(egui::Align::LEFT),
+            );
+            hint(ui, "Point at the picture to read its numbers.");
+            return;
+        };
+        pixel_ui(document, pixel, layer, other, ui);
+        ui.add_space(4.0);
     }
 }
 
@@ -136,78 +146,89 @@ fn pixel_ui(
     other: Option<OtherPixel>,
     ui: &mut Ui,
 ) {
-    let [x, y] = pixel.at;
-    let decimals = |v: [f64; 3]| v.map(|v| format!("{v:.5}"));
-    egui::Grid::new("pixel").num_columns(4).spacing([8.0, 3.0]).show(ui, |ui| {
-        let name = |ui: &mut Ui, text: &str| {
-            ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
-        };
-        let row = |ui: &mut Ui, what: &str, values: [String; 3]| {
-            name(ui, what);
-            for value in values {
-                ui.monospace(value);
-            }
-            ui.end_row();
-        };
-        name(ui, "at");
-        ui.monospace(format!("{x}"));
-        ui.monospace(format!("{y}"));
-        ui.end_row();
-        row(ui, "", ["red", "green", "blue"].map(str::to_owned));
-        match other {
-            Some(other) => {
-                row(ui, "A, this", decimals(pixel.mean));
-                row(ui, "B, other", decimals(other.mean));
-                match other.scaled {
-                    // A difference of scaled pictures would show the scaling.
-                    Some([x, y]) => {
-                        name(ui, "B at");
-                        ui.monospace(format!("{x}"));
-                        ui.monospace(format!("{y}"));
-                        ui.end_row();
-                    }
-                    None => {
-                        let difference = [0, 1, 2].map(|i| pixel.mean[i] - other.mean[i]);
-                        row(ui, "A − B", difference.map(|value| format!("{value:+.4}")));
-                    }
-                }
-            }
-            None => row(ui, "linear", decimals(pixel.mean)),
-        }
-        match pixel.error {
-            Some(error) => row(ui, "error", error.map(|v| format!("{v:.5}"))),
-            None => row(ui, "error", ["–", "–", "–"].map(str::to_owned)),
-        }
-        row(ui, "8 bits", pixel.bytes.map(|byte| byte.to_string()));
-        name(ui, "samples");
-        ui.monospace(pixel.samples.to_string());
-        ui.end_row();
-        match layer {
-            Some((Layer::Normals, n)) => row(ui, "normal", n.map(|v| format!("{:.4}", 2.0 * v - 1.0))),
-            Some((Layer::Albedo, albedo)) => row(ui, "albedo", decimals(albedo)),
-            Some((Layer::RaysPerPath, [rays, ..])) => {
-                name(ui, "rays/path");
-                ui.monospace(format!("{rays:.2}"));
-                ui.end_row();
-            }
-            None => {}
-        }
+    let (colours, [x, y]) = (theme::colours(ui), pixel.at);
+    let (what, help) = surface(document, pixel.at).unzip();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Pixel").strong());
+        let at = what.map_or_else(|| format!("{x}, {y}"), |what| format!("{x}, {y} · {what}"));
+        let text = RichText::new(at).small().color(colours.weak);
+        let response = ui.add(egui::Label::new(text).truncate());
+        tip(ui, response, help.as_deref().unwrap_or_default(), None);
     });
-    let scene = document.scene();
-    if scene.spheres.len() <= PICK_LIMIT {
-        let place = [
-            (f64::from(x) + 0.5) / f64::from(document.settings.width),
-            (f64::from(y) + 0.5) / f64::from(document.settings.height),
-        ];
-        let direction = document.camera.direction_through(place, document.aspect());
-        let text = match scene.pick(document.camera.look_from, direction) {
-            Some(pick) => {
-                let (object, material) = names(scene, pick.sphere);
-                format!("{object}, {material}\nat distance {}", compact(pick.distance))
+    let rgb = [("R", colours.bad), ("G", colours.good), ("B", colours.accent)];
+    cells(ui, "", "Red, green, blue", rgb.map(|(name, color)| (name.to_owned(), color)));
+    let mut line = |name: &str, help: &str, values: [String; 3]| {
+        cells(ui, name, help, values.map(|value| (value, colours.strong)));
+    };
+    let light = "Linear radiance: the mean of the samples, before gamma";
+    match other {
+        Some(OtherPixel { mean, scaled }) => {
+            line("A", &format!("This picture. {light}"), pixel.mean.map(decimals));
+            let at = scaled.map_or_else(String::new, |[x, y]| format!(", at its pixel {x}, {y}"));
+            line("B", &format!("The picture that it is compared with{at}"), mean.map(decimals));
+            // A difference of scaled pictures would show the scaling.
+            if scaled.is_none() {
+                let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
+                line("A − B", "How much brighter this picture is", difference.map(signed));
             }
-            None => "sky".to_owned(),
-        };
-        ui.add(egui::Label::new(text).wrap());
+        }
+        None => line("light", light, pixel.mean.map(decimals)),
+    }
+    let noise = pixel.error.map_or_else(|| [(); 3].map(|()| "–".to_owned()), |error| error.map(decimals));
+    line("noise ±", "How far off that mean may still be (standard error)", noise);
+    let bytes = pixel.bytes.map(|byte| byte.to_string());
+    line("saved as", "The byte that a file gets, 0 to 255", bytes);
+    match layer {
+        Some((Layer::Normals, normal)) => {
+            line("normal", "Which way the surface faces: x, y, z", normal.map(|n| signed(2.0 * n - 1.0)));
+        }
+        Some((Layer::Albedo, albedo)) => {
+            line("albedo", "What the surface reflects", albedo.map(decimals));
+        }
+        Some((Layer::RaysPerPath, [rays, ..])) => {
+            let values = [String::new(), String::new(), format!("{rays:.2}")];
+            line("rays per path", "How many rays a path through this pixel has", values);
+        }
+        None => {}
+    }
+}
+
+/// The name of the surface at a pixel, and how far away it is.
+fn surface(document: &Document, [x, y]: [u32; 2]) -> Option<(String, String)> {
+    let scene = document.scene();
+    if scene.spheres.len() > PICK_LIMIT {
+        return None;
+    }
+    let [width, height] = document.size();
+    let place = [(f64::from(x) + 0.5) / f64::from(width), (f64::from(y) + 0.5) / f64::from(height)];
+    let Some(pick) = document.pick(&document.camera, place) else {
+        return Some(("sky".to_owned(), String::new()));
+    };
+    let (sphere, material) = names(scene, pick.sphere);
+    Some((material, format!("{sphere}, at distance {}", compact(pick.distance))))
+}
+
+fn decimals(value: f64) -> String {
+    format!("{value:.4}")
+}
+
+fn signed(value: f64) -> String {
+    format!("{value:+.4}").replace('-', "−")
+}
+
+/// A row of the table.
+fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
+    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    tip(ui, response, help, None);
+    let weak = theme::colours(ui).weak;
+    let mut cell = |rect: Rect, layout: Layout, text: &str, color: Color32| {
+        let mut ui = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+        ui.add(egui::Label::new(RichText::new(text).small().color(color)).extend());
+    };
+    cell(row, Layout::left_to_right(Align::Center), name, weak);
+    for (place, (value, color)) in values.into_iter().enumerate() {
+        let right = row.right() - COLUMN * (2 - place) as f32;
+        cell(row.with_max_x(right), Layout::right_to_left(Align::Center), &value, color);
     }
 }
 
@@ -231,11 +252,10 @@ mod tests {
         let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
         let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
-        for text in ["A, this", "B, other", "A − B", "0.50000", "0.25000", "+0.2500", "-0.2500", "+0.0000"]
-        {
+        for text in ["A", "B", "A − B", "0.5000", "0.2500", "+0.2500", "−0.2500", "+0.0000"] {
             assert!(texts.iter().any(|found| found == text), "no {text} in {texts:?}");
         }
-        assert!(!texts.iter().any(|text| text == "linear"));
+        assert!(!texts.iter().any(|text| text == "light"));
     }
 
     /// The sphere under the pointer is the one that the tracer's camera ray hits.
@@ -245,18 +265,9 @@ mod tests {
         let [width, height] = [document.settings.width, document.settings.height];
         for at in [[width / 8, height * 7 / 8], [width / 2, height / 2], [width / 2, height / 8]] {
             let path = record_path(&document.job(1).unwrap(), at, 0, None);
-            let expected = path.rays[0].hit.map_or("sky".to_owned(), |hit| {
-                let (object, material) = names(document.scene(), hit.sphere);
-                format!("{object}, {material}\nat distance")
-            });
-            let pixel = Pixel { at, mean: [0.0; 3], error: None, bytes: [0; 3], samples: 1 };
-            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, None, ui));
-            let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
-            let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
-            assert!(
-                texts.iter().any(|text| text.starts_with(&expected)),
-                "{at:?}: no {expected} in {texts:?}"
-            );
+            let expected =
+                path.rays[0].hit.map_or("sky".to_owned(), |hit| names(document.scene(), hit.sphere).1);
+            assert_eq!(surface(&document, at).unwrap().0, expected, "{at:?}");
         }
     }
 

@@ -1,18 +1,16 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
-use super::answers::caught;
+use super::answers::{Answer, Answers};
 use super::model::document::Document;
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
-use crate::job::render::{JobError, RenderJob, RenderSettings};
+use crate::job::render::{RenderJob, RenderSettings};
 use crate::numbers::heat::HeatScale;
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Transfer;
 use eframe::egui::Context;
-use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Samples per pixel of a finished layer.
@@ -21,28 +19,10 @@ const SAMPLES: u64 = 16;
 /// Largest number of pixels in the coarse layer, which has one sample each.
 const COARSE_PIXELS: u32 = 20_000;
 
-/// A layer for the thread to trace.
-struct Order {
-    number: u64,
-    layer: Layer,
-    job: RenderJob,
-    is_coarse: bool,
-    cancel: Arc<AtomicBool>,
-}
+/// The number of an order, and a layer that was traced, nothing more, or why it can't be traced.
+type Traced = (u64, Result<Option<(LayerImage, Vec<u8>, u32)>, String>);
 
-/// A layer that the thread has traced.
-struct Traced {
-    number: u64,
-    image: LayerImage,
-    rgb8: Vec<u8>,
-    divisor: u32,
-}
-
-/// A layer, or why it cannot be traced and the number of its order.
-type Outcome = Result<Traced, (u64, String)>;
-
-type Slot = Arc<Mutex<Option<Outcome>>>;
-
+/// What was ordered last.
 struct Ordered {
     layer: Layer,
     document: Document,
@@ -63,8 +43,9 @@ pub struct ShownLayer {
 /// The layer that is displayed.
 #[derive(Default)]
 pub struct Layers {
-    orders: Option<Sender<Order>>,
-    slot: Slot,
+    traced: Answers<Traced>,
+    /// What traces paths, with the hierarchy of the last scene. Orders wait for it.
+    recorder: Arc<Mutex<Option<PathRecorder>>>,
     number: u64,
     ordered: Option<Ordered>,
     cancel: Arc<AtomicBool>,
@@ -72,6 +53,11 @@ pub struct Layers {
 }
 
 impl Layers {
+    /// The newest version of a layer.
+    pub fn shown(&self, layer: Layer) -> Option<&ShownLayer> {
+        self.shown.as_ref().filter(|shown| shown.layer == layer)
+    }
+
     /// The newest version of a layer.
     pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
         self.shown.as_mut().filter(|shown| shown.layer == layer)
@@ -87,8 +73,7 @@ impl Layers {
 
     /// Samples per pixel of a full-size layer; 0 while there is none.
     pub fn samples(&self, layer: Layer) -> u64 {
-        let shown = self.shown.as_ref().filter(|shown| shown.layer == layer && shown.divisor == 1);
-        shown.map_or(0, |shown| shown.image.samples)
+        self.shown(layer).filter(|shown| shown.divisor == 1).map_or(0, |shown| shown.image.samples)
     }
 
     /// Starts to trace `layer` of the document and takes new results. Returns why the layer cannot be traced, once.
@@ -100,79 +85,59 @@ impl Layers {
         is_moving: bool,
     ) -> Option<String> {
         let Some(layer) = layer else {
-            if self.ordered.take().is_some() {
-                self.cancel.store(true, Ordering::Relaxed);
-                self.shown = None;
-            }
+            self.cancel.store(true, Ordering::Relaxed);
+            (self.ordered, self.shown) = (None, None);
             return None;
         };
         let fault = self.fetch();
-        let is_at_it = self.ordered.as_ref().is_some_and(|ordered| {
-            ordered.layer == layer
-                && ordered.document.has_same_film(document)
-                && (is_moving || !ordered.is_coarse)
+        let ordered = self.ordered.as_ref().filter(|ordered| ordered.layer == layer);
+        let is_at_it = ordered.is_some_and(|ordered| {
+            ordered.document.has_same_film(document) && (is_moving || !ordered.is_coarse)
         });
         // Until a coarse layer has been displayed, starting another one would only delay it.
-        let is_unseen =
-            self.ordered.as_ref().is_some_and(|ordered| ordered.layer == layer && !ordered.is_pictured);
-        let has_to_wait = is_moving && is_unseen;
+        let has_to_wait = is_moving && ordered.is_some_and(|ordered| !ordered.is_pictured);
         if !is_at_it && !has_to_wait {
-            // An invalid document is reported elsewhere.
-            let _ = self.order(context, layer, document, is_moving);
+            self.order(context, layer, document, is_moving);
         }
         fault
     }
 
-    /// Takes a layer. Returns why there is none, if so.
+    /// Takes what was traced. Returns why the layer cannot be traced, if so.
     fn fetch(&mut self) -> Option<String> {
-        let outcome = self.slot.lock().unwrap_or_else(PoisonError::into_inner).take()?;
-        let ordered = self.ordered.as_mut()?;
-        match outcome {
-            Ok(Traced { number, image, rgb8, divisor }) if number == self.number => {
-                ordered.is_pictured = true;
-                let earlier = self.shown.take().map(|shown| shown.texture);
-                let texture = Texture::new([image.width, image.height], &rgb8, earlier);
-                self.shown = Some(ShownLayer { texture, divisor, layer: ordered.layer, image });
-                None
+        let mut fault = None;
+        while let Some((number, outcome)) = self.traced.take() {
+            let Some(ordered) = self.ordered.as_mut().filter(|_| number == self.number) else { continue };
+            // After a failure, the next one need not wait for this one.
+            ordered.is_pictured = true;
+            match outcome {
+                Ok(Some((image, rgb8, divisor))) => {
+                    let earlier = self.shown.take().map(|shown| shown.texture);
+                    let texture = Texture::new([image.width, image.height], &rgb8, earlier);
+                    self.shown = Some(ShownLayer { texture, divisor, layer: ordered.layer, image });
+                }
+                Ok(None) => {}
+                Err(reason) => fault = Some(reason),
             }
-            Err((number, reason)) if number == self.number => {
-                // The next one need not wait for this one.
-                ordered.is_pictured = true;
-                Some(reason)
-            }
-            Ok(_) | Err(_) => None,
         }
+        fault
     }
 
-    fn order(
-        &mut self,
-        context: &Context,
-        layer: Layer,
-        document: &Document,
-        is_coarse: bool,
-    ) -> Result<(), JobError> {
-        let job = document.job(1)?;
+    fn order(&mut self, context: &Context, layer: Layer, document: &Document, is_coarse: bool) {
+        // An invalid document is reported elsewhere.
+        let Ok(job) = document.job(1) else { return };
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::default();
         self.number += 1;
-        let document = document.clone();
-        self.ordered = Some(Ordered { layer, document, is_coarse, is_pictured: false });
-        let cancel = Arc::clone(&self.cancel);
-        let order = Order { number: self.number, layer, job, is_coarse, cancel };
-        if self.orders.is_none() {
-            match start_thread(Arc::clone(&self.slot), context.clone()) {
-                Ok(orders) => self.orders = Some(orders),
-                Err(error) => {
-                    let reason = format!("no thread could be started ({error})");
-                    publish(&self.slot, context, Err((self.number, reason)));
-                }
-            }
-        }
-        if let Some(orders) = &self.orders {
-            // The thread lives as long as this.
-            let _ = orders.send(order);
-        }
-        Ok(())
+        self.ordered = Some(Ordered { layer, document: document.clone(), is_coarse, is_pictured: false });
+        let (number, cancel, recorder) = (self.number, Arc::clone(&self.cancel), Arc::clone(&self.recorder));
+        let answer = self.traced.answer(context);
+        let work = move || {
+            let mut recorder = recorder.lock().unwrap_or_else(PoisonError::into_inner);
+            let outcome = layer.job(&job).map_err(|error| error.to_string());
+            let order = Order { number, layer, is_coarse, cancel, answer };
+            (number, outcome.and_then(|job| order.trace(&mut recorder, &job)).map(|()| None))
+        };
+        self.traced.ask("layers", context, work, move |reason| (number, Err(reason)));
     }
 }
 
@@ -182,55 +147,25 @@ impl Drop for Layers {
     }
 }
 
-fn publish(slot: &Slot, context: &Context, outcome: Outcome) {
-    *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
-    context.request_repaint();
-}
-
-fn start_thread(slot: Slot, context: Context) -> io::Result<Sender<Order>> {
-    let (sender, orders): (_, Receiver<Order>) = channel();
-    let work = move || {
-        let mut recorder = None;
-        while let Ok(mut order) = orders.recv() {
-            while let Ok(newer) = orders.try_recv() {
-                order = newer;
-            }
-            order.answer(&mut recorder, &slot, &context);
-        }
-    };
-    std::thread::Builder::new().name("layers".into()).spawn(work)?;
-    Ok(sender)
+/// A layer to trace.
+struct Order {
+    number: u64,
+    layer: Layer,
+    is_coarse: bool,
+    cancel: Arc<AtomicBool>,
+    answer: Answer<Traced>,
 }
 
 impl Order {
-    /// Traces the layer, or says why it cannot be traced.
-    fn answer(&self, recorder: &mut Option<PathRecorder>, slot: &Slot, context: &Context) {
-        let outcome = caught(|| self.trace(recorder, slot, context).map_err(|error| error.to_string()));
-        if let Err(reason) = outcome.unwrap_or_else(Err) {
-            *recorder = None;
-            publish(slot, context, Err((self.number, reason)));
-        }
-    }
-
-    fn trace(
-        &self,
-        recorder: &mut Option<PathRecorder>,
-        slot: &Slot,
-        context: &Context,
-    ) -> Result<(), JobError> {
-        let job = self.layer.job(&self.job)?;
+    fn trace(&self, recorder: &mut Option<PathRecorder>, job: &RenderJob) -> Result<(), String> {
         let settings = *job.settings();
         let pixels = f64::from(settings.width) * f64::from(settings.height);
         let divisor = (pixels / f64::from(COARSE_PIXELS)).sqrt().ceil().max(1.0) as u32;
-        let coarse = RenderSettings {
-            width: settings.width.div_ceil(divisor),
-            height: settings.height.div_ceil(divisor),
-            ..settings
-        };
-        let coarse = job.seen_by(*job.camera(), coarse)?;
-        let is_whole = self.refine(recorder, &coarse, divisor, 1, slot, context);
-        if is_whole && !self.is_coarse {
-            self.refine(recorder, &job, 1, SAMPLES, slot, context);
+        let [width, height] = [settings.width, settings.height].map(|along| along.div_ceil(divisor));
+        let coarse = RenderSettings { width, height, ..settings };
+        let coarse = job.seen_by(*job.camera(), coarse).map_err(|error| error.to_string())?;
+        if self.refine(recorder, &coarse, divisor, 1) && !self.is_coarse {
+            self.refine(recorder, job, 1, SAMPLES);
         }
         Ok(())
     }
@@ -242,9 +177,10 @@ impl Order {
         job: &RenderJob,
         divisor: u32,
         samples: u64,
-        slot: &Slot,
-        context: &Context,
     ) -> bool {
+        if self.cancel.load(Ordering::Relaxed) {
+            return false;
+        }
         let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
         let earlier = recorder.take();
         let paths = recorder.insert(PathRecorder::new(job, isa, earlier));
@@ -255,8 +191,7 @@ impl Order {
             }
             if (index + 1).is_power_of_two() {
                 let rgb8 = coloured(self.layer, &image, job.rules().transfer);
-                let traced = Traced { number: self.number, image: image.clone(), rgb8, divisor };
-                publish(slot, context, Ok(traced));
+                self.answer.give_one((self.number, Ok(Some((image.clone(), rgb8, divisor)))));
             }
         }
         true
@@ -281,4 +216,70 @@ fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use std::time::{Duration, Instant};
+
+    fn small() -> Document {
+        let mut document = Document::new(Origin::usual());
+        document.set_size([32, 18]);
+        document
+    }
+
+    /// Follows until the layer has all its samples.
+    fn finish(layers: &mut Layers, layer: Layer, document: &Document) {
+        let (begin, context) = (Instant::now(), Context::default());
+        while layers.samples(layer) < SAMPLES {
+            assert!(begin.elapsed() < Duration::from_secs(60), "it never came");
+            std::thread::sleep(Duration::from_millis(1));
+            layers.follow(&context, Some(layer), document, false);
+        }
+    }
+
+    #[test]
+    fn of_many_orders_the_last_one_is_traced() {
+        let (mut layers, context, mut document) = (Layers::default(), Context::default(), small());
+        for step in 0..20 {
+            document.camera.vfov_degrees = 30.0 + f64::from(step);
+            layers.follow(&context, Some(Layer::Normals), &document, false);
+        }
+        finish(&mut layers, Layer::Normals, &document);
+    }
+
+    #[test]
+    fn a_layer_is_ordered_when_it_or_its_picture_changes() {
+        let (mut layers, context, document) = (Layers::default(), Context::default(), small());
+        layers.follow(&context, None, &document, false);
+        assert_eq!(layers.number, 0);
+        finish(&mut layers, Layer::Normals, &document);
+        assert_eq!(layers.number, 1, "once");
+        assert!(layers.shown(Layer::Normals).is_some() && layers.shown(Layer::Albedo).is_none());
+        layers.follow(&context, Some(Layer::Normals), &document, true);
+        assert_eq!(layers.number, 1, "a finished layer stays while something else moves");
+        finish(&mut layers, Layer::Albedo, &document);
+        assert_eq!(layers.number, 2);
+        layers.follow(&context, None, &document, false);
+        assert!(layers.cancel.load(Ordering::Relaxed) && layers.value_at([0, 0]).is_none());
+        finish(&mut layers, Layer::Albedo, &document);
+    }
+
+    #[test]
+    fn a_layer_that_cannot_be_traced_is_reported_once() {
+        let (mut layers, context, document) = (Layers::default(), Context::default(), small());
+        let recorder = Arc::clone(&layers.recorder);
+        // Nothing is traced while this lasts.
+        let _guard = recorder.lock().unwrap();
+        let mut follow = |outcome: Option<(u64, &str)>| {
+            if let Some((number, reason)) = outcome {
+                layers.traced.answer(&context).give((number, Err(reason.to_owned())));
+            }
+            layers.follow(&context, Some(Layer::Normals), &document, false)
+        };
+        assert_eq!(follow(None), None);
+        assert_eq!(follow(Some((0, "an earlier one"))), None);
+        assert_eq!(follow(Some((1, "it fell"))).as_deref(), Some("it fell"));
+        assert_eq!(follow(None), None);
+        assert_eq!(layers.number, 1, "it is not tried again and again");
+    }
+}

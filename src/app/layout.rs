@@ -1,29 +1,33 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::command::Command;
+use super::dialogs::Purpose;
 use super::facts::Facts;
 use super::inspector::OtherPixel;
 use super::model::Model;
 use super::model::document::Document;
 use super::model::first_steps::Step;
 use super::model::fitted::Fitted;
-use super::model::remembered::{Dock, Tab};
+use super::model::remembered::{Dock, Remembered, Tab};
 use super::model::view::{Mode, ViewState};
 use super::places::Place;
-use super::present::{self, Lens, Seen};
+use super::present::{self, Magnified};
 use super::second::Second;
+use super::spheres::Selected;
+use super::texture::Texture;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{controls, info, plot, status_bar, theme, title_bar};
+use super::{bar, controls, dock, first_steps, right, stage_panel, status, theme};
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
-const NARROW: f32 = 900.0;
+const NARROW: f32 = 1000.0;
 
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let facts = self.facts();
+        bar::name_window(ui.ctx(), facts.document());
         self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
             self.shell.presenter.ui(ui, &facts);
@@ -34,8 +38,9 @@ impl Window {
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
-        self.display.kept.verdict.ui(ui.ctx());
-        let outcome = self.shell.dialogs.ui(ui, &facts, &mut self.commands);
+        let mut edits = Vec::new();
+        let outcome = self.shell.dialogs.ui(ui, &facts, (&mut edits, &mut self.commands));
+        edits.into_iter().for_each(|edit| self.edit(edit));
         self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
@@ -44,42 +49,57 @@ impl Window {
 
     /// The panels around the picture.
     fn panels(&mut self, ui: &mut Ui, facts: &Facts) {
-        let Window { model, spheres, tracing, display, tools, commands, .. } = self;
-        let selected = spheres.selected(model);
+        let Window { model, tracing, display, tools, commands, .. } = self;
+        let selected = Selected::of(model);
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
-        let is_narrow = ui.available_width() < NARROW;
+        let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
         Place::Bar.begin(ui);
-        title_bar::ui(ui, facts, commands);
-        status_bar::ui(ui, facts);
+        bar::ui(ui, facts, commands);
+        status::ui(ui, facts, tracing.sizer.offer(), commands);
         let mut edits = Vec::new();
-        let mut right = |ui: &mut Ui, commands: &mut Vec<Command>| {
-            match has.tab {
-                Tab::Stage => info::ui(ui, facts, commands),
-                Tab::Code => tools.code.ui(ui, facts, commands),
-                Tab::Check => tools.check.ui(ui),
-            }
-            display.tone.ui(ui, view, facts);
-            let pixel = tools.inspector.pixel();
-            let layer = view.show().layer();
-            let value = pixel.and_then(|pixel| display.layers.value_at(pixel.at)).filter(|_| layer.is_some());
-            let other =
-                pixel.and_then(|pixel| other_pixel(view, &tracing.second, facts.document(), pixel.at));
-            tools.inspector.ui(ui, facts.shown(), value, other);
-        };
-        if has.has_info && !is_narrow {
-            let panel = egui::Panel::right("info").default_size(272.0).size_range(240.0..=640.0);
-            Place::Info.begin(ui);
-            scrolling(ui, panel, |ui| right(ui, commands));
+        let mut tabs = Vec::new();
+        if has.has_info {
+            tabs.extend([Tab::Stage, Tab::Code]);
+            tabs.extend(tools.check.is_open().then_some(Tab::Check));
         }
-        if has.has_controls {
-            let panel = egui::Panel::left("controls").exact_size(232.0);
+        if has.has_controls && is_narrow {
+            tabs.push(Tab::Controls);
+        }
+        let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
+        let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
             Place::Controls.begin(ui);
-            scrolling(ui, panel, |ui| {
-                controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
-                if has.has_info && is_narrow {
-                    Place::Info.begin(ui);
-                    right(ui, commands);
+            controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
+        };
+        if has.has_controls && !is_narrow {
+            let panel = egui::Panel::left("controls").exact_size(232.0);
+            scrolling(ui, panel, |ui| controls(ui, remembered, commands));
+        }
+        if let Some(tab) = wanted {
+            right::panel(tab, room).show(ui, |ui| {
+                Place::Info.begin(ui);
+                let (chosen, is_closed) = right::tabs(ui, &tabs, tab);
+                if chosen != tab {
+                    remembered.tab = chosen;
+                }
+                match tab {
+                    Tab::Stage => {
+                        right::foot(ui, |ui| {
+                            display.tone.ui(ui, view, facts, commands);
+                            let pixel = tools.inspector.pixel();
+                            let layer = view.show().layer();
+                            let value = pixel.and_then(|pixel| display.layers.value_at(pixel.at));
+                            let other = pixel.and_then(|pixel| {
+                                other_pixel(view, &tracing.second, facts.document(), pixel.at)
+                            });
+                            tools.inspector.ui(ui, facts.shown(), value.filter(|_| layer.is_some()), other);
+                        });
+                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts, commands));
+                    }
+                    Tab::Code => tools.code.ui(ui, facts),
+                    Tab::Check if is_closed => tools.check.close(),
+                    Tab::Check => tools.check.ui(ui, commands),
+                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered, commands)),
                 }
             });
         }
@@ -88,16 +108,22 @@ impl Window {
 
     /// The picture, with the dock and the card of first steps below.
     fn middle(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
-        if facts.model.has_panels()
-            && let Some(dock) = facts.model.remembered.dock
-        {
-            let Window { model, tools, commands, .. } = self;
-            match dock {
-                Dock::Error => plot::ui(ui, &mut model.document.stop.noise, facts, commands),
-                Dock::Lanes => tools.packet.ui(ui, commands),
-                Dock::Path => {}
-                Dock::Kept => {}
+        if facts.model.has_panels() {
+            let Window { model, tools, display, commands, .. } = self;
+            if dock::ui(ui, model, tools, &mut display.kept, facts, commands) {
+                self.ask_path(ui.ctx(), Purpose::SavePlot);
             }
+        }
+        if facts.model.has_panels() {
+            first_steps::ui(ui, facts, &mut self.commands);
+        }
+        let Model { remembered, .. } = &facts.model;
+        if facts.model.has_panels()
+            && remembered.has_info
+            && remembered.tab == Tab::Check
+            && let Some(room) = self.tools.check.picture(ui)
+        {
+            return Touch { room: Some(room), ..Touch::default() };
         }
         if facts.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -107,8 +133,8 @@ impl Window {
     }
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
-        let Window { model, spheres, tracing, display, tools, commands, .. } = self;
-        let selected = spheres.selected(model);
+        let Window { model, tracing, display, tools, commands, .. } = self;
+        let selected = Selected::of(model);
         let Model { document, view, .. } = model;
         let layer = view.show().layer();
         let kept = view.kept.shown();
@@ -118,22 +144,21 @@ impl Window {
         };
         let has_film = shown.is_some();
         let (fitted, size) = (view.wiped(document).map(|(_, fitted)| fitted), facts.shown().size());
-        let compared = view.compared_kept().map(|place| view.kept.title(place));
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown_mut(layer)) {
                 Some(layer) => Some((&mut layer.texture, layer.divisor)),
                 None => shown.map(|shown| (&mut shown.texture, shown.divisor)),
             },
             has_film,
+            titles: titles(facts, &tracing.second),
             second: tracing.second.shown_mut().map(|shown| SecondPicture {
-                title: compared.unwrap_or_else(|| shown.document.title()),
                 texture: &mut shown.texture,
                 divisor: shown.divisor,
                 fitted: fitted.unwrap_or(Fitted::new(size, size)),
             }),
             paths: kept.is_none().then_some(&tools.paths),
             values: &display.values,
-            notices: notices(facts, display.identity.is_same()),
+            is_same: display.identity.is_same(),
         };
         let handle =
             Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
@@ -153,6 +178,12 @@ impl Window {
             self.tools.paths.list(&self.model.document, pixel, ui.ctx());
             self.model.remembered.dock = Some(Dock::Path);
         }
+        if let Some(said) = touch.said {
+            self.shell.toasts.good(said);
+        }
+        if touch.is_lost && !std::mem::replace(&mut self.display.is_home_offered, true) {
+            self.shell.toasts.offer("Home brings you back", &[Command::Home]);
+        }
         if touch.is_orbit {
             self.note_step(Step::Orbit);
         }
@@ -167,45 +198,66 @@ impl Window {
         }
         touch.edit.into_iter().for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
-            if facts.model.presentation.is_none() {
-                self.shell.first_steps.ui(ui, room, facts, &mut self.commands);
-                self.tracing.sizer.ui(ui, room, &mut self.commands);
-            }
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }
 
     /// The magnifier of a presentation.
-    fn lens(&mut self, ui: &Ui, hovered: Option<[u32; 2]>, room: Option<Rect>) {
+    fn lens(&self, ui: &Ui, hovered: Option<[u32; 2]>, room: Option<Rect>) {
         let (Some(at), Some(room)) = (hovered, room) else { return };
         let Some(pointer) = ui.ctx().input(|input| input.pointer.hover_pos()) else { return };
         let Window { model, tracing, display, tools, .. } = self;
         let (view, document) = (&model.view, &model.document);
-        let picture = display.viewport.placement.rect();
-        let share = (pointer.x - picture.left()) / picture.width();
-        let is_other =
-            view.mode() == Some(Mode::Wipe) && (share < view.divider) == view.is_other_earlier(document);
-        let wiped = view.wiped(document).filter(|_| is_other).map(|(_, fitted)| fitted);
-        let mean =
-            tools.inspector.pixel().filter(|pixel| pixel.at == at && !is_other).map(|pixel| pixel.mean);
-        let layer = view.show().layer();
-        let (texture, divisor) = match layer.and_then(|layer| display.layers.shown_mut(layer)) {
-            Some(layer) => (&layer.texture, layer.divisor),
-            None => {
-                let mine = match view.kept.shown() {
-                    Some(kept) => display.kept.picture.shown(kept),
-                    None => tracing.main.shown(),
-                };
-                let other = tracing.second.shown().filter(|_| is_other);
-                let Some(shown) = other.or(mine) else { return };
-                (&shown.texture, shown.divisor)
-            }
+        let colours = |texture: &Texture, divisor: u32, [x, y]: [u32; 2]| {
+            present::around([x / divisor, y / divisor], |at| texture.colour(at))
         };
-        let Some(at) = wiped.map_or(Some(at), |fitted| fitted.pixel(at)) else { return };
-        let seen = Seen::around(at.map(|along| along / divisor), mean, |at| texture.colour(at));
-        let seen = Seen { at, ..seen };
-        Lens { room, picture, pointer, seen: &seen }.paint(ui);
+        let mine = match view.show().layer().and_then(|layer| display.layers.shown(layer)) {
+            Some(layer) => Some(colours(&layer.texture, layer.divisor, at)),
+            None => display.shown(model, tracing).map(|shown| colours(&shown.texture, shown.divisor, at)),
+        };
+        let Some(mine) = mine else { return };
+        let other = view.mode().and_then(|_| tracing.second.shown()).and_then(|shown| {
+            let at = view.wiped(document).map_or(Some(at), |(_, fitted)| fitted.pixel(at))?;
+            Some(colours(&shown.texture, shown.divisor, at))
+        });
+        let inspected = tools.inspector.pixel().filter(|pixel| pixel.at == at);
+        let with = match view.mode() {
+            // What is shown is the difference, in false colours.
+            Some(Mode::Difference) => inspected.map(|pixel| pixel.bytes),
+            _ => present::pixel(&mine),
+        };
+        let without = other.as_deref().and_then(present::pixel);
+        let magnified = match (other, without, with) {
+            (Some(other), Some(without), Some(with)) => Magnified::two(vec![other, mine], without, with),
+            _ => Magnified::one(mine, inspected.map(|pixel| pixel.mean)),
+        };
+        magnified.paint(ui, room, pointer);
     }
+}
+
+/// The titles of the two sides of a comparison, the other one first, each from the longest to the shortest.
+fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
+    let view = &facts.model.view;
+    let of = |document: &Document, kept: Option<usize>| match (kept, document.stage()) {
+        (Some(place), _) => vec![view.kept.title(place), (place + 1).to_string()],
+        (None, Some(stage)) => vec![document.title(), stage.section.to_owned()],
+        (None, None) => vec![document.title()],
+    };
+    let other = second.shown().map_or_else(Vec::new, |shown| of(&shown.document, view.compared_kept()));
+    let titles = [other, of(facts.shown(), view.kept.looked())];
+    if facts.model.presentation.is_none() {
+        return titles;
+    }
+    let mut names = ["Without", "With"].into_iter();
+    titles.map(|titles| {
+        let name = names.next().unwrap_or_default();
+        titles
+            .last()
+            .map(|title| format!("{name}: {title}"))
+            .into_iter()
+            .chain(titles.last().cloned())
+            .collect()
+    })
 }
 
 /// The pixel of the other picture of a comparison.
@@ -217,19 +269,6 @@ fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2])
     }
     let mean = view.subtracted(second.film())?.mean(at)?;
     Some(OtherPixel { mean, scaled: None })
-}
-
-/// What is said at the top of the picture.
-fn notices(facts: &Facts, is_same: bool) -> Vec<String> {
-    let view = &facts.model.view;
-    let mut notices = Vec::new();
-    if let (Some(Mode::Difference), Some(place)) = (view.mode(), view.compared_kept()) {
-        notices.push(format!("A: {}    B: {}", facts.title(), view.kept.title(place)));
-    }
-    if is_same {
-        notices.push("identical to the bit".to_owned());
-    }
-    notices
 }
 
 /// A panel whose content scrolls.

@@ -21,7 +21,7 @@ use super::navigation;
 use super::places;
 use super::sight::Sighted;
 use super::spheres::grip::{new_body, to_copy};
-use super::spheres::neighbour;
+use super::spheres::{self, Selected, neighbour};
 use super::theme;
 use super::window::Window;
 use super::wording::{grouped, lower_first};
@@ -38,6 +38,7 @@ impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &Context, command: Command) {
         self.shell.performed = Some(command);
+        self.shell.dialogs.note_used(command);
         let facts = self.facts();
         if let Some(log) = &mut self.shell.frame_log {
             log.command(&facts.name(command));
@@ -62,10 +63,8 @@ impl Window {
         let Window { model, tools, display, shell, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
-        } else if display.kept.verdict.is_open() {
-            display.kept.verdict.close();
         } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
-            tools.paths.forget();
+            commands.push(Command::ClearPaths);
         } else if display.sight.is_some() {
             commands.push(Command::ShowMe);
         } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
@@ -170,6 +169,7 @@ impl Window {
 
     pub(super) fn home(&mut self) {
         self.model.document.camera = self.document().origin.recipe.camera;
+        self.shell.toasts.withdraw(Command::Home);
     }
 
     /// Lets the focus follow the point looked at, or keeps it where it is now.
@@ -202,7 +202,7 @@ impl Window {
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
-        match self.spheres.edit(&mut self.model, edit) {
+        match spheres::edit(&mut self.model, edit) {
             Ok(()) => self.note_step(Step::Change),
             Err(reason) => self.shell.toasts.bad(reason),
         }
@@ -234,14 +234,14 @@ impl Window {
     }
 
     pub(super) fn look_at_sphere(&mut self) {
-        if let Some(selected) = self.spheres.selected(&self.model) {
+        if let Some(selected) = Selected::of(&self.model) {
             let camera = navigation::recentre(&self.document().camera, selected.body.center);
             self.model.document.camera = camera;
         }
     }
 
     pub(super) fn focus_sphere(&mut self) {
-        let Some(selected) = self.spheres.selected(&self.model) else { return };
+        let Some(selected) = Selected::of(&self.model) else { return };
         let camera = self.document().camera;
         let towards = (camera.look_from - selected.body.center).normalize_or_zero();
         let nearest = selected.body.center + selected.body.radius * towards;
@@ -325,6 +325,11 @@ impl Window {
         }
     }
 
+    pub(super) fn clear_paths(&mut self) {
+        self.tools.paths.forget();
+        self.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
+    }
+
     // Panels
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
@@ -394,7 +399,6 @@ impl Window {
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
                 self.model.view.look(None);
-                self.display.viewport.placement.fit();
                 self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
@@ -504,14 +508,10 @@ impl Window {
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
         let kept = &model.view.kept;
-        let Some((place, named)) = kept.chosen().and_then(|place| Some((place, kept.get(place)?))) else {
-            return;
-        };
-        let live = (&model.document, &tracing.main);
-        let subject =
-            super::kept::Subject::new(&model.view, live, tracing.seconds_before, &display.kept.thread).live();
-        let names = [kept.title(place), "the picture".to_owned()];
-        display.kept.verdict.ask(context, &named.kept, &subject, names);
+        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
+            display.kept.verdict.ask(context, &named.kept, (&model.document, &tracing.main));
+            model.remembered.dock = Some(Dock::Kept);
+        }
     }
 
     // Files

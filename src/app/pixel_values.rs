@@ -2,9 +2,7 @@
 
 use super::answers::Answers;
 use super::kept::{FilmId, Subject};
-use super::model::tone::Tone;
 use super::widgets::compact;
-use crate::progressive::luminance;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
 use std::sync::{Arc, Weak};
 
@@ -61,19 +59,25 @@ impl PixelValues {
         });
     }
 
-    /// Draws the numbers over the picture at `rect`, which has `size` pixels.
-    pub fn paint(&self, ui: &Ui, clip: Rect, rect: Rect, size: [u32; 2], tone: &Tone) {
+    /// Draws the numbers over the picture at `rect`, which has `size` pixels of these colours.
+    pub fn paint(
+        &self,
+        ui: &Ui,
+        clip: Rect,
+        rect: Rect,
+        size: [u32; 2],
+        colour: impl Fn([u32; 2]) -> Option<[u8; 3]>,
+    ) {
         let Some(part) = self.part.as_ref().filter(|_| visible(rect, clip, size).is_some()) else { return };
         let side = rect.width() / size[0] as f32;
         let painter = ui.painter().with_clip_rect(clip);
         let font = TextStyle::Small.resolve(ui.style());
         for (place, mean) in part.means.iter().enumerate() {
             let place = [place as u32 % part.width, place as u32 / part.width];
-            let at = [0, 1].map(|axis| (part.first[axis] + place[axis]) as f32 + 0.5);
-            let middle = rect.min + vec2(at[0], at[1]) * side;
-            // Middle grey as seen is about a fifth of white.
-            let is_bright = luminance(*mean) > 0.2 * tone.white();
-            let colour = if is_bright { Color32::BLACK } else { Color32::WHITE };
+            let at = [0, 1].map(|axis| part.first[axis] + place[axis]);
+            let middle = rect.min + vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5) * side;
+            let Some(ground) = colour(at) else { continue };
+            let colour = readable_on(ground);
             for (row, value) in mean.iter().enumerate() {
                 let down = (row as f32 - 1.0) * (font.size + 1.0);
                 painter.text(
@@ -86,6 +90,17 @@ impl PixelValues {
             }
         }
     }
+}
+
+/// Black or white, whichever contrasts more with an sRGB colour (WCAG 2).
+fn readable_on(ground: [u8; 3]) -> Color32 {
+    let [r, g, b] = ground.map(|byte| {
+        let value = f64::from(byte) / 255.0;
+        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+    });
+    let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    // The contrast is (brighter + 0.05) / (darker + 0.05).
+    if (luminance + 0.05).powi(2) > 1.05 * 0.05 { Color32::BLACK } else { Color32::WHITE }
 }
 
 /// The first visible pixel of a picture of `size` pixels at `rect`, and the one after the last. `None` if pixels have no
@@ -105,12 +120,24 @@ fn visible(rect: Rect, area: Rect, size: [u32; 2]) -> Option<[[u32; 2]; 2]> {
 mod tests {
     use super::*;
     use crate::app::Window;
-    use crate::app::kept::KeptThread;
-
     use crate::app::model::view::ViewState;
     use crate::app::tests::{until, window};
 
     use egui::pos2;
+
+    #[test]
+    fn numbers_are_readable_on_the_colour_that_is_shown() {
+        for (ground, expected) in [
+            ([140, 0, 0], Color32::WHITE),
+            ([0, 100, 0], Color32::WHITE),
+            ([0, 0, 255], Color32::WHITE),
+            ([255, 0, 0], Color32::BLACK),
+            ([0, 160, 0], Color32::BLACK),
+            ([128, 128, 128], Color32::BLACK),
+        ] {
+            assert_eq!(readable_on(ground), expected, "{ground:?}");
+        }
+    }
 
     #[test]
     fn the_numbers_of_visible_pixels_are_asked_for_once() {
@@ -120,8 +147,8 @@ mod tests {
             window.status().phase.is_over() && window.shown().is_some_and(|(_, divisor)| divisor == 1)
         };
         until(&mut window, &context, "the end", is_done);
-        let (thread, view) = (KeptThread::default(), ViewState::default());
-        let subject = Subject::new(&view, (window.document(), &window.main), None, &thread);
+        let view = ViewState::default();
+        let subject = Subject::new(&view, (window.document(), &window.tracing.main), None);
         let mut values = PixelValues::default();
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 500.0));
         let area = Rect::from_min_size(pos2(150.0, 250.0), vec2(200.0, 200.0));

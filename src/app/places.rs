@@ -6,16 +6,16 @@ use eframe::egui::{self, Context, FocusDirection, Id, Rect, Sense, Ui};
 /// A part of the window with controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
-    FirstSteps,
     Bar,
     Controls,
     /// The right panel.
     Info,
     Dock,
+    FirstSteps,
 }
 
 impl Place {
-    const ALL: [Place; 5] = [Place::FirstSteps, Place::Bar, Place::Controls, Place::Info, Place::Dock];
+    const ALL: [Place; 5] = [Place::Bar, Place::Controls, Place::Info, Place::Dock, Place::FirstSteps];
 
     fn is_shown(self, model: &Model) -> bool {
         let remembered = &model.remembered;
@@ -65,50 +65,18 @@ pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Pla
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use crate::app::tests::{facts_of, part};
-
-    /// The places that the keyboard goes through, from the first one to the picture.
-    fn all(model: &Model) -> Vec<Place> {
-        let mut seen = Vec::new();
-        let mut last = None;
-        let _ = part([200.0, 100.0], |ui| {
-            if !seen.is_empty() {
-                return;
-            }
-            loop {
-                // What has the focus now is within that place.
-                ui.memory_mut(|memory| memory.request_focus(Id::unique("a control")));
-                last = next(ui.ctx(), last, model);
-                match last {
-                    Some(place) => seen.push(place),
-                    None => break,
-                }
-            }
-            assert!(ui.memory(|memory| memory.focused().is_none()), "the picture has no focus");
-        });
-        seen
-    }
+    use crate::app::model::remembered::Dock;
+    use crate::app::tests::facts_of;
 
     #[test]
     fn the_keyboard_goes_through_what_is_shown() {
         let mut model = facts_of("--stage metal --size 32x18").model;
-        let usual = [Place::Menu, Place::Controls, Place::Info];
-        assert_eq!(all(&model), usual);
-        let remembered = &mut model.remembered;
-        (remembered.has_plot, remembered.has_code, remembered.has_packet) = (true, true, true);
-        let with_more = [Place::Menu, Place::Controls, Place::Info, Place::Plot, Place::Code, Place::Packet];
-        assert_eq!(all(&model), with_more);
-        model.has_first_steps = true;
-        assert_eq!(all(&model)[..2], [Place::FirstSteps, Place::Menu]);
-        model.has_recovered = true;
-        assert_eq!(all(&model)[..2], [Place::Recovered, Place::Menu]);
-        (model.has_first_steps, model.has_recovered) = (false, false);
-        model.remembered.has_controls = false;
-        model.remembered.has_info = false;
-        assert_eq!(all(&model), [Place::Menu, Place::Plot, Place::Code, Place::Packet]);
+        let shown =
+            |model: &Model| Place::ALL.into_iter().filter(|place| place.is_shown(model)).collect::<Vec<_>>();
+        assert_eq!(shown(&model), [Place::Bar, Place::Controls, Place::Info]);
+        (model.remembered.dock, model.has_first_steps) = (Some(Dock::Error), true);
+        assert_eq!(shown(&model), Place::ALL);
         model.remembered.has_panels = false;
-        model.has_recovered = true;
-        assert_eq!(all(&model), [Place::Recovered]);
+        assert_eq!(shown(&model), []);
     }
 }

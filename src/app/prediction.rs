@@ -38,23 +38,6 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         .filter(|found| found.time < FARTHEST)
 }
 
-/// Text such as "in about 38 s (33 to 44)". A range that rounds to one number is left out.
-pub fn prediction_words(prediction: &Prediction) -> String {
-    let [low, high] = prediction.range;
-    let about = whole(prediction.time);
-    if high < FARTHEST && whole(low) == whole(high) {
-        format!("in about {about} s")
-    } else if high < FARTHEST {
-        format!("in about {about} s ({} to {})", whole(low), whole(high))
-    } else {
-        format!("in about {about} s ({} or more)", whole(low))
-    }
-}
-
-fn whole(seconds: f64) -> String {
-    format!("{:.0}", seconds.ceil())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,7 +60,6 @@ mod tests {
         let [low, high] = predict(&[], now, 0.002).unwrap().range;
         assert_eq!(found.range, [low - 10.0, high - 10.0]);
         assert!(found.range[0] < 30.0 && found.range[1] > 30.0, "{found:?}");
-        assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
         assert_eq!(prediction(&status, Some(0.01)), None);
         assert_eq!(prediction(&status, None), None);
         for (samples, is_predicted) in
@@ -138,9 +120,5 @@ mod tests {
             let target = 0.004 / f64::sqrt((seconds + 10.0) / 10.0);
             assert_eq!(prediction(&status, Some(target)).is_some(), is_told, "{seconds}");
         }
-        let words = |range| prediction_words(&Prediction { time: 38.0, range });
-        assert_eq!(words([31.0, 999_999.0]), "in about 38 s (31 to 999999)");
-        assert_eq!(words([31.0, 1e6]), "in about 38 s (31 or more)");
-        assert_eq!(words([37.5, 1e6]), "in about 38 s (38 or more)");
     }
 }

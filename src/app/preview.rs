@@ -13,6 +13,10 @@ const SECONDS_LIMIT: f64 = 0.07;
 /// A picture whose first samples would take longer than this many seconds is shown as a preview first.
 const PATIENCE: f64 = 0.1;
 
+/// The divisors by which a picture gets finer after a move, if each takes no longer than so many seconds.
+const STEPS: [u32; 3] = [8, 4, 2];
+const STEP_SECONDS: f64 = 0.4;
+
 /// Samples per pixel of a preview of a picture with noise. A quarter of the pixels with four samples each show more than
 /// all of them with one: the eye sees noise in each pixel, but does not miss the pixels of a picture that moves.
 const SAMPLES: u64 = 4;
@@ -71,9 +75,7 @@ impl Previews {
 
     /// The preview to show while something moves.
     pub fn follow_move(&mut self, document: &Document) -> Preview {
-        let preview = self.moving.unwrap_or_else(|| self.choose(document));
-        self.moving = Some(preview);
-        preview
+        *self.moving.insert(self.moving.unwrap_or_else(|| self.choose(document)))
     }
 
     /// Notes that nothing moves.
@@ -81,23 +83,30 @@ impl Previews {
         self.moving = None;
     }
 
-    /// The preview to show before the first samples of a picture; `None` if these are there soon.
-    pub fn first_look(&self, document: &Document) -> Option<Preview> {
+    /// The preview to show before the first samples of a picture. `coarser` is the divisor of what is on the screen; each
+    /// preview is at least twice as fine.
+    pub fn look(&self, document: &Document, coarser: Option<u32>) -> Preview {
         let samples = pixels(document) * document.settings.half_count() as f64;
-        let seconds = samples / self.render_speed.unwrap_or(USUAL_SPEED);
-        Some(self.choose(document)).filter(|preview| seconds > PATIENCE && preview.divisor > 1)
+        if samples / self.render_speed.unwrap_or(USUAL_SPEED) <= PATIENCE {
+            return Preview::NONE;
+        }
+        let Some(coarser) = coarser else { return self.choose(document) };
+        let affordable = self.speed.unwrap_or(USUAL_SPEED) * STEP_SECONDS;
+        let step = |divisor| Preview { divisor, samples: most_samples(document) };
+        let cost = |step: &Preview| pixels(document) * step.samples as f64 / f64::from(step.divisor).powi(2);
+        let is_step = |step: &Preview| 2 * step.divisor <= coarser && cost(step) <= affordable;
+        STEPS.map(step).into_iter().find(is_step).unwrap_or(Preview::NONE)
     }
 
     fn choose(&self, document: &Document) -> Preview {
         let begin = SHARE * self.render_speed.unwrap_or(USUAL_SPEED);
         let affordable = (self.speed.unwrap_or(begin) * SECONDS).max(1.0);
-        let most = if document.rules().shading == Shading::Path { SAMPLES } else { 1 };
         let with = |samples: u64| {
             let divisor = (pixels(document) * samples as f64 / affordable).sqrt().ceil() as u32;
             Preview { divisor: divisor.clamp(1, coarsest(document)), samples }
         };
         let fine = (longer_side(document) / LONGER_SIDE).max(1);
-        let mut preview = with(most);
+        let mut preview = with(most_samples(document));
         while preview.samples > 1 && preview.divisor > fine {
             preview = with(preview.samples / 2);
         }
@@ -121,6 +130,11 @@ impl Previews {
             moving.divisor = coarser.clamp(moving.divisor, limit.max(moving.divisor));
         }
     }
+}
+
+/// Samples per pixel of a preview, if time allows.
+fn most_samples(document: &Document) -> u64 {
+    if document.rules().shading == Shading::Path { SAMPLES } else { 1 }
 }
 
 fn pixels(document: &Document) -> f64 {
@@ -197,19 +211,31 @@ mod tests {
     #[test]
     fn only_what_takes_long_is_looked_at_first() {
         let mut previews = Previews::default();
-        assert_eq!(previews.first_look(&document("book", [320, 180])), None);
-        let look = previews.first_look(&document("book", [1600, 900])).unwrap();
-        assert!(look.divisor > 2, "{look:?}");
+        assert_eq!(previews.look(&document("book", [320, 180]), None), Preview::NONE);
+        assert!(previews.look(&document("book", [1600, 900]), None).divisor > 2);
         // Each half of the film needs a sample.
         let mut between = document("book", [640, 360]);
-        assert!(between.settings.estimate_error && previews.first_look(&between).is_some());
+        assert!(between.settings.estimate_error && previews.look(&between, None).divisor > 1);
         between.settings.estimate_error = false;
-        assert_eq!(previews.first_look(&between), None);
+        assert_eq!(previews.look(&between, None), Preview::NONE);
         previews.render_speed = Some(1e9);
-        assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
-        // The picture itself would be shown as soon.
-        (previews.render_speed, previews.speed) = (Some(1e3), Some(1e9));
-        assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
+        assert_eq!(previews.look(&document("book", [1600, 900]), None), Preview::NONE);
+    }
+
+    #[test]
+    fn a_large_picture_gets_finer_in_steps_as_time_allows() {
+        let large = document("book", [2560, 1440]);
+        let steps = |speed: f64| {
+            let previews = at_speed(speed);
+            let mut divisors = vec![20];
+            while divisors[divisors.len() - 1] > 1 {
+                divisors.push(previews.look(&large, divisors.last().copied()).divisor);
+            }
+            divisors
+        };
+        assert_eq!(steps(3e6), [20, 8, 4, 1], "half the size would take more than a second");
+        assert_eq!(steps(2e7), [20, 8, 4, 2, 1]);
+        assert_eq!(steps(1e5), [20, 1]);
     }
 
     #[test]

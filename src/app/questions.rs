@@ -65,7 +65,7 @@ impl Window {
         self.model.view.kept.looked()
     }
 
-    /// The headline and the text of the answer to "Only noise?".
+    /// The two sentences of the answer to "Only noise?".
     pub fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
         self.display.kept.verdict.words()
     }
@@ -120,18 +120,23 @@ impl Window {
         self.display.sight.is_some()
     }
 
-    /// The ray that is explained, counted from 1, and how many its path has.
-    pub fn explained_ray(&self) -> Option<[usize; 2]> {
+    /// The path and the point of it that are explained, counted from 1, and how many points it has.
+    pub fn explained_point(&self) -> Option<[usize; 3]> {
         self.tools.paths.position()
     }
 
     /// Steps that the lanes take without and with refill.
-    pub fn packet_steps(&self) -> Option<[usize; 2]> {
-        self.tools.packet.steps()
+    pub fn lane_steps(&self) -> Option<[usize; 2]> {
+        self.tools.lanes.steps()
     }
 
     pub fn listed_paths(&self) -> usize {
         self.tools.paths.len()
+    }
+
+    /// The verdict about the picture that was checked.
+    pub fn checked(&self) -> Option<&str> {
+        self.tools.check.answer().map(|answer| answer.title.as_str())
     }
 
     pub fn is_paused(&self) -> bool {

@@ -43,13 +43,11 @@ impl Window {
                 Err(NotOpened { reason, .. }) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        match self.tools.check.follow() {
-            Some(Ok(path)) => {
-                self.model.remembered.note_recent(&path);
-                (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
-            }
-            Some(Err(reason)) => self.shell.toasts.bad(format!("Not checked: {reason}")),
-            None => {}
+        if let Some(path) = self.tools.check.follow() {
+            self.model.remembered.note_recent(&path);
+        }
+        if self.tools.check.take_news() {
+            (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
         }
         while let Some((picture, what)) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));

@@ -147,7 +147,7 @@ impl Second {
             let question = Arc::new(());
             self.waiting = Arc::downgrade(&question);
             let (kept, context) = (Arc::clone(&kept), context.clone());
-            self.picture.run(move || {
+            super::kept::run(move || {
                 kept.means();
                 drop(question);
                 context.request_repaint();
@@ -201,4 +201,63 @@ fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::app::model::view::{is_of_cameras, partner};
+    use crate::measure::stress::shown_cases;
+    use crate::stages::{Stage, SurfaceRule};
+
+    #[test]
+    fn a_film_is_taken_only_for_the_picture_that_is_compared() {
+        let (mut second, context) = (Second::default(), Context::default());
+        let stage = &Stage::ALL[0];
+        let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
+        let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]], identity: None };
+        let answer = |second: &mut Second, origin: &Arc<Origin>| {
+            second.films.answer(&context).give((Arc::clone(origin), film()));
+            second.receive();
+            second.film().is_some()
+        };
+        assert!(!answer(&mut second, &mine), "the comparison is over");
+        second.of = Some((Other::Stage(stage), Arc::clone(&mine)));
+        assert!(!answer(&mut second, &other), "another picture is compared by now");
+        assert!(answer(&mut second, &mine));
+    }
+
+    #[test]
+    fn the_other_stage_is_seen_by_my_camera_unless_that_is_the_difference() {
+        let mut second = Second::default();
+        let mut of_cameras = Vec::new();
+        for stage in Stage::ALL {
+            let mut mine = Document::new(Origin::of_stage(stage));
+            mine.camera.look_from += glam::DVec3::new(0.25, 0.5, 0.125);
+            let Some(other) = partner(stage) else { continue };
+            let theirs = second.document_of(Other::Stage(other), &mine);
+            if is_of_cameras(stage) {
+                of_cameras.push(stage.id);
+                assert_ne!(theirs.camera, mine.camera, "{}", stage.id);
+            } else {
+                assert_eq!(theirs.camera, mine.camera, "{}", stage.id);
+            }
+        }
+        assert!(
+            of_cameras.contains(&"view-distant") && !of_cameras.contains(&"glass-schlick"),
+            "{of_cameras:?}"
+        );
+    }
+
+    #[test]
+    fn the_book_traces_the_same_picture_by_its_own_rules() {
+        let mut second = Second::default();
+        for case in shown_cases() {
+            let mine = Document::new(Origin::of_case(case));
+            let other = Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked));
+            let theirs = second.document_of(other, &mine);
+            assert_eq!(theirs.rules().surface, SurfaceRule::Book, "{}", case.id);
+            assert_eq!(
+                (theirs.camera, theirs.settings, theirs.stop),
+                (mine.camera, mine.settings, mine.stop)
+            );
+        }
+    }
+}

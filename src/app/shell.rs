@@ -1,7 +1,6 @@
 //! What surrounds the picture: dialogs, messages, the presentation, keyboard focus, and the log of frames.
 
 use super::dialogs::Dialogs;
-use super::first_steps::Card;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::places::Place;
 use super::present::Presenter;
@@ -18,7 +17,6 @@ const FRAMES_TO_FIT: u8 = 120;
 pub struct Shell {
     pub dialogs: Dialogs,
     pub toasts: Toasts,
-    pub first_steps: Card,
     pub presenter: Presenter,
     pub frame_log: Option<FrameLog>,
     pub frame_times: FrameTimes,
@@ -46,7 +44,6 @@ impl Shell {
         Ok(Shell {
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
-            first_steps: Card::default(),
             presenter: Presenter::default(),
             frame_log: frame_log.map(create).transpose()?,
             frame_times: FrameTimes::default(),

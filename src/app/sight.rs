@@ -80,18 +80,13 @@ impl Sighted {
         (view.kept, view.reference, view.tone.exposure) = (kept, reference, exposure);
         *placement = self.placement;
     }
-
-    /// Whether the camera was brought back to the stage's.
-    pub fn has_moved_camera(&self) -> bool {
-        self.camera.is_some()
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::model::kept::Kept;
-    use crate::app::model::slots::{Slot, SlotNumber};
+    use crate::app::model::kept::Named;
     use crate::app::model::tone::Tone;
     use crate::film::Film;
 
@@ -130,18 +125,17 @@ mod tests {
             let moved = document.camera;
             let mut view = ViewState::default();
             view.tone.expose(1.0);
-            view.is_with_next = true;
             let (range, mut placement) = (view.tone.range, Placement::default());
             placement.actual_size();
             let before = placement.zoom();
             let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-            assert!(document.camera == home && sight.has_moved_camera() && sight.lasts(&document, &view));
+            assert!(document.camera == home && sight.lasts(&document, &view));
             assert_eq!(view.show(), Show::of_means(stage.sight.means));
             match stage.sight.means {
                 Means::Luminance(wanted) => assert_eq!(view.tone.range, wanted),
                 Means::Wipe(divider) => {
                     assert_eq!((view.mode(), view.divider), (Some(Mode::Wipe), divider));
-                    assert!(!view.is_with_next && !view.is_divider_unplaced);
+                    assert!(!view.is_divider_unplaced);
                 }
                 _ => {}
             }
@@ -149,8 +143,12 @@ mod tests {
             view.tone.expose(1.0);
             sight.end(&mut document, &mut view, &mut placement);
             assert_eq!((document.camera, placement.zoom()), (moved, before));
-            assert_eq!((view.show(), view.mode(), view.is_with_next), (Show::Picture, None, true));
-            assert_eq!(view.tone, Tone { exposure: 2.0, range }, "the exposure stays as it was chosen");
+            assert_eq!((view.show(), view.mode()), (Show::Picture, None));
+            assert_eq!(
+                view.tone,
+                Tone { exposure: 2.0, range, ..Tone::default() },
+                "the exposure stays as it was chosen"
+            );
         }
     }
 
@@ -159,7 +157,6 @@ mod tests {
         let (stage, mut document) = stage("metal");
         let (mut view, mut placement) = (ViewState::default(), Placement::default());
         let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-        assert!(!sight.has_moved_camera(), "it was at home");
         sight.end(&mut document, &mut view, &mut placement);
         document.camera.vfov_degrees = 33.0;
         let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
@@ -178,14 +175,14 @@ mod tests {
         other.choose(if view.show() == Show::Normals { Show::Albedo } else { Show::Normals });
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.toggle(Mode::Difference, With::Slot(SlotNumber::ALL[0]));
+        other.toggle(Mode::Difference, With::Kept(0));
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
         let kept = Arc::new(kept(&document));
-        other.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
+        other.kept.add(Named { name: String::new(), kept });
         other.look(None);
         assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
-        other.look(Some(SlotNumber::ALL[0]));
+        other.look(Some(0));
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));

@@ -1,9 +1,8 @@
 //! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
 
-use super::command::Command;
 use super::model::document::Document;
 use super::model::sizing::Sizing;
-use eframe::egui::{self, Align2, Context, Rect, Ui};
+use eframe::egui::Context;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -59,6 +58,11 @@ impl Sizer {
         self.is_asked = true;
     }
 
+    /// The size at which the picture could be rendered anew, if it is only scaled.
+    pub fn offer(&self) -> Option<[u32; 2]> {
+        self.offer
+    }
+
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
     /// the screen.
     pub fn follow(
@@ -98,23 +102,6 @@ impl Sizer {
             Verdict::Wait(time) => context.request_repaint_after(time),
             Verdict::Keep => self.offer = Some(wanted),
         }
-    }
-
-    /// Draws the offer, if there is one, in the lower right corner of `over`.
-    pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
-        let Some([width, height]) = self.offer else { return };
-        egui::Area::new(egui::Id::unique("size offer"))
-            .pivot(Align2::RIGHT_BOTTOM)
-            // Above the axes.
-            .fixed_pos(over.right_bottom() - egui::vec2(12.0, 124.0))
-            .constrain_to(over)
-            .show(ui.ctx(), |ui| {
-                let help = "This picture is scaled, because its samples would be lost; this renders it anew, one pixel of \
-                            the picture per pixel of the screen";
-                if ui.button(format!("Render at {width} × {height}")).on_hover_text(help).clicked() {
-                    commands.push(Command::Size(Sizing::Viewport));
-                }
-            });
     }
 }
 

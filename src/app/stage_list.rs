@@ -1,203 +1,252 @@
-//! The list of stages: picture, section and title of each, by chapter.
+//! The list of stages: a field to search in, chapters as headings, and the extreme scenes.
 
 use super::command::Command;
 use super::facts::Facts;
 use super::theme;
-use super::tips;
+use super::widgets::{hint, tip};
+use crate::measure::stress::{Case, shown_cases};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, Event, EventFilter, FontId, Id, Key, Modifiers, Rect, Response, RichText, Sense, TextStyle,
-    Ui, WidgetInfo, pos2, vec2,
+    self, Align, ColorImage, Context, Id, Key, Modifiers, Rect, Response, RichText, Sense, Stroke,
+    StrokeKind, TextStyle, TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
-pub const WIDTH: f32 = 348.0;
+pub const WIDTH: f32 = 360.0;
 
-/// Space around the picture in its row, points.
 /// Size of the small pictures, points.
-const SIZE: egui::Vec2 = vec2(64.0, 36.0);
+const PICTURE: egui::Vec2 = vec2(72.0, 40.0);
 
-const MARGIN: f32 = 4.0;
-
-/// How many stages Page Up and Page Down go on.
+/// How many rows Page Up and Page Down go on.
 const PAGE: usize = 8;
 
-/// Draws the list. It opens at the current stage and follows it; arrow keys go through it, typing leaves the stages that
-/// have these words, and Enter chooses.
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    let here = facts.document().stage();
-    let (has_opened, has_moved) = (has_just_opened(ui), has_moved(ui, here));
-    // In a menu, the entries above it take room.
-    let above = ui.cursor().top() - ui.min_rect().top();
-    let height = (ui.ctx().content_rect().height() - 130.0 - above).clamp(160.0, 720.0);
-    let id = ui.scope_id();
-    let (typed, has_typed) = typed(ui);
-    let is_new = (has_opened || has_moved) && typed.is_empty();
-    let found = found(&typed);
-    if !typed.is_empty() {
-        let words = if found.is_empty() { "No stage has" } else { "Stages with" };
-        ui.label(RichText::new(format!("{words} \"{}\"", typed.trim())).small());
+const LAST_HEADING: &str = "Extreme scenes";
+
+/// What was typed, and the chosen row.
+#[derive(Clone, Default)]
+struct State {
+    text: String,
+    chosen: usize,
+    has_moved: bool,
+}
+
+fn place() -> Id {
+    Id::unique("list of stages")
+}
+
+/// A row of the list.
+#[derive(Clone, Copy, PartialEq)]
+enum Row {
+    Stage(&'static Stage),
+    Case(&'static Case),
+}
+
+impl Row {
+    fn all() -> impl Iterator<Item = Row> {
+        let aside = Stage::ALL.iter().filter(|stage| !stage.is_in_book());
+        Stage::walk().chain(aside).map(Row::Stage).chain(shown_cases().iter().map(Row::Case))
     }
-    if has_typed && !found.iter().any(|stage| ui.memory(|memory| memory.has_focus(id.with(stage.id)))) {
-        let first = found.first().map(|stage| id.with(stage.id));
-        ui.memory_mut(|memory| first.into_iter().for_each(|first| memory.request_focus(first)));
+
+    fn command(self) -> Command {
+        match self {
+            Row::Stage(stage) => Command::Stage(stage),
+            Row::Case(case) => Command::Extreme(case),
+        }
     }
-    let mut focused = None;
-    let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
-    area.show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        let mut chapter = "";
-        for (place, stage) in found.iter().copied().enumerate() {
-            if stage.chapter() != chapter {
-                chapter = stage.chapter();
-                ui.add_space(6.0);
-                let heading = format!("{chapter}  {}", stage.chapter_title);
-                ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
-                ui.add_space(2.0);
+
+    fn heading(self) -> String {
+        match self {
+            Row::Stage(stage) if stage.is_in_book() => format!("{} {}", stage.chapter(), stage.chapter_title),
+            _ => LAST_HEADING.to_owned(),
+        }
+    }
+
+    /// The words by which it is found; what is new only if nothing has them in its name.
+    fn words(self, is_long: bool) -> String {
+        let name = match self {
+            Row::Stage(Stage { section, section_title, title, id, .. }) => {
+                format!("{section} {section_title} {title} {id}")
             }
-            let response = row(ui, id.with(stage.id), stage, here == Some(stage));
-            if is_new && here == Some(stage) {
+            Row::Case(case) => case.title().to_owned(),
+        };
+        let more = if is_long { self.command().help() } else { "" };
+        format!("{name} {} {more}", self.heading()).to_lowercase()
+    }
+}
+
+fn found(typed: &str) -> Vec<Row> {
+    let typed = typed.to_lowercase();
+    let having = |is_long| -> Vec<Row> {
+        let has = |row: &Row| typed.split_whitespace().all(|word| row.words(is_long).contains(word));
+        Row::all().filter(has).collect()
+    };
+    let by_name = having(false);
+    if by_name.is_empty() { having(true) } else { by_name }
+}
+
+/// Opens the list at the picture that is shown, or at its end.
+pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
+    let is_first = |row: &Row| match is_at_end {
+        true => row.heading() == LAST_HEADING,
+        false => facts.is_on(row.command()),
+    };
+    let chosen = Row::all().position(|row| is_first(&row)).unwrap_or(0);
+    context.data_mut(|data| data.insert_temp(place(), State { chosen, has_moved: true, ..State::default() }));
+}
+
+/// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
+pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.set_width(WIDTH);
+    let mut state: State = ui.data(|data| data.get_temp(place())).unwrap_or_default();
+    if !state.text.is_empty() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+        (state.text, state.chosen) = (String::new(), 0);
+    }
+    let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+    let down = presses(Key::ArrowDown) + PAGE * presses(Key::PageDown);
+    let up = presses(Key::ArrowUp) + PAGE * presses(Key::PageUp);
+    let is_enter = presses(Key::Enter) > 0;
+    let edit = egui::TextEdit::singleline(&mut state.text)
+        .hint_text("Type a number or a word: 9.5, glass, gamma")
+        .margin(vec2(8.0, 8.0))
+        .desired_width(f32::INFINITY);
+    let response = ui.add(edit).accessible_name("Search for a stage");
+    response.request_focus();
+    if response.changed() {
+        (state.chosen, state.has_moved) = (0, true);
+    }
+    let found = found(&state.text);
+    let last = found.len().saturating_sub(1);
+    state.chosen = (state.chosen + down).min(last).saturating_sub(up);
+    state.has_moved |= up + down > 0;
+    let mut run = is_enter.then(|| found.get(state.chosen)).flatten().copied();
+    let height = (ui.ctx().content_rect().height() - 140.0).clamp(160.0, 720.0);
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        if found.is_empty() {
+            hint(ui, "No stage is called that. Press Escape to see all.");
+        }
+        let mut heading = String::new();
+        for (index, row) in found.iter().copied().enumerate() {
+            if row.heading() != heading {
+                heading = row.heading();
+                let color = ui.visuals().weak_text_color();
+                ui.add_space(8.0);
+                ui.label(RichText::new(format!("  {heading}")).small().color(color));
+                ui.add_space(4.0);
+            }
+            let response = row_ui(ui, row, index == state.chosen);
+            if index == state.chosen && state.has_moved {
                 response.scroll_to_me(Some(Align::Center));
-                response.request_focus();
-            }
-            if response.gained_focus() {
-                response.scroll_to_me(None);
-            }
-            if response.has_focus() {
-                focused = Some((place, stage));
             }
             if response.clicked() {
-                commands.push(Command::Stage(stage));
-                ui.close();
+                run = Some(row);
             }
         }
     });
-    if let Some((place, stage)) = focused {
-        let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(id.with(stage.id), filter));
-        let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-        let down = presses(Key::ArrowDown) + PAGE * presses(Key::PageDown);
-        let up = presses(Key::ArrowUp) + PAGE * presses(Key::PageUp);
-        let next = (place + down).saturating_sub(up).min(found.len().saturating_sub(1));
-        if let Some(next) = found.get(next).filter(|next| next.id != stage.id) {
-            ui.memory_mut(|memory| memory.request_focus(id.with(next.id)));
-        }
+    // The area has its final size only in its second frame.
+    state.has_moved = std::mem::take(&mut state.has_moved) && ui.is_sizing_pass();
+    ui.data_mut(|data| data.insert_temp(place(), state));
+    if let Some(row) = run {
+        commands.push(row.command());
+        ui.close();
     }
 }
 
-/// What has been typed since the list was opened, and whether it has changed in this frame.
-fn typed(ui: &Ui) -> (String, bool) {
-    let (place, now) = (ui.scope_id().with("typed"), ui.ctx().cumulative_pass_nr());
-    let kept: Option<(String, u64)> = ui.data(|data| data.get_temp(place));
-    let before = kept.filter(|(_, last)| now <= last + PASSES).map_or_else(String::new, |(text, _)| text);
-    let mut text = before.clone();
-    ui.input_mut(|input| {
-        let mut new = String::new();
-        input.events.retain(|event| match event {
-            Event::Text(letters) => {
-                new.push_str(letters);
-                false
-            }
-            _ => true,
-        });
-        if !text.is_empty() || !new.trim().is_empty() {
-            text.push_str(&new);
-            // Between words, Space does not choose the stage.
-            input.consume_key(Modifiers::NONE, Key::Space);
-        }
-        (0..input.count_and_consume_key(Modifiers::NONE, Key::Backspace)).for_each(|_| _ = text.pop());
-    });
-    let has_changed = text != before;
-    ui.data_mut(|data| data.insert_temp(place, (text.clone(), now)));
-    (text, has_changed)
-}
-
-/// The stages that have all these words in their headings and names, or else in what is new there.
-fn found(typed: &str) -> Vec<&'static Stage> {
-    let typed = typed.to_lowercase();
-    let having = |text: fn(&Stage) -> String| -> Vec<&'static Stage> {
-        let has = |stage: &&Stage| {
-            let text = text(stage).to_lowercase();
-            typed.split_whitespace().all(|word| text.contains(word))
-        };
-        Stage::ALL.iter().filter(has).collect()
+fn row_ui(ui: &mut Ui, row: Row, is_chosen: bool) -> Response {
+    let picture = match row {
+        Row::Stage(stage) => thumbnail(ui.ctx(), stage),
+        Row::Case(_) => None,
     };
-    let by_name = having(|stage| {
-        let Stage { section, section_title, chapter_title, title, id, .. } = stage;
-        format!("{section} {section_title} {chapter_title} {title} {id}")
-    });
-    if by_name.is_empty() { having(|stage| stage.what_is_new.to_owned()) } else { by_name }
-}
-
-fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool) -> Response {
-    let size = vec2(ui.available_width(), SIZE.y + 2.0 * MARGIN);
-    let (_, rect) = ui.allocate_space(size);
-    let response = ui.interact(rect, id, Sense::click());
-    let name = Command::Stage(stage).name();
-    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_here, &name));
+    let height = if picture.is_some() { 52.0 } else { 28.0 };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    let name = row.command().name();
+    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, &name));
     if !ui.is_rect_visible(rect) {
         return response;
     }
-    let visuals = ui.visuals();
-    let (weak, text) = (visuals.weak_text_color(), visuals.strong_text_color());
+    let colours = theme::colours(ui);
     let painter = ui.painter();
-    if is_here || response.hovered() {
-        painter.rect_filled(rect, 5.0, visuals.widgets.hovered.bg_fill);
+    if is_chosen || response.hovered() {
+        painter.rect_filled(rect, 4, if is_chosen { colours.tint } else { colours.hovered });
     }
-    if is_here {
-        let bar = Rect::from_min_max(rect.min, pos2(rect.left() + 3.0, rect.bottom()));
-        painter.rect_filled(bar, 1.5, theme::accent(ui));
+    if is_chosen {
+        painter.rect_stroke(rect, 4, Stroke::new(1.0, colours.accent), StrokeKind::Inside);
     }
-    let corner = rect.min + vec2(MARGIN + 4.0, MARGIN);
-    let left = corner.x + SIZE.x + 12.0;
-    let (small, body) = (TextStyle::Small.resolve(ui.style()), TextStyle::Body.resolve(ui.style()));
-    let painter = ui.painter();
-    let section =
-        painter.layout_no_wrap(stage.section.to_owned(), FontId::new(small.size + 1.0, small.family), weak);
-    let title = painter.layout(stage.title.to_owned(), body, text, rect.right() - left - MARGIN);
-    let height = section.size().y + title.size().y;
-    let top = pos2(left, rect.center().y - 0.5 * height);
-    let below = top + vec2(0.0, section.size().y);
-    painter.galley(top, section, weak);
-    painter.galley(below, title, text);
-    tips::explain_in_column(response, rect.x_range(), stage.what_is_new, None)
-}
-
-/// The first passes of an area only measure its size.
-const PASSES: u64 = 3;
-
-/// Whether this area was hidden a moment ago.
-fn has_just_opened(ui: &Ui) -> bool {
-    let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
-    ui.data_mut(|data| {
-        let (mut first, last) = data.get_temp(id).unwrap_or((now, now));
-        if now > last + PASSES {
-            first = now;
+    let [small, body] = [TextStyle::Small, TextStyle::Body].map(|style| style.resolve(ui.style()));
+    let text_at = |x: f32, y: f32| rect.left_center() + vec2(x, y);
+    match (row, picture) {
+        (Row::Stage(stage), Some(picture)) => {
+            let place = Rect::from_min_size(rect.left_top() + vec2(8.0, 6.0), PICTURE);
+            painter.image(
+                picture.id(),
+                place,
+                Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0)),
+                egui::Color32::WHITE,
+            );
+            let color = if is_chosen { colours.text } else { colours.weak };
+            let left = egui::Align2::LEFT_CENTER;
+            painter.text(text_at(92.0, -9.0), left, stage.section, small, color);
+            painter.text(text_at(92.0, 8.0), left, stage.title, body, colours.strong);
         }
-        data.insert_temp(id, (first, now));
-        now < first + PASSES
-    })
+        _ => _ = painter.text(text_at(8.0, 0.0), egui::Align2::LEFT_CENTER, name, body, colours.strong),
+    }
+    tip(ui, response, row.command().help(), None)
 }
 
-/// Whether another stage is shown than in the last frame.
-fn has_moved(ui: &Ui, here: Option<&'static Stage>) -> bool {
-    let (id, now) = (ui.scope_id().with("stage"), here.map(Stage::index));
-    ui.data_mut(|data| {
-        let before = data.get_temp::<Option<usize>>(id);
-        data.insert_temp(id, now);
-        before.is_some_and(|before| before != now)
+macro_rules! pictures {
+    ($($id:literal)*) => {
+        /// The small pictures of the stages by id.
+        const PICTURES: &[(&str, &[u8])] =
+            &[$(($id, include_bytes!(concat!("../../assets/stages/", $id, ".png")))),*];
+    };
+}
+
+pictures!(
+    "ppm-tiny" "ppm-gradient" "sky" "red-sphere" "normals" "normals-world" "aliased" "antialiased" "diffuse"
+    "diffuse-limited" "shadow-acne" "lambertian-linear" "lambertian-gamma" "gamut" "metal" "metal-fuzzy"
+    "glass-refract" "glass-tir" "glass-schlick" "hollow-glass" "three-spheres" "fov-wide" "fov-narrow"
+    "view-distant" "view-close" "defocus" "book"
+);
+
+fn image_of(stage: &Stage) -> Option<ColorImage> {
+    let (_, png) = PICTURES.iter().find(|(id, _)| *id == stage.id)?;
+    let image = image::load_from_memory(png).ok()?.to_rgb8();
+    Some(ColorImage::from_rgb([image.width() as usize, image.height() as usize], image.as_raw()))
+}
+
+/// The small picture of a stage, which is loaded once.
+fn thumbnail(context: &Context, stage: &Stage) -> Option<TextureHandle> {
+    let place = Id::unique(("picture of stage", stage.id));
+    let loaded = context.data(|data| data.get_temp(place));
+    loaded.or_else(|| {
+        let handle = context.load_texture(stage.id, image_of(stage)?, egui::TextureOptions::LINEAR);
+        context.data_mut(|data| data.insert_temp(place, handle.clone()));
+        Some(handle)
     })
 }
 
 /// Opens the list in this frame. `is_at_end` shows the extreme scenes, which come last.
-pub fn open(context: &egui::Context, is_at_end: bool) {
-    context.data_mut(|data| data.insert_temp(Id::unique("the list of stages"), is_at_end));
+pub fn open(context: &Context, is_at_end: bool) {
+    context.data_mut(|data| data.insert_temp(place().with("open"), is_at_end));
 }
 
 /// Whether the list is to be opened, and if so, whether at its end.
 pub fn take_open(ui: &Ui) -> Option<bool> {
-    ui.data_mut(|data| data.remove_temp(Id::unique("the list of stages")))
+    ui.data_mut(|data| data.remove_temp(place().with("open")))
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_stage_has_its_picture_and_is_found() {
+        for stage in Stage::ALL {
+            assert!(image_of(stage).is_some(), "{}", stage.id);
+            assert!(found(stage.section).contains(&Row::Stage(stage)), "{}", stage.id);
+        }
+        assert_eq!(Row::all().count(), Stage::ALL.len() + shown_cases().iter().count());
+        assert!(found("schl") == [Row::Stage(Stage::find("glass-schlick").unwrap())]);
+        assert!(found("no such words").is_empty());
+    }
+}

@@ -2,35 +2,34 @@
 
 use super::command::Command;
 use super::theme;
+use super::widgets::{Sign, sign_button};
 use crate::system::console;
-use eframe::egui::{self, Align2, Color32, RichText};
+use eframe::egui::{self, Align2, Id, Label, Rect, RichText, accesskit::Live, vec2};
 use std::time::{Duration, Instant};
 
-/// The kind of a message.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
-    /// Success.
-    Good,
-    /// Failure.
-    Bad,
-}
+/// How long a message is shown that doesn't stay.
+const LIFETIME: Duration = Duration::from_secs(4);
+
+const WIDTH: f32 = 320.0;
 
 struct Toast {
     text: String,
-    tone: Tone,
+    is_error: bool,
     since: Instant,
+    /// It stays until it is closed or withdrawn.
+    stays: bool,
     /// The run of the render whose picture it is about, if it is about a picture.
     run: Option<u64>,
     /// What it offers to do.
     offers: Vec<Command>,
-    /// It stays until it is closed.
-    stays: bool,
+    /// Its lower edge above that of the picture, and its height, points. It never moves.
+    place: Option<(f32, f32)>,
 }
 
 impl Toast {
     /// How long the message is still shown, if it does not stay.
     fn left(&self) -> Option<Duration> {
-        (!self.stays).then(|| lifetime(self.tone).saturating_sub(self.since.elapsed()))
+        (!self.stays).then(|| LIFETIME.saturating_sub(self.since.elapsed()))
     }
 }
 
@@ -38,25 +37,17 @@ impl Toast {
 #[derive(Default)]
 pub struct Toasts(Vec<Toast>);
 
-/// How long a message is shown. Failures stay longer, because users have to read them.
-fn lifetime(tone: Tone) -> Duration {
-    match tone {
-        Tone::Good => Duration::from_secs(4),
-        Tone::Bad => Duration::from_secs(15),
-    }
-}
-
 impl Toasts {
     /// Reports a success.
     pub fn good(&mut self, text: impl Into<String>) {
-        self.add(text.into(), Tone::Good);
+        self.add(text.into(), false);
     }
 
-    /// Reports a failure, both in the window and on the terminal.
+    /// Reports a failure, both in the window and on the terminal. It stays until it is closed.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
         console::note(&format!("weekender: {text}"));
-        self.add(text, Tone::Bad);
+        self.add(text, true);
     }
 
     /// Reports what is wrong with the picture of the render with this run, in the window and on the terminal.
@@ -75,9 +66,7 @@ impl Toasts {
     /// Reports a success, and offers commands that follow from it.
     pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
         self.good(text);
-        if let Some(toast) = self.0.last_mut() {
-            toast.offers = offers.to_vec();
-        }
+        offers.iter().for_each(|offer| self.add_offer(*offer));
     }
 
     /// Adds a command to the newest message.
@@ -85,7 +74,7 @@ impl Toasts {
         self.0.last_mut().into_iter().for_each(|toast| toast.offers.push(command));
     }
 
-    /// Reports something that calls for a command. The message stays until it is closed, or an offer withdrawn.
+    /// The same, until it is closed or withdrawn.
     pub fn offer(&mut self, text: impl Into<String>, offers: &[Command]) {
         self.good_with(text, offers);
         if let Some(toast) = self.0.last_mut() {
@@ -98,9 +87,18 @@ impl Toasts {
         self.0.retain(|toast| !toast.offers.contains(&command));
     }
 
-    fn add(&mut self, text: String, tone: Tone) {
+    fn add(&mut self, text: String, is_error: bool) {
         self.0.retain(|toast| toast.text != text);
-        self.0.push(Toast { text, tone, since: Instant::now(), run: None, offers: Vec::new(), stays: false });
+        let since = Instant::now();
+        self.0.push(Toast {
+            text,
+            is_error,
+            since,
+            stays: is_error,
+            run: None,
+            offers: Vec::new(),
+            place: None,
+        });
     }
 
     /// The visible messages, oldest first.
@@ -108,70 +106,75 @@ impl Toasts {
         self.0.iter().map(|toast| toast.text.as_str())
     }
 
-    pub fn ui(&mut self, ui: &egui::Ui, over: egui::Rect, commands: &mut Vec<Command>) {
+    /// Draws the messages above the lower edge of `over`.
+    pub fn ui(&mut self, ui: &egui::Ui, over: Rect, commands: &mut Vec<Command>) {
         self.0.retain(|toast| toast.left() != Some(Duration::ZERO));
-        if self.0.is_empty() {
-            return;
-        }
         if let Some(first) = self.0.iter().filter_map(Toast::left).min() {
             ui.ctx().request_repaint_after(first);
         }
         let mut closed = None;
-        egui::Area::new(egui::Id::unique("toasts"))
-            .order(egui::Order::Foreground)
-            .pivot(Align2::CENTER_BOTTOM)
-            .fixed_pos(over.center_bottom() - egui::vec2(0.0, 14.0))
-            .constrain_to(over)
-            .show(ui.ctx(), |ui| {
-                ui.set_max_width((over.width() - 24.0).clamp(120.0, 520.0));
-                for (index, toast) in self.0.iter().enumerate() {
-                    theme::float_frame(ui).show(ui, |ui| {
-                        ui.horizontal_top(|ui| {
-                            let colour = match toast.tone {
-                                Tone::Good => ui.visuals().text_color(),
-                                Tone::Bad => ui.visuals().error_fg_color,
-                            };
-                            let close = egui::Button::new(RichText::new("×").strong())
-                                .fill(Color32::TRANSPARENT)
-                                .small();
-                            let room = ui.available_width() - 28.0;
-                            ui.scope(|ui| {
-                                ui.set_max_width(room);
-                                let words = RichText::new(&toast.text).color(colour);
-                                ui.vertical(|ui| {
-                                    ui.add(egui::Label::new(words).wrap());
-                                    if toast.offers.is_empty() {
-                                        return;
-                                    }
-                                    ui.horizontal_wrapped(|ui| {
-                                        for command in &toast.offers {
-                                            let button = ui.button(command.name());
-                                            if button.on_hover_text(command.help()).clicked() {
-                                                commands.push(*command);
-                                                closed = Some(index);
-                                            }
-                                        }
-                                    });
-                                });
-                            });
-                            if ui.add(close).on_hover_text("Close this message").clicked() {
-                                closed = Some(index);
-                            }
-                        });
-                    });
-                }
-            });
+        for index in 0..self.0.len() {
+            let ends = self.0.iter().filter_map(|toast| toast.place).map(|(at, height)| at + height + 8.0);
+            let free = ends.fold(16.0, f32::max);
+            let toast = &mut self.0[index];
+            let at = toast.place.map_or(free, |(at, _)| at);
+            let shown = egui::Area::new(Id::unique(("toast", &toast.text)))
+                .order(egui::Order::Foreground)
+                .pivot(Align2::CENTER_BOTTOM)
+                .fixed_pos(over.center_bottom() - vec2(0.0, at))
+                .constrain_to(over)
+                .show(ui.ctx(), |ui| {
+                    let width = WIDTH.min(over.width() - 16.0) - 26.0;
+                    theme::float_frame(ui)
+                        .show(ui, |ui| {
+                            ui.set_width(width);
+                            toast.ui(ui, commands)
+                        })
+                        .inner
+                });
+            toast.place = Some((at, shown.response.rect.height()));
+            if shown.inner {
+                closed = Some(index);
+            }
+        }
         if let Some(index) = closed {
             self.0.remove(index);
         }
     }
 }
 
+impl Toast {
+    /// Draws it. Returns whether it was closed.
+    fn ui(&self, ui: &mut egui::Ui, commands: &mut Vec<Command>) -> bool {
+        let mut is_closed = false;
+        ui.horizontal_top(|ui| {
+            let colours = theme::colours(ui);
+            let color = if self.is_error { colours.bad } else { colours.text };
+            let room = ui.available_width() - 28.0;
+            ui.vertical(|ui| {
+                ui.set_width(room);
+                let label = ui.add(Label::new(RichText::new(&self.text).color(color)).wrap());
+                let live = if self.is_error { Live::Assertive } else { Live::Polite };
+                label.ctx.accesskit_node_builder(label.id, |node| node.set_live(live));
+                ui.horizontal_wrapped(|ui| {
+                    for command in &self.offers {
+                        if ui.button(command.name()).on_hover_text(command.help()).clicked() {
+                            commands.push(*command);
+                            is_closed = true;
+                        }
+                    }
+                });
+            });
+            is_closed |= sign_button(ui, Sign::Close, 20.0, "Close this message").clicked();
+        });
+        is_closed
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use eframe::egui::{Rect, pos2, vec2};
+    use eframe::egui::pos2;
 
     #[test]
     fn a_message_is_told_once_and_the_newest_is_the_last() {
@@ -180,39 +183,38 @@ mod tests {
             toasts.good(text);
         }
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first"]);
-        assert!(toasts.0.iter().all(|toast| toast.tone == Tone::Good));
     }
 
     #[test]
     fn a_warning_ends_with_its_picture() {
         let mut toasts = Toasts::default();
         toasts.warn("too thin", 1);
-        toasts.warn("no light", 1);
         toasts.bad("not saved");
         toasts.end_warnings(1);
-        assert_eq!(toasts.texts().count(), 3);
-        toasts.warn("too thin", 2);
-        toasts.end_warnings(2);
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["not saved", "too thin"]);
+        assert_eq!(toasts.texts().count(), 2);
         toasts.end_warnings(3);
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["not saved"]);
     }
 
     #[test]
-    fn failures_stay_longer() {
-        let ages = [(4.0, Tone::Good), (11.0, Tone::Bad), (15.0, Tone::Bad)];
-        let toast = |(seconds, tone)| Toast {
-            text: format!("{seconds}"),
-            tone,
-            since: Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap(),
-            run: None,
-            offers: Vec::new(),
-            stays: false,
-        };
-        let mut toasts = Toasts(ages.into_iter().map(toast).collect());
+    fn errors_stay_and_nothing_moves() {
+        let mut toasts = Toasts::default();
+        toasts.good("old");
+        toasts.bad("failed");
         let context = egui::Context::default();
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
-        let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["11"]);
+        let draw = |toasts: &mut Toasts| {
+            let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
+        };
+        draw(&mut toasts);
+        let before = toasts.0[1].place;
+        for toast in &mut toasts.0 {
+            toast.since = Instant::now().checked_sub(Duration::from_secs(60)).unwrap();
+        }
+        draw(&mut toasts);
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["failed"]);
+        assert!(
+            before.is_some_and(|(at, _)| at > 16.0) && toasts.0[0].place.map(|p| p.0) == before.map(|p| p.0)
+        );
     }
 }

@@ -1,30 +1,26 @@
-//! Exposure, the range of the luminance view, and the histogram.
+//! What is shown of the picture and how bright, and the histogram.
 
 use super::answers::Answers;
+use super::command::Command;
 use super::facts::Facts;
 use super::kept::{FilmId, Subject};
 use super::model::show::Show;
-use super::model::tone::Tone;
-use super::model::view::{Mode, ViewState};
+use super::model::tone::{Channel, Tone};
+use super::model::view::ViewState;
 use super::theme;
-use super::tips;
-use super::widgets::{About, FIELD, Number, above, compact};
+use super::widgets::{About, Header, Number, compact, entry, fold, hint, list, row, switch, tip};
 use crate::film::Histogram;
 use eframe::egui::{
-    self, Align2, Color32, Pos2, Rect, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+    self, Align2, Label, Pos2, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
-const HEIGHT: f32 = 84.0;
+const HEIGHT: f32 = 72.0;
 
 /// Time between two histograms of a picture that refines: counting takes the tracer's time.
 const INTERVAL: Duration = Duration::from_millis(500);
-
-/// The channels' colours, on light and on dark panels.
-const CHANNELS: [Color32; 3] =
-    [Color32::from_rgb(226, 80, 70), Color32::from_rgb(66, 168, 84), Color32::from_rgb(72, 128, 236)];
 
 /// The histogram on the screen.
 #[derive(Default)]
@@ -71,72 +67,91 @@ impl ToneUi {
         });
     }
 
-    /// Draws the controls of the current view, and the histogram.
-    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts) {
-        let is_difference = view.mode() == Some(Mode::Difference);
-        if view.show() == Show::Picture && !is_difference {
-            exposure_ui(ui, &mut view.tone);
-        } else if view.show() == Show::Luminance {
-            range_ui(ui, &mut view.tone);
+    /// Draws what is shown and how bright, and the histogram.
+    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts, commands: &mut Vec<Command>) {
+        self.is_open = false;
+        let (show, channel) = (view.show(), view.tone.channel);
+        let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
+        summary.extend(channel.map(|channel| channel.name().to_lowercase()));
+        if view.tone.exposure != 0.0 {
+            let sign = if view.tone.exposure > 0.0 { "+" } else { "" };
+            summary.push(format!("{sign}{} stops", compact(view.tone.exposure)));
         }
-        let header = egui::CollapsingHeader::new(RichText::new("Histogram").small())
-            .id_salt("histogram")
-            .show_unindented(ui, |ui| match &self.histogram {
-                Some(histogram) => paint(ui, histogram, view.tone.exposure),
-                None => {
-                    let text = if facts.is_working() { "Counting…" } else { "No samples yet" };
-                    ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
+        let header = Header { title: "View", summary: &summary.join(", "), ..Header::default() };
+        fold(ui, header, false, |ui| {
+            self.is_open = true;
+            let about = About::new("Show", "What is shown; files are saved as Picture");
+            list(ui, about, show.name(), |ui| {
+                for show in Show::ALL {
+                    let (command, reason) = (Command::Show(show), facts.useless_show(show));
+                    let about = About::new(show.name(), command.help()).disabled_if(reason.as_deref());
+                    if entry(ui, facts.is_on(command), about) {
+                        commands.push(command);
+                    }
                 }
             });
-        tips::beside(ui, header.header_response, "How often each brightness occurs, red, green and blue");
-        self.is_open = header.openness > 0.0;
-        ui.add_space(4.0);
+            if show == Show::Luminance {
+                range_ui(ui, &mut view.tone);
+            } else {
+                let reason = facts.no_exposure();
+                brightness_ui(ui, &mut view.tone, reason.as_deref());
+            }
+            match &self.histogram {
+                Some(histogram) => paint(ui, histogram, view.tone.exposure),
+                None => _ = hint(ui, if facts.is_working() { "Counting…" } else { "No samples yet" }),
+            }
+        });
     }
 }
 
-fn exposure_ui(ui: &mut Ui, tone: &mut Tone) {
-    let about = About::new(
-        "Exposure",
-        "Shows the picture brighter or darker, in stops: each stop doubles the light (keys + and -, 0 for none). \
-         It changes only what you see; files are saved without it",
-    );
-    Number::new(about, Tone::EXPOSURES).speed(0.02).slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
+fn brightness_ui(ui: &mut Ui, tone: &mut Tone, reason: Option<&str>) {
+    let help = "Show one channel alone, as grey (Shift+R, G, B)";
+    row(ui, About::new("Channels", help).disabled_if(reason), |ui| {
+        let [red, green, blue] = Channel::ALL.map(Some);
+        // The row begins at the right.
+        let options = [(None, "RGB"), (red, "R"), (green, "G"), (blue, "B")]
+            .map(|(channel, name)| (channel, About::new(name, help).disabled_if(reason)));
+        tone.channel = switch(ui, 0.0, tone.channel, &options).unwrap_or(tone.channel);
+    });
+    let help = "Brightens what you see by powers of two; saved files stay as they are (+, −, 0)";
+    let about = About::new("Exposure", help).disabled_if(reason);
+    let number = Number::new(about, Tone::EXPOSURES).unit(" stops", "stops").speed(0.02);
+    number.slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
 }
 
 fn range_ui(ui: &mut Ui, tone: &mut Tone) {
-    let about = About::new(
-        "Range of luminances",
-        "The luminances at the two ends of the colours, as powers of two: 0 is white, -1 half as much",
-    );
-    above(ui, about);
-    ui.horizontal(|ui| {
-        let before = tone.range;
-        let [low, high] = &mut tone.range;
-        let field = |name| Number::new(About { name, ..about }, Tone::RANGES).speed(0.1);
-        field("Darkest luminance, power of two").field(ui, FIELD, low);
-        ui.label("to");
-        field("Brightest luminance, power of two").field(ui, FIELD, high);
-        ui.label("stops");
-        tone.mend_range(before);
-    });
+    let help = "How bright the two ends of the colours are, as powers of two: 0 is white, −1 half of that";
+    let before = tone.range;
+    let [low, high] = &mut tone.range;
+    Number::new(About::new("Darkest", help), Tone::RANGES).speed(0.1).row(ui, low);
+    Number::new(About::new("Brightest", help), Tone::RANGES).speed(0.1).row(ui, high);
+    tone.mend_range(before);
+}
+
+/// What the reader should know about a histogram.
+fn clipping(histogram: &Histogram) -> String {
+    match 100.0 * f64::from(histogram.clipped) / f64::from(histogram.pixels.max(1)) {
+        0.0 => "Nothing is brighter than white.".to_owned(),
+        share if share < 0.1 => {
+            "Less than 0.1 % of the pixels are brighter than white and lose detail.".to_owned()
+        }
+        share => format!("{share:.1} % of the pixels are brighter than white and lose detail."),
+    }
 }
 
 /// Draws the counts, with a line at the radiance that is shown as white.
 fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
-    let (whole, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let share = 100.0 * f64::from(histogram.clipped) / f64::from(histogram.pixels.max(1));
-    let words = format!("{share:.1} % of pixels clipped; largest value {}", compact(histogram.largest));
+    let (area, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let (words, colours) = (clipping(histogram), theme::colours(ui));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, format!("Histogram: {words}")));
-    let font = TextStyle::Small.resolve(ui.style());
-    let area = Rect { max: pos2(whole.right(), whole.bottom() - font.size - 3.0), ..whole };
-    let painter = ui.painter().with_clip_rect(whole.intersect(ui.clip_rect()));
-    painter.rect_filled(area, 3.0, theme::surround(ui));
+    let painter = ui.painter().with_clip_rect(area.intersect(ui.clip_rect()));
+    painter.rect_filled(area, 4.0, colours.well);
     let [low, high] = Histogram::STOPS;
     let across = |stops: f64| area.left() + ((stops - low) / (high - low)) as f32 * area.width();
     // The outer bins also hold everything beyond, such as black, and would dwarf the others.
     let inner = histogram.bins.iter().flat_map(|bins| &bins[1..bins.len() - 1]);
     let most = f64::from(inner.copied().max().unwrap_or(0).max(1)).sqrt();
-    for (bins, colour) in histogram.bins.iter().zip(CHANNELS) {
+    for (bins, colour) in histogram.bins.iter().zip([colours.bad, colours.good, colours.accent]) {
         let mut points: Vec<Pos2> = Vec::with_capacity(2 * bins.len());
         for (bin, count) in bins.iter().enumerate() {
             let height = (f64::from(*count).sqrt() / most).min(1.0) as f32 * (area.height() - 4.0);
@@ -147,17 +162,14 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
         painter.add(Shape::line(points, Stroke::new(1.25, colour)));
     }
     let white = across(-exposure);
-    let line = Stroke::new(1.0, ui.visuals().strong_text_color());
+    let line = Stroke::new(1.0, colours.edge);
     painter.add(Shape::dashed_line(&[pos2(white, area.top()), pos2(white, area.bottom())], line, 3.0, 3.0));
-    for stops in (low as i32 + 4..high as i32).step_by(4) {
-        let text = if stops == 0 { "white".to_owned() } else { format!("{stops:+}") };
-        let at = pos2(across(f64::from(stops)), area.bottom() + 1.0);
-        painter.text(at, Align2::CENTER_TOP, text, font.clone(), ui.visuals().weak_text_color());
-    }
-    let help = "Linear radiance in stops: each step to the right is twice the light. Heights are square roots of counts. \
-         What is right of the dashed line is shown as white";
-    tips::beside(ui, response, help);
-    ui.add(egui::Label::new(RichText::new(words).small().color(ui.visuals().weak_text_color())).wrap());
+    let font = TextStyle::Small.resolve(ui.style());
+    painter.text(pos2(white + 4.0, area.top() + 2.0), Align2::LEFT_TOP, "white", font, colours.weak);
+    let help = "How many pixels are how bright, from black to white: each twentieth of the width is twice the light, \
+                and heights are square roots of counts";
+    tip(ui, response, help, None);
+    ui.add(Label::new(RichText::new(words).small().color(colours.weak)).wrap());
 }
 
 #[cfg(test)]

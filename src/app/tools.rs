@@ -4,9 +4,9 @@ use super::check::Check;
 use super::code::Code;
 use super::inspector::Inspector;
 use super::kept::Subject;
+use super::lanes::Lanes;
 use super::model::Model;
 use super::model::remembered::Dock;
-use super::packet::Packet;
 use super::paths::Paths;
 use eframe::egui::Context;
 
@@ -14,7 +14,7 @@ use eframe::egui::Context;
 pub struct Tools {
     pub inspector: Inspector,
     pub paths: Paths,
-    pub packet: Packet,
+    pub lanes: Lanes,
     pub code: Code,
     pub check: Check,
 }
@@ -25,8 +25,8 @@ impl Tools {
         self.inspector.follow(subject, context);
         self.paths.follow(&model.document, context);
         let is_open = model.has_panels() && model.remembered.dock == Some(Dock::Lanes);
-        let lanes = is_open.then(|| model.remembered.lanes_in_use());
-        self.packet.follow(context, &model.document, lanes, is_moving);
+        let count = is_open.then(|| model.remembered.lanes_in_use());
+        self.lanes.follow(context, &model.document, count, is_moving);
     }
 
     /// Forgets what belonged to the picture that was shown before.

@@ -5,7 +5,7 @@ use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Picture, Plan, Progressive, RenderRequest, Status, Stop, View};
+use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
@@ -57,8 +57,6 @@ impl Want<'_> {
 struct Started {
     document: Document,
     preview: Preview,
-    /// A preview of a picture that does not move, which follows at once.
-    is_look: bool,
     run: u64,
     at: Instant,
     is_pictured: bool,
@@ -80,22 +78,15 @@ pub struct Shown {
     pub run: u64,
 }
 
-/// Whether a smooth preview looks better than this picture, whose render began so long ago.
-fn is_confetti(picture: &Picture, began: Duration) -> bool {
-    picture.samples_per_pixel < CLEARER_SAMPLES && began < PREVIEW_LIMIT
-}
-
 /// A render thread and its latest results.
 pub struct Tracer {
     progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
-    /// A picture that waits until it is clearer than the preview on the screen.
-    early: Option<Picture>,
     status: Arc<Status>,
     asked: Instant,
     /// The backend and plan last sent to the render thread.
-    told: Option<(BackendChoice, Plan)>,
+    sent: Option<(BackendChoice, Plan)>,
     view: View,
     previews: Previews,
 }
@@ -106,10 +97,9 @@ impl Tracer {
             progressive: Progressive::spawn()?,
             started: None,
             shown: None,
-            early: None,
             status: Arc::default(),
             asked: Instant::now(),
-            told: None,
+            sent: None,
             view: View::Picture,
             previews: Previews::default(),
         })
@@ -124,11 +114,6 @@ impl Tracer {
     /// The status as of this frame.
     pub fn status(&self) -> &Arc<Status> {
         &self.status
-    }
-
-    /// The status as of now.
-    pub fn newest_status(&self) -> Status {
-        self.progressive.status()
     }
 
     /// The newest picture.
@@ -213,15 +198,8 @@ impl Tracer {
             self.previews.note_speed(&self.status);
         }
         let mut pictured = None;
-        let newest = self.progressive.newest_picture().or(self.early.take());
-        let newest = newest.filter(|picture| picture.run == started.run);
-        let is_preview = |shown: &Shown| {
-            shown.divisor > started.preview.divisor && shown.document.has_same_film(&started.document)
-        };
-        let has_preview = self.shown.as_ref().is_some_and(is_preview) && self.status.phase.is_working();
-        if has_preview && newest.as_ref().is_some_and(|picture| is_confetti(picture, started.at.elapsed())) {
-            self.early = newest;
-        } else if let Some(picture) = newest {
+        if let Some(picture) = self.progressive.newest_picture().filter(|picture| picture.run == started.run)
+        {
             let earlier = self.shown.take().map(|shown| shown.texture);
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
@@ -230,7 +208,7 @@ impl Tracer {
                 document: started.document.clone(),
                 run: started.run,
             });
-            if !started.is_pictured && (self.previews.is_moving() || started.is_look) {
+            if !started.is_pictured && (self.previews.is_moving() || started.preview.divisor > 1) {
                 let samples = picture.samples_per_pixel as f64;
                 let samples = samples * f64::from(picture.width) * f64::from(picture.height);
                 let seconds = started.at.elapsed().as_secs_f64();
@@ -239,13 +217,11 @@ impl Tracer {
             started.is_pictured = true;
             pictured = Some(started.at);
         }
+        let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
-        let interval = if self.previews.is_moving() {
-            Duration::ZERO
-        } else {
-            (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT)
-        };
-        if self.asked.elapsed() >= interval || !started.is_pictured {
+        let interval =
+            if self.previews.is_moving() { Duration::ZERO } else { (age / 20).min(PICTURE_INTERVAL_LIMIT) };
+        if (self.asked.elapsed() >= interval || !is_pictured) && !self.is_confetti() {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
         }
@@ -253,6 +229,17 @@ impl Tracer {
             context.request_repaint_after(interval.max(Duration::from_millis(16)));
         }
         pictured
+    }
+
+    /// Whether the preview on the screen looks better than the picture would now.
+    fn is_confetti(&self) -> bool {
+        let Some(started) = &self.started else { return false };
+        let is_preview = |shown: &Shown| shown.divisor > 1 && shown.document.has_same_film(&started.document);
+        started.preview.divisor == 1
+            && self.status.phase.is_working()
+            && self.status.samples_per_pixel < CLEARER_SAMPLES
+            && started.at.elapsed() < PREVIEW_LIMIT
+            && self.shown.as_ref().is_some_and(is_preview)
     }
 
     /// Renders what is wanted, at once or after the next picture.
@@ -265,10 +252,10 @@ impl Tracer {
             self.previews.follow_move(want.document)
         } else {
             self.previews.end_move();
-            Preview::NONE
+            self.still(want)
         };
         let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
-        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor || self.is_looking(run)) {
+        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor) {
             self.adjust(want);
             return Ok(());
         }
@@ -277,26 +264,24 @@ impl Tracer {
         if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
-        let look = if want.is_moving || mine.is_some() { None } else { self.first_look(want) };
-        self.start(want, look.unwrap_or(preview), None)?;
-        if let Some(run) = &mut self.started {
-            run.is_look = look.is_some();
-        }
-        Ok(())
+        self.start(want, preview, None)
     }
 
-    /// Whether this render is a first look that has not been seen yet. The picture itself would take longer.
-    fn is_looking(&self, run: &Started) -> bool {
-        run.is_look && !run.is_pictured && self.status.phase.is_working()
-    }
-
-    /// What to show before the first samples of another picture. The same picture at another size is on the screen
-    /// already, and a GPU is fast or has to compile first.
-    fn first_look(&self, want: &Want<'_>) -> Option<Preview> {
+    /// What to render of a picture that does not move. Previews are for the CPU: a GPU is fast or has to compile first.
+    fn still(&self, want: &Want<'_>) -> Preview {
         let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
+        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
+        // The same picture at another size is on the screen already.
         let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
-        let is_new = is_cpu && !self.shown.as_ref().is_some_and(is_there);
-        self.previews.first_look(want.document).filter(|_| is_new)
+        match mine {
+            Some(run) if run.preview.divisor == 1 => Preview::NONE,
+            Some(run) if !run.is_pictured && self.status.phase.is_working() => run.preview,
+            Some(run) if is_cpu => self.previews.look(want.document, Some(run.preview.divisor)),
+            None if is_cpu && !self.shown.as_ref().is_some_and(is_there) => {
+                self.previews.look(want.document, None)
+            }
+            _ => Preview::NONE,
+        }
     }
 
     fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
@@ -304,18 +289,19 @@ impl Tracer {
         let plan = want.plan(want.is_paused, preview);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);
-        self.progressive.ask_for_picture();
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
             preview,
-            is_look: false,
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
             is_held: want.is_paused,
         });
-        self.told = Some((want.backend.clone(), plan));
+        self.sent = Some((want.backend.clone(), plan));
+        if !self.is_confetti() {
+            self.progressive.ask_for_picture();
+        }
         Ok(())
     }
 
@@ -324,17 +310,116 @@ impl Tracer {
         let Some(run) = &mut self.started else { return };
         run.is_held &= want.is_paused;
         let plan = want.plan(run.is_held, run.preview);
-        let Some((told_backend, told_plan)) = &mut self.told else { return };
-        if told_backend != want.backend {
-            told_backend.clone_from(want.backend);
+        let Some((sent_backend, sent_plan)) = &mut self.sent else { return };
+        if sent_backend != want.backend {
+            sent_backend.clone_from(want.backend);
             self.progressive.switch_backend(want.backend.clone());
         }
-        if *told_plan != plan {
-            told_plan.clone_from(&plan);
+        if *sent_plan != plan {
+            sent_plan.clone_from(&plan);
             self.progressive.set_plan(plan);
         }
     }
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::render_cpu::CpuOptions;
+    use crate::stages::Stage;
+
+    #[test]
+    fn passes_are_short_while_something_moves_and_few_during_a_pause() {
+        let document = Document::new(Origin::usual());
+        let backend = BackendChoice::Cpu(CpuOptions::default());
+        let plan = |stop, is_moving, is_held, preview| {
+            let view = View::Picture;
+            Want { document: &document, backend: &backend, stop, view, is_moving, is_paused: false }
+                .plan(is_held, preview)
+        };
+        let stop = Stop::at_samples(100);
+        let still = plan(stop, false, false, Preview::NONE);
+        assert_eq!((still.pass_target, still.stop, still.preview), (Duration::from_millis(40), stop, None));
+        let moving = plan(stop, true, false, Preview { divisor: 2, samples: 4 });
+        assert_eq!((moving.pass_target, moving.preview), (Duration::from_millis(10), Some(4)));
+        let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
+        assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
+    }
+
+    /// A small picture of a stage.
+    fn small(stage: &str) -> Document {
+        let mut document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+        document.give_size([16, 9]);
+        document
+    }
+
+    fn cpu() -> BackendChoice {
+        BackendChoice::Cpu(CpuOptions::default())
+    }
+
+    /// What a window asks for that shows this document. Its render never ends.
+    fn wish<'a>(document: &'a Document, backend: &'a BackendChoice, is_moving: bool) -> Want<'a> {
+        Want {
+            document,
+            backend,
+            stop: Stop::at_samples(4_000_000_000),
+            view: View::Picture,
+            is_moving,
+            is_paused: false,
+        }
+    }
+
+    #[test]
+    fn a_preview_is_followed_by_the_picture_once_it_has_been_seen() {
+        let (document, backend) = (small("metal"), cpu());
+        let want = wish(&document, &backend, false);
+        for is_pictured in [false, true] {
+            let mut tracer = Tracer::new().unwrap();
+            tracer.start(&want, Preview { divisor: 2, samples: 4 }, None).unwrap();
+            assert!(tracer.is_of(&document) && !tracer.is_full(&document));
+            tracer.started.as_mut().unwrap().is_pictured = is_pictured;
+            tracer.want(&want).unwrap();
+            assert_eq!(tracer.is_full(&document), is_pictured);
+            // The same again goes on.
+            let run = tracer.status().run;
+            tracer.want(&want).unwrap();
+            assert_eq!(tracer.status().run, run);
+            tracer.restart();
+            assert!(!tracer.is_of(&document));
+            tracer.want(&want).unwrap();
+            assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
+        }
+    }
+
+    /// It takes gigabytes, or is refused where there are too few.
+    #[test]
+    fn a_huge_picture_does_not_delay_the_next_one() {
+        let (mut huge, document, backend) = (small("metal"), small("metal"), cpu());
+        huge.give_size([16384, 16384]);
+        let (mut tracer, context) = (Tracer::new().unwrap(), egui::Context::default());
+        tracer.want(&wish(&huge, &backend, false)).unwrap();
+        std::thread::sleep(Duration::from_millis(300));
+        let begin = Instant::now();
+        while !tracer.has_samples(&document) {
+            tracer.want(&wish(&document, &backend, false)).unwrap();
+            tracer.poll(&context);
+            assert!(begin.elapsed() < Duration::from_secs(10));
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_rendered_is_refused_and_the_render_goes_on() {
+        let (document, backend) = (small("metal"), cpu());
+        let mut tracer = Tracer::new().unwrap();
+        tracer.want(&wish(&document, &backend, false)).unwrap();
+        let run = tracer.status().run;
+        let mut invalid = document.clone();
+        invalid.settings.width = 0;
+        let reason = tracer.want(&wish(&invalid, &backend, false)).unwrap_err();
+        assert!(reason.contains("width"), "{reason}");
+        assert_eq!(tracer.status().run, run);
+        assert!(tracer.is_of(&document) && !tracer.is_of(&invalid));
+    }
+}

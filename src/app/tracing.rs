@@ -4,6 +4,7 @@ use super::changes::Changes;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::show::Show;
+use super::model::sizing::Sizing;
 use super::second::Second;
 use super::sizer::{Present, Sizer};
 use super::speed::Speed;
@@ -95,12 +96,15 @@ impl Tracing {
         if self.film.is_some() {
             return;
         }
+        let is_presented = model.presentation.is_some();
         let present = Present {
             is_documents: self.main.is_of(&model.document),
-            seconds: self.seconds(),
+            // A presentation begins with a picture of its own size, whatever that costs.
+            seconds: if is_presented { 0.0 } else { self.seconds() },
             is_needed: is_needed || model.view.show() == Show::Difference,
         };
-        self.sizer.follow(context, &mut model.document, (model.remembered.sizing, room), &present);
+        let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
+        self.sizer.follow(context, &mut model.document, (sizing, room), &present);
     }
 
     /// Traces what the model asks for. Returns whether there is a picture to compare with, if one is asked for.
@@ -168,7 +172,7 @@ mod tests {
     use crate::job::render::BackendInfo;
 
     #[test]
-    fn each_message_of_a_run_is_told_once() {
+    fn each_message_of_a_run_is_shown_once() {
         let messages = ["a", "b"].map(str::to_owned).to_vec();
         let status = Status { run: 2, messages, ..Status::default() };
         assert_eq!(unseen((1, 1), &status), ["a", "b"], "those of another run");

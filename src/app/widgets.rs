@@ -35,9 +35,24 @@ impl<'a> About<'a> {
     }
 }
 
-/// Gives a widget a name for assistive technology.
+/// Gives a widget a name for assistive technology, and for [`focus`].
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    let wanted: Option<String> = response.ctx.data(|data| data.get_temp(wanted()));
+    if wanted.as_deref() == Some(name) {
+        response.ctx.data_mut(|data| data.remove::<String>(self::wanted()));
+        response.scroll_to_me(None);
+        response.request_focus();
+    }
+}
+
+/// Gives the keyboard focus to the first widget of this name that is drawn next.
+pub fn focus(context: &egui::Context, name: &str) {
+    context.data_mut(|data| data.insert_temp(wanted(), name.to_owned()));
+}
+
+fn wanted() -> Id {
+    Id::unique("widget to focus")
 }
 
 /// Adds a tooltip, which ends with the reason if the control is disabled. In a column it stands beside that, so that it
@@ -305,7 +320,7 @@ impl<'a> Number<'a> {
                 typed.union(tip(ui, slid, self.about.help, self.about.disabled_reason))
             })
             .inner;
-        ui.add_space(4.0 - ui.spacing().item_spacing.y);
+        ui.add_space(4.0);
         response
     }
 
@@ -390,7 +405,9 @@ fn explain_refusal(ui: &Ui, response: &Response, is_typing: bool) {
     let bad = theme::colours(ui).bad;
     ui.painter().rect_stroke(response.rect, 4, Stroke::new(1.0, bad), StrokeKind::Inside);
     show_tip(ui, response, RichText::new(reason).color(bad));
-    ui.ctx().request_repaint_after_secs(left.max(0.0) as f32);
+    if left > 0.0 {
+        ui.ctx().request_repaint_after_secs(left as f32);
+    }
 }
 
 /// Three coordinates under their name, each within `limits`. `check` says why a vector can't be taken, if so.

@@ -15,7 +15,6 @@ use super::model::origin::{Origin, Source};
 use super::model::remembered::Stored;
 use super::model::view::ViewState;
 use super::shell::Shell;
-use super::spheres::Spheres;
 use super::theme;
 use super::tools::Tools;
 use super::tracing::Tracing;
@@ -31,7 +30,6 @@ pub struct Window {
     pub(super) model: Model,
     /// What can be undone.
     pub(super) changes: Changes,
-    pub(super) spheres: Spheres,
     pub(super) tracing: Tracing,
     pub(super) display: Display,
     pub(super) tools: Tools,
@@ -94,7 +92,6 @@ impl Window {
                 has_first_steps,
                 presentation: None,
             },
-            spheres: Spheres::default(),
             tracing: Tracing::new().context("cannot start the render thread")?,
             display: Display::default(),
             tools: Tools::default(),
@@ -217,9 +214,9 @@ impl Window {
 
     /// Starts what the changes of this frame ask for.
     fn follow(&mut self, context: &egui::Context) {
-        if let Err(reason) = self.spheres.follow(context, &mut self.model) {
-            self.shell.toasts.bad(reason);
-        }
+        // The selection may be of another scene.
+        let count = self.document().scene().spheres.len();
+        self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         self.ask_about_size();
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.
@@ -241,7 +238,7 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, spheres, tracing, display, tools, files, shell, .. } = self;
+        let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
         let subject = display.subject(model, tracing);
         files.follow(context, &subject);
@@ -254,9 +251,6 @@ impl Window {
             shell.toasts.bad(words);
         }
         tools.follow(context, model, &subject, is_moving);
-        if let Some(words) = spheres.told(&model.document, &tracing.main) {
-            shell.toasts.good(words);
-        }
         display.place_divider(model, tracing);
         if !has_second {
             model.view.end_comparison();

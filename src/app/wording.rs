@@ -1,8 +1,6 @@
 //! Words of messages. Those of other rooms are put in the words of the window, which has controls instead of flags and keys
 //! of scene files.
 
-use super::model::device::Device;
-
 /// The names of the camera's values in scene files, and those of their controls.
 const CONTROLS: [(&str, &str); 7] = [
     ("look_from", "Look from"),
@@ -11,13 +9,12 @@ const CONTROLS: [(&str, &str); 7] = [
     ("vfov", "Field of view"),
     ("defocus_angle", "Defocus angle"),
     ("focus_distance", "Focus distance"),
-    ("max_depth", "Depth"),
+    ("max_depth", "Rays per path, at most"),
 ];
 
 /// The message with the names that the window's controls have.
 pub fn in_window_words(message: &str) -> String {
-    let device = format!("choose the device {}", Device::Reference.label());
-    let message = message.replace("render with --device reference", &device);
+    let message = message.replace("render with --device reference", "choose Reference (f64) in Render");
     let is_in_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let mut words = String::with_capacity(message.len());
     for piece in message.split_inclusive(|c: char| !is_in_name(c)) {

@@ -20,8 +20,6 @@ pub enum Layer {
 }
 
 impl Layer {
-    pub const ALL: [Layer; 3] = [Layer::Normals, Layer::Albedo, Layer::RaysPerPath];
-
     /// The job whose paths this layer records: the picture's job with only as many rays per path as the layer needs.
     ///
     /// # Errors

@@ -5,95 +5,25 @@ use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
 use crate::job::output::{Forms, OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::render::panic_text;
-use crate::job::saved::{Replaced, rescue};
+use crate::job::saved::{Replaced, SavedFilm, rescue};
 use crate::progressive::Status;
 use crate::progressive::describe::describe;
 use crate::system::failure::Failure;
-use crate::system::files::ShownPath;
+use crate::system::files::{LockedError, ShownPath};
 use anyhow::anyhow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-/// A film file that the render writes while no other run may.
-#[derive(Clone)]
-pub(super) struct FilmPlace {
-    pub path: PathBuf,
-    is_checkpoint: bool,
-    file: Arc<Mutex<LockedFilm>>,
-}
-
-impl FilmPlace {
-    /// Writes the film. Returns a note for the user if the file already holds more.
-    pub fn save(
-        &self,
-        render: &RenderOptions,
-        film: &Film,
-        status: &Status,
-        seconds_before: Option<f64>,
-    ) -> Result<Option<String>, String> {
-        let description = described(render, film, status, seconds_before);
-        caught(&self.path, || {
-            self.locked(|file| file.save(film, &description)).map_err(|error| error.to_string())
-        })
-    }
-
-    fn locked<T>(&self, act: impl FnOnce(&mut LockedFilm) -> T) -> T {
-        act(&mut self.file.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-}
-
-/// Locks the films of a render. A film to be resumed must be read after this.
-///
-/// # Errors
-/// [`Failure::Input`] if another run writes one of them.
-pub(super) fn lock(render: &RenderOptions) -> Result<Vec<FilmPlace>, Failure> {
-    let out = Some(&render.out).filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
-    let paths = render.checkpoint.iter().map(|path| (path, true)).chain(out.map(|path| (path, false)));
-    let place = |(path, is_checkpoint): (&PathBuf, bool)| {
-        let file = LockedFilm::new(path).map_err(Failure::input)?;
-        Ok(FilmPlace { path: path.clone(), is_checkpoint, file: Arc::new(Mutex::new(file)) })
-    };
-    paths.map(place).collect()
-}
-
-/// Checks the films that a render would replace. Returns warnings for the user.
-///
-/// # Errors
-/// [`Failure::Input`] if `--checkpoint` is a file that the render does not continue.
-pub(super) fn check(
-    render: &RenderOptions,
-    places: &[FilmPlace],
-    resumed: Option<&Film>,
-) -> Result<Vec<String>, Failure> {
-    let mut warnings = Vec::new();
-    for place in places {
-        let is_same = |path: &PathBuf| same_file::is_same_file(path, &place.path).unwrap_or(false);
-        if let Some(film) = resumed.filter(|_| render.resume.as_ref().is_some_and(is_same)) {
-            place.locked(|file| file.holds(film.samples()));
-            continue;
-        }
-        let found = Replaced::at(&place.path, &file::to_picture_toml(&render.recipe));
-        if place.is_checkpoint {
-            if let Some(reason) = found.refusal(&place.path) {
-                return Err(Failure::Input(anyhow!(reason)));
-            }
-            continue;
-        }
-        let is_kept = |samples: &SampleRanges| {
-            let planned = render.plan.range();
-            samples.iter().all(|range| planned.start <= range.start && range.end <= planned.end)
-                || resumed.is_some_and(|film| film.samples().contains(samples))
-        };
-        warnings.extend(found.warning(&place.path, is_kept));
-        if let Replaced::Same(samples) = &found
-            && is_kept(samples)
-        {
-            // A render that stops early must not replace it either.
-            place.locked(|file| file.holds(samples));
-        }
-    }
-    Ok(warnings)
+/// The files of a render. No other run may write its films.
+pub(super) struct Files {
+    pub render: RenderOptions,
+    /// That of `--checkpoint` first, if there is one.
+    films: Vec<(PathBuf, Mutex<LockedFilm>)>,
+    /// Samples per pixel of the film that the render continues.
+    pub held_before: u64,
+    /// Tracing time of these samples, if known.
+    seconds_before: Option<f64>,
 }
 
 /// Which files were written, and why others were not.
@@ -105,57 +35,133 @@ pub(super) struct Written {
     pub failures: Vec<String>,
 }
 
-/// Writes the films and the picture, calling `say` before each. A failed write does not stop the others. If no film
-/// could be written, it is saved elsewhere, since its samples may have taken hours. `seconds_before` is the tracing
-/// time of the film's earlier samples, if known.
-pub(super) fn write(
-    render: &RenderOptions,
-    places: &[FilmPlace],
-    film: &Film,
-    status: &Status,
-    seconds_before: Option<f64>,
-    mut say: impl FnMut(&Path),
-) -> Written {
-    let mut written = Written::default();
-    for place in places {
-        say(&place.path);
-        match place.save(render, film, status, seconds_before) {
-            Ok(note) => {
-                written.files.push(place.path.clone());
-                written.notes.extend(note);
+impl Files {
+    /// Locks the films of a render. A film to be resumed must be read after this.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if another run writes one of them.
+    pub fn lock(render: &RenderOptions) -> Result<Files, Failure> {
+        let out = Some(&render.out).filter(|out| is_film(out) && Some(*out) != render.checkpoint.as_ref());
+        let locked = |path: &PathBuf| Ok((path.clone(), Mutex::new(LockedFilm::new(path)?)));
+        let films = render.checkpoint.iter().chain(out).map(locked).collect::<Result<_, LockedError>>();
+        Ok(Files {
+            render: render.clone(),
+            films: films.map_err(Failure::input)?,
+            held_before: 0,
+            seconds_before: Some(0.0),
+        })
+    }
+
+    /// Checks the films that a render would replace. Returns warnings for the user.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] if `--checkpoint` is a file that the render does not continue.
+    pub fn check(&mut self, resumed: Option<&SavedFilm>) -> Result<Vec<String>, Failure> {
+        let Files { render, films, held_before, seconds_before } = self;
+        if let Some(saved) = resumed {
+            (*held_before, *seconds_before) = (saved.film.sample_count(), saved.seconds);
+        }
+        let resumed = resumed.map(|saved| &saved.film);
+        let mut warnings = Vec::new();
+        for (path, file) in films {
+            let file = file.get_mut().unwrap_or_else(PoisonError::into_inner);
+            let is_same = |other: &PathBuf| same_file::is_same_file(other, &path).unwrap_or(false);
+            if let Some(film) = resumed.filter(|_| render.resume.as_ref().is_some_and(is_same)) {
+                file.holds(film.samples());
+                continue;
             }
-            Err(reason) => written.failures.push(reason),
-        }
-    }
-    let is_film_kept = !written.files.is_empty();
-    let description = described(render, film, status, seconds_before);
-    if !is_film(&render.out) {
-        say(&render.out);
-        let forms = Forms { ppm: render.ppm, ..Forms::default() };
-        let transfer = render.job.rules().transfer;
-        let write = || write_image_as(&render.out, film, transfer, &description, forms);
-        match caught(&render.out, || write().map_err(|error| error.to_string())) {
-            Ok(()) => written.files.push(render.out.clone()),
-            Err(reason) => written.failures.push(reason),
-        }
-    }
-    if !written.failures.is_empty() && !is_film_kept {
-        match rescue(&directories(render), &render.recipe.name, film, &description) {
-            Ok(path) => {
-                let (rescued, out) = (path.shown(), render.out.shown());
-                written.failures.push(match render.checkpoint.as_ref() == Some(&render.out) {
-                    true => format!(
-                        "the samples were saved in {rescued}; once {out} can be written, move the film there and run the \
-                         same command again"
-                    ),
-                    false => format!("the samples were saved in {rescued}; continue with --resume {rescued}"),
-                });
-                written.files.push(path);
+            let found = Replaced::at(path, &file::to_picture_toml(&render.recipe));
+            if render.checkpoint.as_ref() == Some(path) {
+                found.refusal(path).map_or(Ok(()), |reason| Err(Failure::Input(anyhow!(reason))))?;
+                continue;
             }
-            Err(lost) => written.failures.push(lost),
+            let is_kept = |samples: &SampleRanges| {
+                let planned = render.plan.range();
+                samples.iter().all(|range| planned.start <= range.start && range.end <= planned.end)
+                    || resumed.is_some_and(|film| film.samples().contains(samples))
+            };
+            warnings.extend(found.warning(path, is_kept));
+            if let Replaced::Same(samples) = &found
+                && is_kept(samples)
+            {
+                // A render that stops early must not replace it either.
+                file.holds(samples);
+            }
         }
+        Ok(warnings)
     }
-    written
+
+    /// Writes the film of `--checkpoint`. Returns a note for the user if the file already holds more.
+    pub fn save_checkpoint(&self, film: &Film, status: &Status) -> Result<Option<String>, String> {
+        self.films.first().map_or(Ok(None), |place| self.save(place, film, status))
+    }
+
+    fn save(
+        &self,
+        (path, file): &(PathBuf, Mutex<LockedFilm>),
+        film: &Film,
+        status: &Status,
+    ) -> Result<Option<String>, String> {
+        let description = self.described(film, status);
+        caught(path, || {
+            let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+            file.save(film, &description).map_err(|error| error.to_string())
+        })
+    }
+
+    /// Writes the films and the picture, calling `say` before each. A failed write does not stop the others. If no film
+    /// could be written, it is saved elsewhere, since its samples may have taken hours.
+    pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
+        let (render, mut written) = (&self.render, Written::default());
+        for place in &self.films {
+            say(&place.0);
+            match self.save(place, film, status) {
+                Ok(note) => {
+                    written.files.push(place.0.clone());
+                    written.notes.extend(note);
+                }
+                Err(reason) => written.failures.push(reason),
+            }
+        }
+        let is_film_kept = !written.files.is_empty();
+        let description = self.described(film, status);
+        if !is_film(&render.out) {
+            say(&render.out);
+            let forms = Forms { ppm: render.ppm, ..Forms::default() };
+            let transfer = render.job.rules().transfer;
+            let write = || write_image_as(&render.out, film, transfer, &description, forms);
+            match caught(&render.out, || write().map_err(|error| error.to_string())) {
+                Ok(()) => written.files.push(render.out.clone()),
+                Err(reason) => written.failures.push(reason),
+            }
+        }
+        if !written.failures.is_empty() && !is_film_kept {
+            match rescue(&directories(render), &render.recipe.name, film, &description) {
+                Ok(path) => {
+                    let (rescued, out) = (path.shown(), render.out.shown());
+                    written.failures.push(match render.checkpoint.as_ref() == Some(&render.out) {
+                        true => format!(
+                            "the samples were saved in {rescued}; once {out} can be written, move the film there and run \
+                             the same command again"
+                        ),
+                        false => {
+                            format!("the samples were saved in {rescued}; continue with --resume {rescued}")
+                        }
+                    });
+                    written.files.push(path);
+                }
+                Err(lost) => written.failures.push(lost),
+            }
+        }
+        written
+    }
+
+    fn described(&self, film: &Film, status: &Status) -> Description {
+        let Files { render, seconds_before, .. } = self;
+        let mut description = describe(&render.recipe, render.stage, film, status, *seconds_before);
+        description.set(key::COMMAND, &render.command);
+        description
+    }
 }
 
 /// Runs `write`, which writes `path`. A panic counts as a failure, because the samples can still be written elsewhere
@@ -165,17 +171,6 @@ fn caught<T>(path: &Path, write: impl FnOnce() -> Result<T, String>) -> Result<T
         let reason = panic_text(payload.as_ref());
         Err(format!("cannot write {}: the program failed ({reason})", path.shown()))
     })
-}
-
-fn described(
-    render: &RenderOptions,
-    film: &Film,
-    status: &Status,
-    seconds_before: Option<f64>,
-) -> Description {
-    let mut description = describe(&render.recipe, render.stage, film, status, seconds_before);
-    description.set(key::COMMAND, &render.command);
-    description
 }
 
 /// The directories of the files that the render writes.
@@ -203,14 +198,15 @@ mod tests {
     fn put(path: &Path, render: &RenderOptions, samples: Range<u64>) -> Film {
         let mut film = render.job.new_film();
         film.record(samples, 0).unwrap();
-        checkpoint::save(path, &film, &described(render, &film, &Status::default(), None)).unwrap();
+        let description = Files::lock(render).unwrap().described(&film, &Status::default());
+        checkpoint::save(path, &film, &description).unwrap();
         film
     }
 
     fn write_two_samples(render: &RenderOptions) -> (Film, Written, String) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = write(render, &lock(render).unwrap(), &film, &Status::default(), None, |_| {});
+        let written = Files::lock(render).unwrap().write(&film, &Status::default(), |_| {});
         let failures = written.failures.join("; ");
         (film, written, failures)
     }
@@ -261,7 +257,7 @@ mod tests {
     fn film_of_another_run_is_locked() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
-        let run = |flags: &[&str]| lock(&options(flags));
+        let run = |flags: &[&str]| Files::lock(&options(flags));
         let first = run(&["--checkpoint", &at("g.exr"), "--out", &at("a.png")]).unwrap();
         for flags in
             [["--checkpoint", &at("g.exr"), "--out", &at("b.png")].as_slice(), &["--out", &at("g.exr")]]
@@ -284,20 +280,20 @@ mod tests {
             [&["--checkpoint", &film, "--continue", "--out", &out][..], &["--out", &film, "--samples", "64"]]
         {
             let render = options(flags);
-            let resumed = render.resume.is_some().then_some(&held);
-            let places = lock(&render).unwrap();
-            assert!(check(&render, &places, resumed).unwrap().is_empty());
+            let held = SavedFilm { film: held.clone(), seconds: None, backend: None };
+            let mut files = Files::lock(&render).unwrap();
+            assert!(files.check(render.resume.is_some().then_some(&held)).unwrap().is_empty());
             for (end, expected) in [(8, 32), (40, 40)] {
                 let mut film = render.job.new_film();
                 film.record(0..end, 0).unwrap();
-                let written = write(&render, &places, &film, &Status::default(), None, |_| {});
+                let written = files.write(&film, &Status::default(), |_| {});
                 assert!(
                     written.failures.is_empty() && written.notes.is_empty() == (end == 40),
                     "{written:?}"
                 );
                 assert_eq!(checkpoint::load(path).unwrap().film.sample_count(), expected);
             }
-            drop(places);
+            drop(files);
             put(path, &options(&[]), 0..32);
         }
     }
@@ -309,7 +305,7 @@ mod tests {
         put(Path::new(&film), &options(&[]), 0..32);
         let warned = |flags: &[&str]| {
             let render = options(flags);
-            check(&render, &lock(&render).unwrap(), None).unwrap().join("; ")
+            Files::lock(&render).unwrap().check(None).unwrap().join("; ")
         };
         assert_eq!(warned(&["--out", &film, "--samples", "32"]), "");
         assert!(warned(&["--out", &film, "--samples", "8"]).contains("32 samples per pixel of this picture"));
@@ -317,8 +313,6 @@ mod tests {
         let other = warned(&["--out", &film, "--seed", "3"]);
         assert!(other.contains("of another picture") && other.contains("seed"), "{other}");
         let render = options(&["--checkpoint", &film, "--samples", "64"]);
-        assert!(
-            check(&render, &lock(&render).unwrap(), None).unwrap_err().to_string().contains("--continue")
-        );
+        assert!(Files::lock(&render).unwrap().check(None).unwrap_err().to_string().contains("--continue"));
     }
 }

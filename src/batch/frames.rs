@@ -1,12 +1,12 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and complete ones are kept, so
 //! the same command continues an interrupted run.
 
-use super::progress::LINE_INTERVAL;
+use super::progress::display;
 use super::studio::{Event, Studio};
 use super::summary::Envelope;
-use super::{create_directory, ended, json_file};
-use crate::cli::FramesOptions;
+use super::{create_directory, ended};
 use crate::cli::terminal::{Display, print_beside, write_json};
+use crate::cli::{FramesOptions, JsonTarget};
 use crate::film::{Film, key};
 use crate::job::output::{write_animation, write_image};
 use crate::job::recipe::Recipe;
@@ -31,14 +31,25 @@ use std::time::{Duration, Instant};
 /// [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     create_directory(&options.names.directory)?;
-    let animation = options.animation.as_ref().map(|(path, _)| path);
+    let animation = options.animation.as_ref().map(|(path, _)| path.as_path());
     let first = options.names.path(options.frames.start);
-    for path in [Some(&first), animation, json_file(options.json.as_ref())].into_iter().flatten() {
+    let json = options.json.as_ref().and_then(JsonTarget::file);
+    for path in [Some(first.as_path()), animation, json].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
     options.job.check_memory(1).map_err(Failure::input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let mut run = Run::new(&options, &interrupt);
+    let mut run = Run {
+        options: &options,
+        interrupt: &interrupt,
+        display: display(options.progress, options.frames.len() as u64, &options.recipe.name),
+        begin: Instant::now(),
+        rendered: 0,
+        kept: 0,
+        rendering: Duration::ZERO,
+        animation: None,
+        warnings: Vec::new(),
+    };
     let failure = match run.render_all() {
         Err(failure @ Failure::Input(_)) => return Err(failure),
         outcome => outcome.err(),
@@ -63,25 +74,7 @@ struct Run<'a> {
     warnings: Vec<String>,
 }
 
-impl<'a> Run<'a> {
-    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
-        let template = "{prefix} [{bar:24}] {wide_msg}";
-        let count = options.frames.len() as u64;
-        let display = Display::new(options.progress, count, template, &options.recipe.name, LINE_INTERVAL);
-        options.notes.iter().for_each(|note| display.say(&format!("warning: {note}")));
-        Run {
-            options,
-            interrupt,
-            display,
-            begin: Instant::now(),
-            rendered: 0,
-            kept: 0,
-            rendering: Duration::ZERO,
-            animation: None,
-            warnings: options.notes.clone(),
-        }
-    }
-
+impl Run<'_> {
     fn done(&self) -> u32 {
         self.rendered + self.kept
     }
@@ -128,7 +121,7 @@ impl<'a> Run<'a> {
         let (status, film) = studio.render(job, plan, None, |event| match event {
             Event::Warning(warning) if self.warnings.iter().any(|known| known == warning) => {}
             Event::Warning(warning) => {
-                self.display.say(&format!("warning: {warning}"));
+                self.display.warn(warning);
                 self.warnings.push(warning.to_owned());
             }
             Event::Stopping => {
@@ -216,11 +209,10 @@ impl<'a> Run<'a> {
         let FramesOptions { recipe, frames, names, .. } = self.options;
         let (name, settings) = (printable(&recipe.name), &recipe.settings);
         let samples = counted(recipe.samples_per_pixel, "sample");
-        let each = self.rendering.as_secs_f64() / f64::from(self.rendered.max(1));
-        let each = if self.rendered == 0 {
-            String::new()
-        } else {
-            format!(" ({each:.3} s for each frame rendered)")
+        let each = self.rendering.as_secs_f64() / f64::from(self.rendered);
+        let each = match self.rendered {
+            0 => String::new(),
+            _ => format!(" ({each:.3} s for each frame rendered)"),
         };
         let files = match self.files() {
             Some([first, last]) if self.done() == frames.len() as u32 => {

@@ -12,13 +12,32 @@ use crate::system::console::printable;
 use crate::system::failure::Failure;
 use crate::system::files::ShownPath;
 use crate::system::memory;
-use serde::Serialize;
-use std::fmt;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::process::ExitCode;
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
+
+/// Keys that some kinds of files leave empty.
+const OPTIONAL: [&str; 16] = [
+    "stage",
+    "samples_per_pixel",
+    "sample_ranges",
+    "halves",
+    "rejected_samples",
+    "rmse_estimate",
+    "rmse_deviation",
+    "trace_seconds",
+    "backend",
+    "program",
+    "film_version",
+    "sample_version",
+    "frames",
+    "frames_per_second",
+    "parts",
+    "command",
+];
 
 /// Prints what the file says about itself.
 ///
@@ -27,42 +46,19 @@ const SCHEMA: u32 = 1;
 /// cannot be written.
 pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
     let info = Info::of(&options.file).map_err(Failure::Input)?;
-    let printed =
-        if options.json { write_json(&info, &JsonTarget::StandardOutput) } else { print(&info.to_string()) };
+    let printed = if options.json {
+        write_json(&info.json, &JsonTarget::StandardOutput)
+    } else {
+        print(&info.text(&options.file))
+    };
     printed.map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
 }
 
 /// What a file says about itself.
-#[derive(Debug, Default, Serialize)]
 struct Info {
-    schema: u32,
-    kind: &'static str,
-    file: String,
-    bytes: u64,
-    scene: String,
-    stage: Option<String>,
-    width: u32,
-    height: u32,
-    max_depth: u32,
-    sampler: &'static str,
-    seed: u32,
-    samples_per_pixel: Option<u64>,
-    sample_ranges: Option<String>,
-    halves: Option<usize>,
-    rejected_samples: Option<u64>,
-    rmse_estimate: Option<f64>,
-    rmse_deviation: Option<f64>,
-    trace_seconds: Option<f64>,
-    backend: Option<String>,
-    program: Option<String>,
-    film_version: Option<u32>,
-    sample_version: Option<u32>,
-    frames: Option<String>,
-    frames_per_second: Option<f64>,
-    parts: Option<usize>,
-    command: Option<String>,
-    #[serde(skip)]
-    error_text: Option<String>,
+    json: Value,
+    /// The estimated error of a film, or why there is none.
+    error: Option<String>,
 }
 
 impl Info {
@@ -72,72 +68,74 @@ impl Info {
         }
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             let recipe = file::load(path)?;
-            let samples = Some(recipe.samples_per_pixel);
-            return Ok(Info { samples_per_pixel: samples, ..Info::new("scene", path, &recipe) });
+            let samples = json!({ "samples_per_pixel": recipe.samples_per_pixel });
+            return Ok(Info::new("scene", path, &recipe).with(samples));
         }
         let saved = Saved::describe(path)?;
-        let text = |key| saved.description.get(key).map(str::to_owned);
-        let info = Info {
-            stage: text(key::STAGE),
-            samples_per_pixel: saved.samples(),
-            trace_seconds: saved.seconds(),
-            backend: text(key::BACKEND),
-            program: text(key::SOFTWARE),
-            command: text(key::COMMAND),
-            ..Info::new("picture", path, &saved.recipe()?)
-        };
-        if let Some((count, rate)) = animation_in(path) {
-            let frames_per_second = rate.map(FrameRate::per_second);
-            return Ok(Info {
-                kind: "animation",
-                frames: Some(format!("0..{count}")),
-                frames_per_second,
-                ..info
-            });
+        let text = |key| saved.description.get(key);
+        let info = Info::new("picture", path, &saved.recipe()?).with(json!({
+            "stage": text(key::STAGE),
+            "samples_per_pixel": saved.samples(),
+            "trace_seconds": saved.seconds(),
+            "backend": text(key::BACKEND),
+            "program": text(key::SOFTWARE),
+            "command": text(key::COMMAND),
+        }));
+        match animation_in(path) {
+            Some((count, rate)) => Ok(info.with(json!({
+                "kind": "animation",
+                "frames": format!("0..{count}"),
+                "frames_per_second": rate.map(FrameRate::per_second),
+            }))),
+            None => info.with_film(path),
         }
-        info.with_film(path)
     }
 
-    fn new(kind: &'static str, path: &Path, recipe: &Recipe) -> Info {
+    fn new(kind: &str, path: &Path, recipe: &Recipe) -> Info {
         let settings = &recipe.settings;
-        Info {
-            schema: SCHEMA,
-            kind,
-            file: path.to_string_lossy().into_owned(),
-            bytes: std::fs::metadata(path).map_or(0, |found| found.len()),
-            scene: recipe.name.clone(),
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name(),
-            seed: settings.seed,
-            ..Info::default()
+        let empty = OPTIONAL.into_iter().map(|key| (key.to_owned(), Value::Null)).collect();
+        Info { json: Value::Object(empty), error: None }.with(json!({
+            "schema": SCHEMA,
+            "kind": kind,
+            "file": path.to_string_lossy(),
+            "bytes": std::fs::metadata(path).map_or(0, |found| found.len()),
+            "scene": recipe.name,
+            "width": settings.width,
+            "height": settings.height,
+            "max_depth": settings.max_depth,
+            "sampler": settings.sampler.name(),
+            "seed": settings.seed,
+        }))
+    }
+
+    /// Replaces values by those of `more`.
+    fn with(mut self, mut more: Value) -> Info {
+        if let (Some(own), Some(more)) = (self.json.as_object_mut(), more.as_object_mut()) {
+            own.append(more);
         }
+        self
     }
 
     fn of_plan(plan: &Plan) -> Info {
         let manifest = &plan.manifest;
-        let info = Info {
-            stage: manifest.stage.clone(),
-            program: Some(manifest.program.clone()),
-            sample_version: Some(manifest.sample_version),
-            parts: Some(manifest.work.count()),
-            command: Some(manifest.command.clone()),
-            ..Info::new("plan", &plan.path, &plan.recipe)
-        };
-        match &manifest.work {
-            Work::Samples(work) => Info {
-                samples_per_pixel: Some(work.samples[1] - work.samples[0]),
-                sample_ranges: Some(format!("{}..{}", work.samples[0], work.samples[1])),
-                halves: Some(plan.job.settings().half_count()),
-                ..info
-            },
-            Work::Frames(work) => Info {
-                samples_per_pixel: Some(plan.recipe.samples_per_pixel),
-                frames: Some(format!("{}..{}", work.frames[0], work.frames[1])),
-                ..info
-            },
-        }
+        let info = Info::new("plan", &plan.path, &plan.recipe).with(json!({
+            "stage": manifest.stage,
+            "program": manifest.program,
+            "sample_version": manifest.sample_version,
+            "parts": manifest.work.count(),
+            "command": manifest.command,
+        }));
+        info.with(match &manifest.work {
+            Work::Samples(work) => json!({
+                "samples_per_pixel": work.samples[1] - work.samples[0],
+                "sample_ranges": format!("{}..{}", work.samples[0], work.samples[1]),
+                "halves": plan.job.settings().half_count(),
+            }),
+            Work::Frames(work) => json!({
+                "samples_per_pixel": plan.recipe.samples_per_pixel,
+                "frames": format!("{}..{}", work.frames[0], work.frames[1]),
+            }),
+        })
     }
 
     /// Adds what a film says and, if there is memory for its sums, its error.
@@ -146,7 +144,7 @@ impl Info {
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
             head => head?,
         };
-        let (error, error_text) = match checkpoint::load(path) {
+        let (estimate, error) = match checkpoint::load(path) {
             Ok(read) => match read.film.error() {
                 Some(error) => (Some(error), error.words()),
                 None => (None, format!("not estimated: {}", read.film.why_no_error())),
@@ -154,57 +152,58 @@ impl Info {
             Err(CheckpointError::Memory { reason, .. }) => (None, reason.to_string()),
             Err(error) => return Err(error.into()),
         };
-        Ok(Info {
-            kind: "film",
-            samples_per_pixel: Some(head.samples.count()),
-            sample_ranges: Some(head.samples.to_string()),
-            halves: Some(head.halves),
-            rejected_samples: Some(head.rejected),
-            film_version: Some(checkpoint::VERSION),
-            sample_version: Some(checkpoint::SAMPLE_VERSION),
-            rmse_estimate: error.map(|error| error.rmse),
-            rmse_deviation: error.map(|error| error.rmse_deviation),
-            error_text: Some(error_text),
-            ..self
-        })
+        let info = self.with(json!({
+            "kind": "film",
+            "samples_per_pixel": head.samples.count(),
+            "sample_ranges": head.samples.to_string(),
+            "halves": head.halves,
+            "rejected_samples": head.rejected,
+            "film_version": checkpoint::VERSION,
+            "sample_version": checkpoint::SAMPLE_VERSION,
+            "rmse_estimate": estimate.map(|error| error.rmse),
+            "rmse_deviation": estimate.map(|error| error.rmse_deviation),
+        }));
+        Ok(Info { error: Some(error), ..info })
     }
 
-    /// The samples, with everything said about them.
-    fn samples_text(&self) -> Option<String> {
-        let version = self.sample_version.map(|version| format!("version {version}"));
-        let rejected = self.rejected_samples.map(|count| counted(count, "rejected sample"));
-        let rate =
-            self.frames_per_second.map(|rate| format!("{} frames per second", (rate * 1e5).round() / 1e5));
-        let text = [
-            Some(format!("{} per pixel", self.samples_per_pixel?)),
-            self.sample_ranges.as_ref().map(|ranges| format!(" ({ranges})")),
-            self.frames.as_ref().map(|frames| format!(" of the frames {frames}")),
-            self.parts.map(|parts| format!(" in {}", counted(parts as u64, "part"))),
+    /// A line for each thing that the file says.
+    fn text(&self, path: &Path) -> String {
+        let text = |key: &str| match &self.json[key] {
+            Value::Null => None,
+            Value::String(text) => Some(text.clone()),
+            other => Some(other.to_string()),
+        };
+        let number = |key: &str| self.json[key].as_u64();
+        let [scene, width, height, depth, sampler, seed] =
+            ["scene", "width", "height", "max_depth", "sampler", "seed"]
+                .map(|key| text(key).unwrap_or_default());
+        let size = memory::words(number("bytes").unwrap_or_default());
+        let rate = self.json["frames_per_second"].as_f64().map(|rate| (rate * 1e5).round() / 1e5);
+        let samples = [
+            text("samples_per_pixel").map(|samples| format!("{samples} per pixel")),
+            text("sample_ranges").map(|ranges| format!("samples {ranges}")),
+            text("frames").map(|frames| format!("frames {frames}")),
+            number("parts").map(|parts| counted(parts, "part")),
+            rate.map(|rate| format!("{rate} frames per second")),
+            text("sample_version").map(|version| format!("version {version}")),
+            number("rejected_samples").map(|count| counted(count, "rejected sample")),
         ];
-        let text: String = text.into_iter().flatten().collect();
-        Some([Some(text), rate, version, rejected].into_iter().flatten().collect::<Vec<_>>().join(", "))
-    }
-}
-
-impl fmt::Display for Info {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Info { kind, scene, width, height, max_depth, sampler, seed, .. } = self;
-        let version = self.film_version.map_or_else(String::new, |version| format!(", version {version}"));
+        let film = text("film_version").map_or_else(String::new, |version| format!(", version {version}"));
+        let kind = text("kind").unwrap_or_default();
+        let time = self.json["trace_seconds"].as_f64();
         let lines = [
-            (*kind, Some(format!("{}, {}{version}", self.file.shown(), memory::words(self.bytes)))),
-            ("scene", Some(format!("{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"))),
-            ("stage", self.stage.clone()),
-            ("samples", self.samples_text()),
-            ("error", self.error_text.clone()),
-            ("time", self.trace_seconds.map(|time| format!("{} of tracing", seconds(time)))),
-            ("backend", self.backend.clone()),
-            ("program", self.program.clone()),
-            ("command", self.command.clone()),
+            (kind.as_str(), Some(format!("{}, {size}{film}", path.shown()))),
+            ("scene", Some(format!("{scene}, {width}x{height}, depth {depth}, {sampler}, seed {seed}"))),
+            ("stage", text("stage")),
+            ("samples", Some(samples.into_iter().flatten().collect::<Vec<_>>().join(", "))),
+            ("error", self.error.clone()),
+            ("time", time.map(|time| format!("{} of tracing", seconds(time)))),
+            ("backend", text("backend")),
+            ("program", text("program")),
+            ("command", text("command")),
         ];
-        lines
-            .into_iter()
-            .filter_map(|(name, value)| Some((name, value?)))
-            .try_for_each(|(name, value)| writeln!(f, "{name:<8} {}", printable(&value)))
+        let lines = lines.into_iter().filter_map(|(name, value)| Some((name, value?)));
+        lines.map(|(name, value)| format!("{name:<8} {}\n", printable(&value))).collect()
     }
 }
 
@@ -226,17 +225,17 @@ mod tests {
         film.record(0..1, 0).unwrap();
         write_image(&still, &film, recipe.rules.transfer, &description).unwrap();
         let info = Info::of(&still).unwrap();
-        assert_eq!((info.kind, info.frames), ("picture", None));
+        assert_eq!((&info.json["kind"], &info.json["frames"]), (&json!("picture"), &Value::Null));
         for (rate, words) in [
             (FrameRate { frames: 30, seconds: 1 }, "30 frames per second"),
             (FrameRate { frames: 30_000, seconds: 1001 }, "29.97003 frames per second"),
         ] {
             write_animation(&turn, [4, 3], rate, vec![still.clone(); 5].into_iter(), &description).unwrap();
             let info = Info::of(&turn).unwrap();
-            assert_eq!((info.kind, info.frames.as_deref()), ("animation", Some("0..5")));
-            assert_eq!(info.frames_per_second, Some(rate.per_second()));
-            let text = info.to_string();
-            assert!(text.starts_with("animation ") && text.contains(" of the frames 0..5"), "{text}");
+            assert_eq!((&info.json["kind"], &info.json["frames"]), (&json!("animation"), &json!("0..5")));
+            assert_eq!(info.json["frames_per_second"], json!(rate.per_second()));
+            let text = info.text(&turn);
+            assert!(text.starts_with("animation ") && text.contains("frames 0..5"), "{text}");
             assert!(text.contains(words), "{text}");
         }
     }

@@ -1,7 +1,6 @@
 //! Checkpoints: the film is written at intervals during a render, so a crash loses only the samples since the last one.
 
-use super::files::FilmPlace;
-use crate::cli::RenderOptions;
+use super::files::Files;
 use crate::film::Film;
 use crate::progressive::{Progressive, Status};
 use std::sync::Arc;
@@ -12,52 +11,36 @@ use std::time::Instant;
 /// Has the film written at intervals, from a copy on its own thread. Without memory for a copy, the tracer waits while
 /// it is written.
 pub(super) struct Keeper {
-    writer: Arc<Writer>,
+    files: Arc<Files>,
     /// When the last write ended.
     last: Instant,
     /// Samples per pixel in the film last sent for writing.
     asked: u64,
-    /// Outcome of the write in progress: samples per pixel and a note for the user, or why it failed.
+    /// Outcome of the write in progress.
     pending: Option<Receiver<Outcome>>,
     /// Samples per pixel in the file.
     kept: Option<u64>,
 }
 
+/// Samples per pixel and a note for the user, or why the write failed.
 type Outcome = Result<(u64, Option<String>), String>;
 
-struct Writer {
-    place: FilmPlace,
-    render: RenderOptions,
-    /// Samples per pixel in the film at the start.
-    held_before: u64,
-    seconds_before: Option<f64>,
-}
-
-impl Writer {
-    fn write(&self, film: &Film, status: &Status) -> Outcome {
-        let status = status.of_film(film, self.held_before);
-        let note = self.place.save(&self.render, film, &status, self.seconds_before)?;
-        log::info!("checkpoint: {} samples per pixel in {}", film.sample_count(), self.place.path.display());
-        Ok((film.sample_count(), note))
-    }
+fn write(files: &Files, film: &Film, status: &Status) -> Outcome {
+    let note = files.save_checkpoint(film, &status.of_film(film, files.held_before))?;
+    log::info!("checkpoint: {} samples per pixel", film.sample_count());
+    Ok((film.sample_count(), note))
 }
 
 impl Keeper {
-    /// Keeps the film of `render` in `place`. `held_before` is the number of samples per pixel at the start.
-    pub fn new(
-        render: &RenderOptions,
-        place: FilmPlace,
-        held_before: u64,
-        seconds_before: Option<f64>,
-    ) -> Keeper {
-        let writer = Arc::new(Writer { place, render: render.clone(), held_before, seconds_before });
-        Keeper { writer, last: Instant::now(), asked: held_before, pending: None, kept: None }
+    /// Keeps the film in the file of `--checkpoint`.
+    pub fn new(files: &Arc<Files>) -> Keeper {
+        let (files, asked) = (Arc::clone(files), files.held_before);
+        Keeper { files, last: Instant::now(), asked, pending: None, kept: None }
     }
 
     /// Starts a write if it is time. Returns a warning about the last one, if there is one.
     pub fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
-        let outcome = self.pending.as_ref().map(Receiver::try_recv);
-        let warning = match outcome {
+        let warning = match self.pending.as_ref().map(Receiver::try_recv) {
             Some(Err(TryRecvError::Empty)) => return None,
             Some(Ok(outcome)) => self.note(outcome),
             Some(Err(TryRecvError::Disconnected)) => {
@@ -65,20 +48,20 @@ impl Keeper {
             }
             None => None,
         };
-        if self.last.elapsed() >= self.writer.render.every && status.samples_per_pixel > self.asked {
+        if self.last.elapsed() >= self.files.render.every && status.samples_per_pixel > self.asked {
             self.asked = status.samples_per_pixel;
             let (sender, receiver) = mpsc::channel();
             self.pending = Some(receiver);
-            let (writer, status) = (Arc::clone(&self.writer), status.clone());
+            let (files, status) = (Arc::clone(&self.files), status.clone());
             progressive.inspect(move |film| {
-                let (own, of_copy, answer) = (Arc::clone(&writer), status.clone(), sender.clone());
+                let (own, of_copy, answer) = (Arc::clone(&files), status.clone(), sender.clone());
                 let is_spawned = film.try_copy().is_ok_and(|copy| {
                     // Nobody receives the outcome if the render is already over.
-                    let write = move || drop(answer.send(own.write(&copy, &of_copy)));
+                    let write = move || drop(answer.send(write(&own, &copy, &of_copy)));
                     Builder::new().name("keep".to_owned()).spawn(write).is_ok()
                 });
                 if !is_spawned {
-                    let _ = sender.send(writer.write(film, &status));
+                    let _ = sender.send(write(&files, film, &status));
                 }
             });
         }
@@ -112,7 +95,6 @@ impl Keeper {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::files::lock;
     use crate::batch::tests::options;
     use crate::film::checkpoint;
     use crate::progressive::{Phase, Plan, RenderRequest};
@@ -124,8 +106,7 @@ mod tests {
         let path = directory.path().join("kept/film.exr");
         let flags = ["--checkpoint", path.to_str().unwrap(), "--every", "0.1s", "--samples", "4294967296"];
         let render = options(&flags);
-        let place = lock(&render).unwrap().remove(0);
-        let mut keeper = Keeper::new(&render, place, 0, Some(0.0));
+        let mut keeper = Keeper::new(&Arc::new(Files::lock(&render).unwrap()));
         let mut progressive = Progressive::spawn().unwrap();
         let backend = crate::backends::BackendChoice::Reference { threads: Some(1) };
         let mut warnings = Vec::new();

@@ -20,8 +20,8 @@ pub use studio::{Event, Studio};
 
 use crate::backends;
 use crate::cli::terminal::{print, print_beside, write_json};
-use crate::cli::{BatchOptions, JsonTarget, SaveSceneOptions};
-use crate::job::recipe::file;
+use crate::cli::{BatchOptions, JsonTarget};
+use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
@@ -31,7 +31,7 @@ use crate::system::files::{ShownPath, check_replaceable, check_writable, write_t
 use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use picture::Picture;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use summary::Envelope;
 
@@ -56,8 +56,8 @@ fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<Exit
     pictures.iter_mut().try_for_each(Picture::check)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
-    if let Some(save) = &options.save_scene {
-        write_text(&save.path, &file::to_toml(&save.recipe)).map_err(Failure::run)?;
+    if let (Some(path), [only]) = (&options.save_scene, options.renders.as_slice()) {
+        write_text(path, &file::to_toml(&only.recipe)).map_err(Failure::run)?;
     }
     let mut summaries = Vec::new();
     let (mut failure, mut printed) = (None, Ok(()));
@@ -109,9 +109,9 @@ fn ended(
 ///
 /// # Errors
 /// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
-pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
-    write_text(&options.path, &file::to_toml(&options.recipe)).map_err(Failure::input)?;
-    print(&format!("wrote {}\n", options.path.shown())).map_err(Failure::Run)?;
+pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
+    write_text(path, &file::to_toml(recipe)).map_err(Failure::input)?;
+    print(&format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -121,16 +121,13 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         create_directory(directory)?;
     }
     let pictures = options.renders.iter().flat_map(|render| [Some(&render.out), render.checkpoint.as_ref()]);
-    let scene = options.save_scene.as_ref().map(|save| &save.path);
-    for path in pictures.chain([json_file(options.json.as_ref()), scene]).flatten() {
+    let scene = options.save_scene.as_ref();
+    let json = options.json.as_ref().and_then(JsonTarget::file);
+    for path in pictures.chain([scene]).flatten().map(PathBuf::as_path).chain(json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
     options.renders.iter().try_for_each(|render| render.job.check_memory(1)).map_err(Failure::input)
-}
-
-fn json_file(target: Option<&JsonTarget>) -> Option<&std::path::PathBuf> {
-    if let Some(JsonTarget::File(path)) = target { Some(path) } else { None }
 }
 
 fn create_directory(directory: &Path) -> Result<(), Failure> {

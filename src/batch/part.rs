@@ -3,9 +3,11 @@
 
 use super::picture::Picture;
 use super::summary::Summary;
-use super::{check_before, frames, json_file, render_all, write_figures};
+use super::{check_before, frames, render_all, write_figures};
 use crate::cli::terminal::print_beside;
-use crate::cli::{BatchOptions, FramesOptions, PartOptions, Paths, RenderOptions};
+use crate::cli::{
+    BatchOptions, FramesOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths,
+};
 use crate::film::CheckpointError;
 use crate::job::output::PpmForm;
 use crate::job::plan::{Frames, Part, Plan, Samples, Work};
@@ -24,14 +26,13 @@ use std::time::Duration;
 /// # Errors
 /// [`Failure::Input`] if there is no such part, or its file is another film; otherwise those of a render.
 pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
-    let part = options.part().map_err(Failure::input)?;
+    let part = options.part().map_err(Failure::Input)?;
     let plan = Plan::load(&options.plan).map_err(Failure::Input)?;
     let index = plan.index(part).map_err(Failure::Input)?;
-    if let Some(json) = json_file(options.json.as_ref()) {
-        let files = plan.files();
-        let paths = files.iter().fold(Paths::default(), |paths, file| paths.read("the plan", Some(file)));
-        paths.write("--json", Some(json)).check(&[]).map_err(Failure::input)?;
-    }
+    let files = plan.files();
+    let files: Vec<NamedPath> = files.iter().map(|file| ("the plan", Some(file.as_path()))).collect();
+    let json = options.json.as_ref().and_then(JsonTarget::file);
+    check_paths(&files, &[("--json", json)]).map_err(Failure::Input)?;
     match &plan.manifest.work {
         Work::Samples(work) => render_samples(&plan, work, index, options),
         Work::Frames(work) => frames::render_frames(frames_of(&plan, work, index, options)),
@@ -51,7 +52,6 @@ fn frames_of(plan: &Plan, work: &Frames, index: usize, options: PartOptions) -> 
         progress: options.progress,
         json: options.json,
         command: options.command,
-        notes: Vec::new(),
     }
 }
 
@@ -74,7 +74,6 @@ fn render_samples(
         resume: Some(path.clone()),
         ppm: PpmForm::Binary,
         command: options.command,
-        notes: Vec::new(),
     };
     let batch = BatchOptions {
         renders: vec![render],

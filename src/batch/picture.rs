@@ -1,8 +1,8 @@
 //! One picture: rendered, kept at intervals, and written with its film.
 
-use super::files::{self, FilmPlace};
+use super::files::{Files, Written};
 use super::keeping::Keeper;
-use super::progress::Progress;
+use super::progress::{STEPS, display, show};
 use super::studio::{Event, Studio};
 use super::summary::Summary;
 use crate::cli::{BatchOptions, RenderOptions};
@@ -14,7 +14,8 @@ use crate::system::files::ShownPath;
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::anyhow;
-use files::Written;
+use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A picture to render, whose films are locked.
@@ -22,7 +23,7 @@ pub(super) struct Picture<'a> {
     pub render: &'a RenderOptions,
     /// The film to continue.
     pub resumed: Option<SavedFilm>,
-    places: Vec<FilmPlace>,
+    files: Files,
     /// Warnings to print before it begins.
     warnings: Vec<String>,
 }
@@ -33,8 +34,7 @@ impl<'a> Picture<'a> {
     /// # Errors
     /// [`Failure::Input`] if another run writes one of them.
     pub fn lock(render: &'a RenderOptions) -> Result<Self, Failure> {
-        let (places, warnings) = (files::lock(render)?, render.notes.clone());
-        Ok(Picture { render, resumed: None, places, warnings })
+        Ok(Picture { render, resumed: None, files: Files::lock(render)?, warnings: Vec::new() })
     }
 
     /// Checks the files that the render would replace.
@@ -42,8 +42,7 @@ impl<'a> Picture<'a> {
     /// # Errors
     /// [`Failure::Input`] if one must not be replaced.
     pub fn check(&mut self) -> Result<(), Failure> {
-        let film = self.resumed.as_ref().map(|resumed| &resumed.film);
-        self.warnings.extend(files::check(self.render, &self.places, film)?);
+        self.warnings = self.files.check(self.resumed.as_ref())?;
         Ok(())
     }
 
@@ -54,22 +53,20 @@ impl<'a> Picture<'a> {
         studio: &mut Studio,
         interrupt: &Interrupt,
     ) -> (Summary<'a>, Result<(), Failure>) {
-        let Picture { render, resumed, places, warnings } = self;
-        let (film, seconds_before) =
-            resumed.map_or((None, Some(0.0)), |SavedFilm { film, seconds, .. }| (Some(film), seconds));
-        let held_before = film.as_ref().map_or(0, Film::sample_count);
-        let checkpoint = places.first().filter(|_| render.checkpoint.is_some());
-        let mut keeper =
-            checkpoint.map(|place| Keeper::new(render, place.clone(), held_before, seconds_before));
-        let mut progress = Progress::new(options.progress, render);
-        warnings.iter().for_each(|warning| progress.say(&format!("warning: {warning}")));
+        let Picture { render, resumed, files, warnings } = self;
+        let files = Arc::new(files);
+        let mut keeper = render.checkpoint.as_ref().map(|_| Keeper::new(&files));
+        let mut display = display(options.progress, STEPS, &render.recipe.name);
+        let begin = Instant::now();
+        warnings.iter().for_each(|warning| display.warn(warning));
+        let film = resumed.map(|saved| saved.film);
         let (mut status, film) =
             studio.render(render.job.clone(), render.plan.clone(), film, |event| match event {
-                Event::Warning(warning) => progress.say(&format!("warning: {warning}")),
+                Event::Warning(warning) => display.warn(warning),
                 Event::Stopping => {
                     let hint = "; press Ctrl-C again to exit at once without writing";
                     let hint = if interrupt.is_by_hand() { hint } else { "" };
-                    progress.say(&format!("finishing the current samples and writing the files{hint}"));
+                    display.say(&format!("finishing the current samples and writing the files{hint}"));
                 }
                 Event::Status(_, status) if status.phase.is_over() => {}
                 Event::Status(progressive, status) => {
@@ -77,11 +74,9 @@ impl<'a> Picture<'a> {
                         options.crashes_at.is_none_or(|samples| status.samples_per_pixel < samples),
                         "injected fault"
                     );
-                    if let Some(warning) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status))
-                    {
-                        progress.say(&format!("warning: {warning}"));
-                    }
-                    progress.update(status);
+                    let warning = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status));
+                    warning.iter().for_each(|warning| display.warn(warning));
+                    show(&mut display, &render.plan, status, begin.elapsed());
                 }
             });
         let mut names = vec![render.out.shown()];
@@ -89,26 +84,22 @@ impl<'a> Picture<'a> {
         let writing = interrupt.while_writing(names.join(" and "));
         let begin = Instant::now();
         let kept = keeper.and_then(Keeper::finish);
-        let written = match film.as_ref().filter(|film| film.sample_count() > 0) {
-            Some(film) => {
-                files::write(render, &places, film, &status, seconds_before, |path| progress.writing(path))
-            }
-            None => Written::default(),
-        };
+        let mut written = Written::default();
+        if let Some(film) = film.as_ref().filter(|film| film.sample_count() > 0) {
+            let say = |path: &Path| display.announce(STEPS, || format!("writing {}", path.shown()));
+            written = files.write(film, &status, say);
+        }
         drop(writing);
         written.files.iter().for_each(|path| log::info!("wrote {}", path.display()));
-        written.notes.iter().for_each(|note| progress.say(&format!("warning: {note}")));
+        written.notes.iter().for_each(|note| display.warn(note));
         status.messages = [&warnings[..], &status.messages, &written.notes].concat();
-        progress.finish();
+        display.clear();
         if matches!(status.phase, Phase::Failed(_)) {
             journal::write_report();
         }
         let outcome = outcome(render, &status, film.as_ref(), &written, kept);
-        let (files, writing) = (written.files, begin.elapsed());
-        (
-            Summary { render, samples: film.map(|film| film.samples().to_string()), status, files, writing },
-            outcome,
-        )
+        let samples = film.map(|film| film.samples().to_string());
+        (Summary { render, samples, status, files: written.files, writing: begin.elapsed() }, outcome)
     }
 }
 

@@ -20,7 +20,6 @@ use std::process::ExitCode;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
-    options.notes.iter().for_each(|note| console::note(&format!("warning: {note}")));
     create_directory(&options.directory)?;
     let manifest = Manifest {
         command: options.command.clone(),
@@ -65,24 +64,21 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
 /// What was divided.
 fn about(plan: &Plan) -> String {
     let (settings, lengths) = (plan.job.settings(), plan.manifest.work.lengths());
-    let [shortest, longest] = [lengths.iter().min(), lengths.iter().max()].map(|it| it.copied().unwrap_or(0));
-    let each = |noun: &str, per: &str| match shortest == longest {
-        true => format!("{}{per} each", counted(longest, noun)),
-        false => format!("{shortest} to {}{per}", counted(longest, noun)),
-    };
+    let parts = counted(lengths.len() as u64, "part");
+    let longest = lengths.into_iter().max().unwrap_or_default();
     let each = match &plan.manifest.work {
         Work::Samples(work) => {
             let film = Film::bytes(settings.width, settings.height, settings.half_count());
-            let (each, film) = (each("sample", " per pixel"), memory::words(film));
-            format!("{each}, in blocks of {}; a part's film takes {film} of memory", work.block)
+            let (each, film) = (counted(longest, "sample"), memory::words(film));
+            format!("{each} per pixel, in blocks of {}; a part's film takes {film} of memory", work.block)
         }
         Work::Frames(_) => {
-            format!("{} of {}", each("frame", ""), counted(plan.recipe.samples_per_pixel, "sample"))
+            let samples = counted(plan.recipe.samples_per_pixel, "sample");
+            format!("{} of {samples} per pixel", counted(longest, "frame"))
         }
     };
-    let parts = counted(lengths.len() as u64, "part");
     let size = format!("{}x{}", settings.width, settings.height);
-    format!("{}: {} of {size}, {parts} of {each}", plan.path.shown(), plan.recipe.name)
+    format!("{}: {} of {size}, {parts} of at most {each}", plan.path.shown(), plan.recipe.name)
 }
 
 /// The plan and its commands for other programs.

@@ -1,54 +1,23 @@
 //! The progress of a picture: samples, speed and remaining time.
 
+use crate::cli::ProgressChoice;
 use crate::cli::terminal::Display;
-use crate::cli::{ProgressChoice, RenderOptions};
 use crate::progressive::describe::seconds;
 use crate::progressive::{Phase, Plan, Status};
-use crate::system::files::ShownPath;
-use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-/// Interval of progress lines when there is no terminal.
-pub(super) const LINE_INTERVAL: Duration = Duration::from_secs(5);
+/// Steps of the bar of a picture.
+pub(super) const STEPS: u64 = 1000;
 
-/// Steps of the bar.
-const STEPS: u64 = 1000;
-
-/// The progress of one picture.
-pub(super) struct Progress {
-    display: Display,
-    plan: Plan,
-    begin: Instant,
+/// How the progress of `steps` is shown. Without a terminal, there is a line every five seconds.
+pub(super) fn display(choice: ProgressChoice, steps: u64, name: &str) -> Display {
+    Display::new(choice, steps, "{prefix} [{bar:24}] {wide_msg}", name, Duration::from_secs(5))
 }
 
-impl Progress {
-    pub(super) fn new(choice: ProgressChoice, render: &RenderOptions) -> Self {
-        let (template, name) = ("{prefix} [{bar:24}] {wide_msg}", &render.recipe.name);
-        let display = Display::new(choice, STEPS, template, name, LINE_INTERVAL);
-        Progress { display, plan: render.plan.clone(), begin: Instant::now() }
-    }
-
-    /// Shows the state of the render.
-    pub(super) fn update(&mut self, status: &Status) {
-        let elapsed = self.begin.elapsed();
-        let left = seconds_left(&self.plan, status);
-        self.display.update(step(elapsed, left), || so_far(status, elapsed, left));
-    }
-
-    /// Shows that `path` is being written.
-    pub(super) fn writing(&mut self, path: &Path) {
-        self.display.announce(STEPS, || format!("writing {}", path.shown()));
-    }
-
-    /// Prints a message that must be read, even if progress is off.
-    pub(super) fn say(&self, message: &str) {
-        self.display.say(message);
-    }
-
-    /// Removes the bar.
-    pub(super) fn finish(&self) {
-        self.display.clear();
-    }
+/// Shows the state of a render that has taken `elapsed` so far.
+pub(super) fn show(display: &mut Display, plan: &Plan, status: &Status, elapsed: Duration) {
+    let left = seconds_left(plan, status);
+    display.update(step(elapsed, left), || so_far(status, elapsed, left));
 }
 
 /// The render's progress. `elapsed` is the time since its start, and `left` the seconds to its end, if predictable.

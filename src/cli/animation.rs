@@ -1,37 +1,42 @@
-//! The flags of animations, which rendering and planning share.
+//! Animations: `--frames` and `--turntable`.
 
-use super::error::CliError;
-use super::raw::RawPicture;
-use super::values::{parse_rate, parse_turn, range};
+use super::raw::{ProgressChoice, RawPicture};
+use super::render::RenderFlags;
+use super::values::{JsonTarget, parse_rate, parse_turn, range};
+use super::{Line, check_paths, sources};
+use crate::backends::BackendChoice;
 use crate::job::output::FrameRate;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
-use crate::scene::animation::{CameraPath, FRAME_LIMIT, Turn};
-use clap::Args;
+use crate::scene::animation::{CameraPath, FRAME_LIMIT, FrameNames, Turn};
+use crate::stages::Stage;
+use crate::system::files::ShownPath;
+use anyhow::{Context, Result, bail};
+use clap::{ArgGroup, Args};
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 
 /// The rate of an animated PNG.
 const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
 
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Animation")]
+#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true))]
 pub(super) struct AnimationFlags {
     /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
     /// file [default with --turntable: one turn]
-    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), allow_hyphen_values = true)]
+    #[arg(long, value_name = "A..B", value_parser = range(FRAME_LIMIT, "0..120"), group = "moving")]
     frames: Option<Range<u32>>,
     /// Let the camera circle around --look-at about --vup: the frames of a turn, or the degrees between two frames, such
     /// as 1.5deg or -3deg [without a value: 120 frames]
     #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
-          require_equals = true, default_missing_value = "120")]
+          require_equals = true, default_missing_value = "120", group = "moving")]
     turntable: Option<Turn>,
     /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
-    #[arg(long, value_name = "RATE", value_parser = parse_rate)]
-    pub fps: Option<FrameRate>,
+    #[arg(long, value_name = "RATE", value_parser = parse_rate, requires = "moving")]
+    fps: Option<FrameRate>,
 }
 
 /// Frames to render, and how the camera moves.
-#[derive(Debug)]
 pub(super) struct Animation {
     /// Numbers of the frames, whose cameras are valid.
     pub frames: Range<u32>,
@@ -42,49 +47,117 @@ pub(super) struct Animation {
 }
 
 impl AnimationFlags {
-    /// The flag that asks for an animation, if any does.
-    pub fn check(&self) -> Result<Option<&'static str>, CliError> {
-        match self {
-            AnimationFlags { frames: Some(_), .. } => Ok(Some("--frames")),
-            AnimationFlags { turntable: Some(_), .. } => Ok(Some("--turntable")),
-            AnimationFlags { fps: None, .. } => Ok(None),
-            AnimationFlags { fps: Some(_), .. } => {
-                let reason = "a single picture has no rate; add --frames A..B or --turntable";
-                Err(CliError::Needs { flag: "--fps", other: "--frames", reason })
-            }
-        }
+    pub fn is_given(&self) -> bool {
+        self.frames.is_some() || self.turntable.is_some()
     }
 
     /// The animation of a picture.
-    pub fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<Animation, CliError> {
-        let needs = |flag, other, reason| Err(CliError::Needs { flag, other, reason });
-        let path = match (self.turntable, picture.camera.given().first()) {
-            (Some(turn), _) => CameraPath::Turntable { start: recipe.camera, turn },
-            (None, _) if recipe.keyframes.is_empty() => {
-                let reason = "the scene has no [[keyframes]], so the camera would not move";
-                return needs("--frames", "--turntable", reason);
+    pub fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<Animation> {
+        let path = match self.turntable {
+            Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
+            None if recipe.keyframes.is_empty() => {
+                bail!(
+                    "--frames needs --turntable: the scene has no [[keyframes]], so the camera would not move"
+                )
             }
-            (None, Some(flag)) => {
-                let reason = "they set the camera; change them, or use --turntable";
-                return Err(CliError::Together { flag, other: "the keyframes of the scene file", reason });
-            }
-            (None, None) => {
-                CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() }
-            }
+            None if picture.camera != Default::default() => bail!(
+                "flags of the camera such as --look-from and --vfov cannot be used with the keyframes of the scene file: \
+                 they set the camera; change them, or use --turntable"
+            ),
+            None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
         };
         let frames = match (&self.frames, self.turntable) {
             (Some(frames), _) => frames.clone(),
             (None, Some(Turn::FramesPerTurn(count))) => 0..count,
-            (None, _) => {
-                let reason = "it has no whole number of frames a turn; give A..B";
-                return needs("--turntable in degrees", "--frames", reason);
-            }
+            (None, _) => bail!(
+                "--turntable in degrees needs --frames: it has no whole number of frames a turn; give A..B"
+            ),
         };
         for frame in frames.clone() {
-            job.seen_by(path.camera(frame), *job.settings())
-                .map_err(|reason| CliError::Refused(format!("frame {frame}: {reason}")))?;
+            job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
         }
         let rate = self.fps.unwrap_or(DEFAULT_RATE);
         Ok(Animation { frames, path, turntable: self.turntable, rate })
+    }
+}
+
+/// Options of `--batch --frames`.
+#[derive(Debug)]
+pub struct FramesOptions {
+    /// The scene and its settings. The camera is not that of a frame.
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that it comes from.
+    pub stage: Option<&'static Stage>,
+    /// How the camera moves. The camera of every frame is valid.
+    pub path: CameraPath,
+    /// Numbers of the frames, at least one.
+    pub frames: Range<u32>,
+    /// The files of the frames.
+    pub names: FrameNames,
+    /// The animated PNG to make of them, if any.
+    pub animation: Option<(PathBuf, FrameRate)>,
+    pub backend: BackendChoice,
+    pub progress: ProgressChoice,
+    pub json: Option<JsonTarget>,
+    /// The command that renders them.
+    pub command: String,
+}
+
+/// Validates the flags of an animation.
+pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
+    let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
+    let Animation { frames, path, rate, .. } = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
+    let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
+        bail!(
+            "an animation needs --batch and --out: it writes many pictures; name a directory, a pattern such as \
+             turn-####.png, or an animated turn.png"
+        );
+    };
+    let (names, animation) = places(out)?;
+    if flags.animation.fps.is_some() && animation.is_none() {
+        bail!(
+            "--fps needs --out FILE.png: single frames have no rate; give it to the program that makes a film of them"
+        );
+    }
+    let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
+    let json = flags.files.json.as_ref().and_then(JsonTarget::file);
+    let mut outputs = vec![("--out", animation.as_deref()), ("--json", json)];
+    outputs.extend(files.iter().map(|file| ("a frame of the animation", Some(file.as_path()))));
+    check_paths(&[("--scene", sources::scene_file(flags.picture.scene.as_deref()))], &outputs)?;
+    Ok(FramesOptions {
+        recipe: chosen.recipe,
+        job,
+        stage: chosen.stage,
+        path,
+        frames,
+        names,
+        animation: animation.map(|file| (file, rate)),
+        backend: flags.backend,
+        progress: flags.progress,
+        json: flags.files.json,
+        command: line.command.clone(),
+    })
+}
+
+/// The files of the frames, and the animated PNG if `out` is one. Its frames are in a directory beside it.
+fn places(out: &Path) -> Result<(FrameNames, Option<PathBuf>)> {
+    let ending = out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
+    match (ending.as_deref(), FrameNames::of_pattern(out)) {
+        _ if out.is_dir() => Ok((FrameNames::in_directory(out), None)),
+        (Some("png"), Some(names)) => Ok((names, None)),
+        (None, _) if !is_pattern => Ok((FrameNames::in_directory(out), None)),
+        (Some("png" | "apng"), _) if !is_pattern => {
+            let mut directory = out.file_stem().unwrap_or_default().to_owned();
+            directory.push("-frames");
+            Ok((FrameNames::in_directory(&out.with_file_name(directory)), Some(out.to_owned())))
+        }
+        _ => bail!(
+            "--out is {}, but an animation is a directory of PNG files, a pattern with a single row of # such as \
+             turn-####.png, or an animated turn.png; it has no film",
+            out.shown()
+        ),
     }
 }

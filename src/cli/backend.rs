@@ -1,6 +1,5 @@
 //! The flags that choose a backend. All commands that render have them, as a [`BackendChoice`] among their options.
 
-use super::error::CliError;
 use super::values::{Level, Simd, parse_isa, parse_simd, whole};
 use crate::backends::BackendChoice;
 use crate::render_cpu::CpuOptions;
@@ -39,9 +38,6 @@ struct BackendFlags {
     /// Lose the GPU after this many dispatches, to see that the CPU continues (fault injection)
     #[arg(long, value_name = "DISPATCHES", group = "fault")]
     simulate_device_lost: Option<u64>,
-    /// Use up the GPU's memory after this many dispatches (fault injection)
-    #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
-    simulate_out_of_memory: Option<u64>,
     /// Make an invalid call after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true, group = "fault")]
     simulate_invalid_call: Option<u64>,
@@ -57,14 +53,13 @@ struct BackendFlags {
 pub(super) const FLAGS: [&str; 5] = ["device", "adapter", "simd", "isa", "threads"];
 
 impl BackendFlags {
-    fn choice(self) -> Result<BackendChoice, CliError> {
+    fn choice(self) -> Result<BackendChoice, String> {
         let (Simd(lanes), Level(isa)) = (self.simd, self.isa);
         let threads = self.threads;
         let cpu =
             CpuOptions { isa, lanes, threads, panics_after: self.simulate_panic, ..CpuOptions::default() };
         let injections = [
             (self.simulate_device_lost, Fault::Lost),
-            (self.simulate_out_of_memory, Fault::OutOfMemory),
             (self.simulate_invalid_call, Fault::Invalid),
             (self.simulate_hang, Fault::Hang),
         ];
@@ -79,9 +74,7 @@ impl BackendFlags {
         let device =
             self.device.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
         let refuse = |flags: &str, limit: &str| {
-            Err(CliError::Refused(format!(
-                "{flags} cannot be used with --device {device}: {limit}; leave one of them out"
-            )))
+            Err(format!("{flags} cannot be used with --device {device}: {limit}; leave one of them out"))
         };
         match self.device {
             Device::Cpu | Device::Reference if for_gpu => {

@@ -1,16 +1,15 @@
 //! The flags of `weekender bench`.
 
-use super::error::CliError;
-use super::paths::Paths;
 use super::raw::ProgressChoice;
-use super::sources;
 use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size, whole};
+use super::{NamedPath, check_paths, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::numbers::chart::ChartFormat;
 use crate::render_cpu::Isa;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
+use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,57 +17,50 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct BenchOptions {
     /// A built-in scene, field:N or a scene file; may be given several times [default: three-spheres and book]
-    #[arg(long, value_name = "NAME|FILE.toml", help_heading = "Scenes")]
+    #[arg(long, value_name = "NAME|FILE.toml")]
     scene: Vec<String>,
     /// Measure fields of A to B spheres instead, each about three times as large as the one before
-    #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene",
-          help_heading = "Scenes")]
+    #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene")]
     pub scale: Option<Box<[u64]>>,
     /// Measure the gain from leaving out of each kernel the code that its picture does not need, for all stages and
     /// built-in scenes
-    #[arg(long, conflicts_with_all = ["scale", "plot"], help_heading = "Scenes")]
+    #[arg(long, conflicts_with_all = ["scale", "plot"])]
     pub features: bool,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's; with --features, 200 pixels across]
-    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Scenes")]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<(u32, u32)>,
     /// Maximum samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
     /// many as --run-limit allows]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
-          allow_hyphen_values = true, help_heading = "Scenes")]
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100))]
     samples: Option<u64>,
     /// Source of random numbers [default: sobol, or the scene's]
-    #[arg(long, value_enum, help_heading = "Scenes")]
+    #[arg(long, value_enum)]
     sampler: Option<SamplerKind>,
-
     /// Instruction levels, separated by commas; auto: the best of this processor, all: all that it has
-    #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
-          help_heading = "Candidates")]
+    #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
     isa: Levels,
     /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8),
-          allow_hyphen_values = true, help_heading = "Candidates")]
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8))]
     threads: Option<usize>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Candidates")]
+    #[arg(long, value_name = "SUBSTRING")]
     pub adapter: Option<String>,
-
-    /// Runs of each row, after a warm-up that does not count, 1 to 1000 [default: 5, or 3 with --quick]
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_usize, 5),
-          allow_hyphen_values = true, help_heading = "Measurement")]
-    runs: Option<usize>,
+    /// Runs of each row, after a warm-up that does not count, 1 to 1000; with --quick, 3 by default
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_usize, 5), default_value = "5",
+          default_value_if("quick", "true", "3"))]
+    pub runs: usize,
     /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with
     /// --features .4 and .1]
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Measurement")]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     run_limit: Option<f64>,
     /// Fewer samples and runs, for a first impression within a minute
-    #[arg(long, help_heading = "Measurement")]
+    #[arg(long)]
     quick: bool,
-
     /// Write all runs and figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Files")]
-    json: Option<PathBuf>,
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<JsonTarget>,
     /// Write a chart as .png or .svg
-    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
@@ -98,34 +90,24 @@ const FEATURES_WIDTH: u32 = 200;
 
 impl BenchOptions {
     /// Returns an error if the files conflict or the chart has no known format.
-    pub(super) fn check(self) -> Result<Self, CliError> {
-        self.levels()?;
+    pub(super) fn check(self) -> Result<Self> {
         if let Some(plot) = &self.plot {
             ChartFormat::from_path(plot)?;
         }
-        let files = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));
-        files
-            .fold(Paths::default(), |paths, file| paths.read("--scene", Some(file)))
-            .write_json(self.json().as_ref())
-            .write("--plot", self.plot.as_deref())
-            .check(&[])?;
+        let inputs = self.scene.iter().map(|scene| ("--scene", sources::scene_file(Some(scene))));
+        let json = self.json.as_ref().and_then(JsonTarget::file);
+        let outputs = [("--json", json), ("--plot", self.plot.as_deref())];
+        check_paths(&inputs.collect::<Vec<NamedPath>>(), &outputs)?;
         Ok(self)
     }
 
     /// Instruction levels, the most capable last; at least one.
-    ///
-    /// # Errors
-    /// If the processor lacks one.
-    pub fn levels(&self) -> Result<Vec<Isa>, CliError> {
-        self.isa.available(|available| available.last().copied().into_iter().collect())
+    pub fn levels(&self) -> Vec<Isa> {
+        self.isa.0.clone().unwrap_or_else(|| Isa::available().last().copied().into_iter().collect())
     }
 
     pub fn threads(&self) -> usize {
         self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
-    }
-
-    pub fn runs(&self) -> usize {
-        self.runs.unwrap_or(if self.quick { 3 } else { 5 })
     }
 
     pub fn run_limit_seconds(&self) -> f64 {
@@ -137,15 +119,11 @@ impl BenchOptions {
         })
     }
 
-    pub fn json(&self) -> Option<JsonTarget> {
-        self.json.clone().map(JsonTarget::from)
-    }
-
     /// The scenes to measure; none if fields are measured instead.
     ///
     /// # Errors
     /// If one is unknown, not valid or too large.
-    pub fn scenes(&self) -> Result<Vec<BenchScene>, CliError> {
+    pub fn scenes(&self) -> Result<Vec<BenchScene>> {
         if self.scale.is_some() {
             return Ok(Vec::new());
         }
@@ -174,7 +152,7 @@ impl BenchOptions {
     ///
     /// # Errors
     /// If it is not valid or too large.
-    pub fn scene_of(&self, recipe: Recipe, is_stage: bool) -> Result<BenchScene, CliError> {
+    pub fn scene_of(&self, recipe: Recipe, is_stage: bool) -> Result<BenchScene> {
         let samples = self.samples_of(&recipe);
         let mut settings = recipe.settings;
         let own_size = (settings.width, settings.height);

@@ -1,49 +1,46 @@
 //! The flags of `weekender compare` and their validation.
 
-use super::error::CliError;
-use super::paths::Paths;
 use super::raw::{self, RawPicture};
 use super::sources::{self, ChosenRecipe};
-use super::values::{JsonTarget, whole};
+use super::values::{JsonTarget, file_ending, whole};
+use super::{NamedPath, check_paths};
 use crate::backends::BackendChoice;
 use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::SAMPLE_LIMIT;
 use crate::stages::Transfer;
-use clap::builder::{PathBufValueParser, PossibleValue, TypedValueParser};
+use anyhow::{Result, ensure};
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Comparison")]
 pub(super) struct RawCompare {
     /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or the backend that renders it now: cpu, scalar,
     /// portable (multiply and add rounded separately), reference (f64) or gpu
     #[arg(value_name = "FIRST")]
-    pub first: String,
+    first: String,
     /// Like the first; compared with a film, a backend renders the same samples, with a picture, the same size
     #[arg(value_name = "SECOND")]
-    pub second: String,
-
+    second: String,
     /// Samples per pixel to render, 1 to 4294967296 [default: the film's, or 64]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
-          allow_hyphen_values = true, help_heading = "Comparison")]
-    pub samples: Option<u64>,
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100))]
+    samples: Option<u64>,
     /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
-    #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
-    pub encoding: Encoding,
+    #[arg(long, value_enum, default_value = "gamma2")]
+    encoding: Encoding,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
-    pub adapter: Option<String>,
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Option<String>,
     /// Write the differences as a picture, from dark (1e-4) to bright (1), with frames around the worst blocks
-    #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
-    pub heat_map: Option<PathBuf>,
+    #[arg(long, value_name = "FILE.png", value_parser = file_ending(".png"))]
+    heat_map: Option<PathBuf>,
     /// Write the figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", value_parser = PathBufValueParser::new().map(JsonTarget::from),
-          help_heading = "Comparison")]
-    pub json: Option<JsonTarget>,
-
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<JsonTarget>,
     #[command(flatten)]
-    pub picture: RawPicture,
+    picture: RawPicture,
 }
 
 impl ValueEnum for Encoding {
@@ -91,55 +88,30 @@ const COMPARE_SAMPLES: u64 = 64;
 const COMPARE_WIDTH: u32 = 400;
 
 /// Validates the flags of `weekender compare`.
-pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
-    if raw.picture.is_every_stage() {
-        let reason = "only two pictures can be compared; choose one stage";
-        return Err(CliError::Together { flag: "compare", other: "--stage all", reason });
-    }
-    if let Some(path) = &raw.heat_map {
-        sources::check_ending("--heat-map", path, "a map of differences", ".png")?;
-    }
-    let adapter = raw.adapter.as_deref();
-    let side = |name: String| match BackendChoice::named(&name, adapter) {
+pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions> {
+    let RawCompare { first, second, samples, encoding, adapter, heat_map, json, picture } = raw;
+    ensure!(
+        adapter.is_none() || first == "gpu" || second == "gpu",
+        "--adapter needs gpu as a side: it chooses among GPUs; otherwise leave it out"
+    );
+    let sides = [first, second].map(|name| match BackendChoice::named(&name, adapter.as_deref()) {
         Some(choice) => CompareSide::Backend { name, choice },
         None => CompareSide::File(PathBuf::from(name)),
-    };
-    let is_gpu = [&raw.first, &raw.second].into_iter().any(|name| name == "gpu");
-    if adapter.is_some() && !is_gpu {
-        let reason = "it chooses among GPUs; otherwise leave it out";
-        return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
-    }
-    let sides = [side(raw.first), side(raw.second)];
-    let read = |paths: Paths, side: &CompareSide| match side {
-        CompareSide::File(path) => paths.read("a picture of the comparison", Some(path)),
-        CompareSide::Backend { .. } => paths,
-    };
-    sides
-        .iter()
-        .fold(Paths::default(), read)
-        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
-        .write("--heat-map", raw.heat_map.as_deref())
-        .write_json(raw.json.as_ref())
-        .check(&[])?;
-    // Pictures of other programs do not say what they show.
-    let from_file = sides.iter().find_map(|side| match side {
-        CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
+    });
+    let files = sides.each_ref().map(|side| match side {
+        CompareSide::File(path) => Some(path.as_path()),
         CompareSide::Backend { .. } => None,
     });
-    let ChosenRecipe { mut recipe, .. } = match from_file {
-        Some(chosen) => chosen,
-        None => sources::find(&raw.picture, None)?,
-    };
-    raw::change(&mut recipe, &raw.picture, None);
-    sources::narrow(&mut recipe, &raw.picture, COMPARE_WIDTH);
+    let mut inputs: Vec<NamedPath> = files.map(|file| ("a picture of the comparison", file)).to_vec();
+    inputs.push(("--scene", sources::scene_file(picture.scene.as_deref())));
+    let json_file = json.as_ref().and_then(JsonTarget::file);
+    check_paths(&inputs, &[("--heat-map", heat_map.as_deref()), ("--json", json_file)])?;
+    // Pictures of other programs do not say what they show.
+    let from_file = files.into_iter().flatten().find_map(|file| sources::find(&picture, Some(file)).ok());
+    let ChosenRecipe { mut recipe, .. } = from_file.map_or_else(|| sources::find(&picture, None), Ok)?;
+    raw::change(&mut recipe, &picture, None);
+    sources::narrow(&mut recipe, &picture, COMPARE_WIDTH);
     recipe.samples_per_pixel = COMPARE_SAMPLES;
     recipe.job()?;
-    Ok(CompareOptions {
-        sides,
-        recipe,
-        samples: raw.samples,
-        encoding: raw.encoding,
-        heat_map: raw.heat_map,
-        json: raw.json,
-    })
+    Ok(CompareOptions { sides, recipe, samples, encoding, heat_map, json })
 }

@@ -1,62 +1,52 @@
 //! The flags of `weekender diff` and their validation.
 
-use super::error::CliError;
-use super::paths::Paths;
-use super::raw::{self, RawPicture, RawSwitch};
+use super::raw::{self, RawPicture};
 use super::sources::{self, ChosenRecipe};
-use super::values::{
-    JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance, whole,
-};
+use super::values::{JsonTarget, Level, backend_named, parse_isa, parse_pixel, parse_tolerance, whole};
 use crate::backends::BackendChoice;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
-use crate::render_cpu::{CpuOptions, Isa};
-use crate::render_gpu::GpuOptions;
+use crate::render_cpu::CpuOptions;
+use anyhow::{Result, bail, ensure};
 use clap::Args;
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::BoolishValueParser;
 
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Comparison")]
 pub(super) struct RawDiff {
     /// The pixel; 0,0 is the upper left one
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find",
-          conflicts_with = "find", help_heading = "Path")]
-    pub pixel: Option<[u32; 2]>,
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find", conflicts_with = "find")]
+    pixel: Option<[u32; 2]>,
     /// Index of the sample, from 0
-    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=SAMPLE_LIMIT - 1, 7),
-          allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
-    pub sample: u64,
+    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=SAMPLE_LIMIT - 1, 7), default_value = "0",
+          conflicts_with = "find")]
+    sample: u64,
     /// Search this many samples of every pixel for the one that differs most; without --size, the picture is at most
     /// 200 pixels wide
-    #[arg(long, value_name = "SAMPLES", value_parser = whole(1..=SAMPLE_LIMIT, 100),
-          num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
-    pub find: Option<u64>,
-
+    #[arg(long, value_name = "SAMPLES", value_parser = whole(1..=SAMPLE_LIMIT, 100), num_args = 0..=1,
+          default_missing_value = "4")]
+    find: Option<u64>,
     /// The two backends to compare: cpu (at the level --isa), portable (multiply and add rounded separately),
     /// reference (f64) or gpu
-    #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
-          help_heading = "Comparison")]
-    pub sides: [RawSide; 2],
+    #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = "cpu,gpu")]
+    sides: Vec<String>,
     /// Largest relative difference that does not count
-    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, allow_hyphen_values = true,
-          default_value = "1e-4", help_heading = "Comparison")]
-    pub tolerance: f64,
+    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, default_value = "1e-4")]
+    tolerance: f64,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
-    pub adapter: Option<String>,
+    #[arg(long, value_name = "SUBSTRING")]
+    adapter: Option<String>,
     /// Instruction level of the side cpu: auto, portable, sse4.2, avx2, avx512, neon
-    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
-          help_heading = "Comparison")]
-    pub isa: Level,
+    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto")]
+    isa: Level,
     /// Write both paths and the verdict as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", value_parser = PathBufValueParser::new().map(JsonTarget::from),
-          help_heading = "Comparison")]
-    pub json: Option<JsonTarget>,
-
-    #[command(flatten)]
-    pub picture: RawPicture,
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<JsonTarget>,
     /// Whether samples are kept in two halves, as for rendering; it determines their random numbers
     /// [default: on, or the scene's]
-    #[arg(long, value_enum, help_heading = "Picture")]
-    pub estimate_error: Option<RawSwitch>,
+    #[arg(long, value_name = "on|off", value_parser = BoolishValueParser::new())]
+    estimate_error: Option<bool>,
+    #[command(flatten)]
+    picture: RawPicture,
 }
 
 /// Options of `weekender diff`.
@@ -88,58 +78,46 @@ pub enum PathChoice {
 const FIND_WIDTH: u32 = 200;
 
 /// Validates the flags of `weekender diff`.
-pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
-    if raw.picture.is_every_stage() {
-        let reason = "only one path can be compared; choose one stage";
-        return Err(CliError::Together { flag: "diff", other: "--stage all", reason });
-    }
-    for (flag, is_given, side, other) in [
-        ("--adapter", raw.adapter.is_some(), RawSide::Gpu, "the side gpu in --sides"),
-        ("--isa", raw.isa.0.is_some(), RawSide::Cpu, "the side cpu in --sides"),
-    ] {
-        if is_given && !raw.sides.contains(&side) {
-            return Err(CliError::Needs {
-                flag,
-                other,
-                reason: "it applies only to that side; otherwise leave it out",
-            });
-        }
-    }
-    Paths::default()
-        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
-        .write_json(raw.json.as_ref())
-        .check(&[])?;
+pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions> {
+    let sides = sides(&raw)?;
+    let scene_file = sources::scene_file(raw.picture.scene.as_deref());
+    let json_file = raw.json.as_ref().and_then(JsonTarget::file);
+    super::check_paths(&[("--scene", scene_file)], &[("--json", json_file)])?;
     let ChosenRecipe { mut recipe, stage } = sources::find(&raw.picture, None)?;
     raw::change(&mut recipe, &raw.picture, raw.estimate_error);
     if raw.find.is_some() {
         sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
     }
     let (width, height) = (recipe.settings.width, recipe.settings.height);
-    let path = match (raw.find, raw.pixel) {
+    let path = match (raw.find, raw.pixel.unwrap_or_default()) {
         (Some(samples), _) => PathChoice::Find { samples },
-        (None, pixel) => {
-            let [x, y] = pixel.unwrap_or_default();
-            if x >= width || y >= height {
-                return Err(CliError::Pixel { x, y, width, height });
-            }
-            PathChoice::Given { pixel: [x, y], sample: raw.sample }
-        }
+        (None, [x, y]) if x >= width || y >= height => bail!(
+            "--pixel is {x},{y}, but the picture has {width}x{height} pixels: the last one is {},{}",
+            width - 1,
+            height - 1
+        ),
+        (None, pixel) => PathChoice::Given { pixel, sample: raw.sample },
     };
-    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
-    let sides = raw.sides.map(|side| match side {
-        RawSide::Cpu => cpu(raw.isa.0),
-        RawSide::Portable => cpu(Some(Isa::Portable)),
-        RawSide::Reference => BackendChoice::Reference { threads: None },
-        RawSide::Gpu => BackendChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
-    });
     let job = recipe.job()?;
     job.check_memory(2)?;
-    Ok(DiffOptions {
-        scene: stage.map_or(recipe.name.clone(), |stage| stage.id.to_owned()),
-        job,
-        path,
-        sides,
-        tolerance: raw.tolerance,
-        json: raw.json,
-    })
+    let scene = stage.map_or(recipe.name, |stage| stage.id.to_owned());
+    Ok(DiffOptions { scene, job, path, sides, tolerance: raw.tolerance, json: raw.json })
+}
+
+fn sides(raw: &RawDiff) -> Result<[BackendChoice; 2]> {
+    let needs = [("--adapter", raw.adapter.is_some(), "gpu"), ("--isa", raw.isa.0.is_some(), "cpu")];
+    for (flag, is_given, side) in needs {
+        ensure!(
+            !is_given || raw.sides.iter().any(|name| name == side),
+            "{flag} needs the side {side} in --sides: it applies only to that side; otherwise leave it out"
+        );
+    }
+    let [a, b] = raw.sides.as_slice() else {
+        bail!("--sides must be two of {} separated by a comma", BackendChoice::NAMES.join(", "))
+    };
+    let side = |name: &str| match name {
+        "cpu" => Ok(BackendChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() })),
+        name => backend_named(name, raw.adapter.as_deref()),
+    };
+    Ok([side(a)?, side(b)?])
 }

@@ -1,8 +1,12 @@
-//! Commands whose flags are their options: merge, info, gallery and companion.
+//! Commands whose flags are their options: merge, info, gallery, companion, check and stress.
 
 use super::raw::ProgressChoice;
-use super::values::parse_duration;
+use super::values::{JsonTarget, Levels, parse_duration, parse_levels};
+use super::{NamedPath, check_paths};
 use crate::backends::BackendChoice;
+use crate::render_cpu::Isa;
+use crate::stages::Stage;
+use anyhow::Result;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -24,8 +28,8 @@ pub struct MergeOptions {
     /// Interval at which --watch writes the picture so far: 0.1s to 30d
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "watch")]
     pub every: Duration,
-    /// Write nothing; read everything, list what is missing, damaged, foreign or there twice, and print the commands
-    /// for what is missing
+    /// Write nothing; read everything, list what a plan lacks and what is damaged or foreign, and print the commands for
+    /// what is missing
     #[arg(long, conflicts_with_all = ["out", "watch"])]
     pub check: bool,
     /// How commands call this program.
@@ -83,4 +87,74 @@ pub struct CompanionOptions {
     pub progress: ProgressChoice,
     #[command(flatten)]
     pub backend: BackendChoice,
+}
+
+/// Options of `weekender check`.
+#[derive(Clone, Debug, Args)]
+pub struct CheckOptions {
+    /// The picture that your own program has written: PPM (P3 or P6) or PNG, of any shape, from 16 x 9 to 4 million
+    /// pixels
+    #[arg(value_name = "PICTURE")]
+    pub picture: PathBuf,
+    /// The stage of the book that it shows [default: the one that it looks like]
+    #[arg(long, value_name = "ID", value_parser = Stage::find)]
+    pub stage: Option<&'static Stage>,
+    /// Write mine.png, ours.png and difference.png to this directory
+    #[arg(long, value_name = "DIRECTORY")]
+    pub out: Option<PathBuf>,
+    /// Write the finding as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<JsonTarget>,
+}
+
+impl CheckOptions {
+    /// The files of `--out`: mine, ours and their difference.
+    pub fn pictures(&self) -> Vec<PathBuf> {
+        let names = ["mine.png", "ours.png", "difference.png"];
+        self.out.iter().flat_map(|out| names.map(|name| out.join(name))).collect()
+    }
+
+    /// Refuses files that would replace the picture or each other.
+    pub(super) fn check(self) -> Result<Self> {
+        let pictures = self.pictures();
+        let mut outputs: Vec<NamedPath> =
+            pictures.iter().map(|path| ("a file of --out,", Some(path.as_path()))).collect();
+        outputs.push(("--json", self.json.as_ref().and_then(JsonTarget::file)));
+        check_paths(&[("the picture to check", Some(&self.picture))], &outputs)?;
+        Ok(self)
+    }
+}
+
+/// Options of `weekender stress`.
+#[derive(Clone, Debug, Args)]
+pub struct StressOptions {
+    /// Run only cases whose id contains this, such as copies or moved/1e5
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+    pub filter: String,
+    /// Instruction levels, separated by commas; auto: the best that fuses multiply and add and the best that does not,
+    /// all: all that this processor has
+    #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
+    isa: Levels,
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the
+    /// best one, if there is one]
+    #[arg(long, value_name = "SUBSTRING")]
+    pub adapter: Option<String>,
+    /// Write all figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<JsonTarget>,
+    /// Write pictures and the table as Markdown to this directory
+    #[arg(long, value_name = "DIRECTORY")]
+    pub out: Option<PathBuf>,
+    /// Show progress on standard error; auto: if it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+impl StressOptions {
+    /// Instruction levels of the CPU.
+    pub fn levels(&self) -> Vec<Isa> {
+        let available = Isa::available();
+        let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
+        self.isa.0.clone().unwrap_or_else(|| best(true).into_iter().chain(best(false)).collect())
+    }
 }

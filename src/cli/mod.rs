@@ -6,40 +6,34 @@ pub mod terminal;
 
 mod backend;
 mod bench;
-mod check;
 mod compare;
 mod diff;
 mod direct;
-mod error;
-mod frames;
-
 mod paths;
 mod plan;
 mod raw;
 mod render;
 mod report;
 mod sources;
-mod stress;
 mod values;
 
+pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
-pub use check::CheckOptions;
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice};
-pub use direct::{CompanionOptions, GalleryOptions, InfoOptions, MergeOptions};
-pub use error::CliError;
-pub use frames::FramesOptions;
-pub use paths::Paths;
+pub use direct::{CheckOptions, CompanionOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions};
+pub use paths::{NamedPath, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
-pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
+pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportOptions};
 pub use sources::DEFAULT_SCENE;
-pub use stress::StressOptions;
 pub use values::JsonTarget;
 
+use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell;
+use anyhow::Result;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -56,8 +50,8 @@ pub enum Request {
     Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
-    /// Write a scene file and render nothing.
-    SaveScene(Box<SaveSceneOptions>),
+    /// Write a scene file, whose recipe is valid, and render nothing.
+    SaveScene(Box<Recipe>, PathBuf),
     Plan(Box<PlanOptions>),
     Part(Box<PartOptions>),
     Merge(Box<MergeOptions>),
@@ -85,7 +79,7 @@ struct Raw {
     #[arg(long = "verbose", id = "verbose", requires = "version")]
     _verbose: bool,
     /// Write a log of what the program does; RUST_LOG chooses what, such as warn,weekender=trace
-    #[arg(long = "log", id = "log", value_name = "FILE.log", global = true)]
+    #[arg(long = "log", id = "log", value_name = "FILE.log", value_parser = values::file_ending(".log"), global = true)]
     _log: Option<PathBuf>,
     #[command(flatten)]
     render: render::RenderFlags,
@@ -160,16 +154,8 @@ pub fn command() -> clap::Command {
 
 /// The file of `--log`, needed before the flags are validated. `None` if clap does not accept the command line;
 /// [`parse`] then says what is wrong.
-///
-/// # Errors
-/// If its name does not end in `.log`, so that a log never replaces a picture.
-pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
-    let matches = command().try_get_matches_from(arguments).ok();
-    let log = matches.and_then(|matches| matches.get_one::<PathBuf>("log").cloned());
-    if let Some(path) = &log {
-        sources::check_ending("--log", path, "the log", ".log").map_err(Failure::input)?;
-    }
-    Ok(log)
+pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf> {
+    command().try_get_matches_from(arguments).ok()?.get_one::<PathBuf>("log").cloned()
 }
 
 /// Parses the command line; the first argument is the program's name.
@@ -185,14 +171,11 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
     let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
-    request(raw, &line).map_err(Failure::input)
+    request(raw, &line).map_err(Failure::Input)
 }
 
-fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
+fn request(raw: Raw, line: &Line) -> Result<Request> {
     Ok(match raw.command {
-        None if !raw.render.list && raw.render.animation.check()?.is_some() => {
-            Request::Frames(Box::new(frames::frames(raw.render, line)?))
-        }
         None => render::request(raw.render, line)?,
         Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
         Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),
@@ -206,10 +189,10 @@ fn request(raw: Raw, line: &Line) -> Result<Request, CliError> {
         Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
         Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(compare::compare(*raw)?)),
         Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
-        Some(RawCommand::Stress(raw)) => Request::Stress(Box::new(raw.check()?)),
+        Some(RawCommand::Stress(raw)) => Request::Stress(raw),
         Some(RawCommand::Companion(options)) => Request::Companion(options),
         Some(RawCommand::Gallery(options)) => Request::Gallery(options),
-        Some(RawCommand::Check(raw)) => Request::Check(Box::new(raw.checked()?)),
+        Some(RawCommand::Check(raw)) => Request::Check(Box::new(raw.check()?)),
     })
 }
 

@@ -1,68 +1,31 @@
 //! An output must not be an input of the same command, or another output.
 
-use super::error::CliError;
-use super::values::JsonTarget;
-use crate::system::files::ShownPath;
-use std::path::{Path, PathBuf};
+use crate::system::files::{FileIdentity, ShownPath};
+use anyhow::{Result, bail};
+use std::path::Path;
 
-/// The files that a command reads and writes, each with its flag or its role.
-#[derive(Default)]
-pub struct Paths {
-    inputs: Vec<(&'static str, PathBuf)>,
-    outputs: Vec<(&'static str, PathBuf)>,
-}
+/// A file with its flag or its role, unless it is not given.
+pub type NamedPath<'a> = (&'static str, Option<&'a Path>);
 
-impl Paths {
-    /// Adds a file to read, if there is one.
-    pub fn read(mut self, what: &'static str, path: Option<&Path>) -> Self {
-        self.inputs.extend(path.map(|path| (what, path.to_owned())));
-        self
-    }
+/// Outputs that may replace an input, because they continue it.
+const CONTINUED: [(&str, &str); 2] = [("--out", "--resume"), ("--checkpoint", "--resume")];
 
-    /// Adds a file to write, if there is one.
-    pub fn write(mut self, what: &'static str, path: Option<&Path>) -> Self {
-        self.outputs.extend(path.map(|path| (what, path.to_owned())));
-        self
-    }
-
-    /// Adds a JSON file to write, unless it is standard output.
-    pub fn write_json(self, target: Option<&JsonTarget>) -> Self {
-        match target {
-            Some(JsonTarget::File(path)) => self.write("--json", Some(path)),
-            _ => self,
+/// Refuses an output that would replace an input or another output. Devices may be shared.
+///
+/// # Errors
+/// The first such output, with the flag or role of both.
+pub fn check_paths(inputs: &[NamedPath], outputs: &[NamedPath]) -> Result<()> {
+    let identity = |(what, path): &NamedPath| Some((*what, FileIdentity::of((*path)?)?));
+    let mut seen: Vec<_> = inputs.iter().filter_map(identity).collect();
+    for output in outputs {
+        let (Some((what, file)), Some(path)) = (identity(output), output.1) else { continue };
+        let is_lost = |other: &str, at: &FileIdentity| *at == file && !CONTINUED.contains(&(what, other));
+        if let Some((other, _)) = seen.iter().find(|(other, at)| is_lost(other, at)) {
+            bail!("{what} {} would replace the file of {other}; give it another name", path.shown());
         }
+        seen.push((what, file));
     }
-
-    /// Refuses an output that is an input or another output. `may_replace` lists the outputs that may replace an input,
-    /// because they continue it.
-    ///
-    /// # Errors
-    /// [`CliError::Refused`].
-    pub fn check(&self, may_replace: &[(&str, &str)]) -> Result<(), CliError> {
-        let mut seen: Vec<(&str, PathBuf)> =
-            self.inputs.iter().filter_map(|(what, path)| Some((*what, place(path)?))).collect();
-        for (what, path) in &self.outputs {
-            let Some(place) = place(path) else { continue };
-            let other = seen.iter().find(|(other, at)| *at == place && !may_replace.contains(&(what, other)));
-            if let Some((other, _)) = other {
-                let path = path.shown();
-                return Err(CliError::Refused(format!(
-                    "{what} {path} would replace the file of {other}; give it another name"
-                )));
-            }
-            seen.push((what, place));
-        }
-        Ok(())
-    }
-}
-
-/// The file's path without links, whether or not it exists. `None` for devices, which may be shared.
-fn place(path: &Path) -> Option<PathBuf> {
-    if let Ok(found) = path.metadata() {
-        return if found.is_file() { path.canonicalize().ok() } else { None };
-    }
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    Some(parent.canonicalize().unwrap_or_else(|_| parent.to_owned()).join(path.file_name()?))
+    Ok(())
 }
 
 #[cfg(test)]
@@ -75,21 +38,16 @@ mod tests {
         let file = directory.path().join("g.exr");
         std::fs::write(&file, "").unwrap();
         let (file, again) = (file.as_path(), directory.path().join("./g.exr"));
-        let resumed = || Paths::default().read("--resume", Some(file));
-        let allowed = [("--checkpoint", "--resume")];
-        assert!(resumed().write("--checkpoint", Some(&again)).check(&allowed).is_ok());
-        let error = resumed().write("--json", Some(&again)).check(&allowed).unwrap_err().to_string();
+        let resumed = [("--resume", Some(file))];
+        assert!(check_paths(&resumed, &[("--checkpoint", Some(&again)), ("--out", None)]).is_ok());
+        let error = check_paths(&resumed, &[("--json", Some(&again))]).unwrap_err().to_string();
         assert!(error.contains("--json") && error.contains("--resume") && error.contains("g.exr"), "{error}");
         let new = directory.path().join("new.png");
         for path in [&again, &new] {
-            let both = Paths::default().write("--out", Some(path)).write("--checkpoint", Some(path));
-            assert!(both.check(&allowed).is_err());
+            assert!(check_paths(&[], &[("--out", Some(path)), ("--checkpoint", Some(path))]).is_err());
         }
-        assert!(resumed().write("--json", Some(&new)).check(&[]).is_ok());
+        assert!(check_paths(&resumed, &[("--json", Some(&new))]).is_ok());
         let null = Path::new("/dev/null");
-        assert!(
-            Paths::default().write("--out", Some(null)).write("--json", Some(null)).check(&[]).is_ok()
-                || !null.exists()
-        );
+        assert!(check_paths(&[], &[("--out", Some(null)), ("--json", Some(null))]).is_ok() || !null.exists());
     }
 }

@@ -1,10 +1,9 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
 use super::animation::{Animation, AnimationFlags};
-use super::error::CliError;
 use super::raw::{ProgressChoice, RawPicture};
 use super::sources::{self, SampleFlags};
-use super::values::{JsonTarget, json_target, parse_duration, whole};
+use super::values::{JsonTarget, parse_duration, whole};
 use super::{Line, backend};
 use crate::backends::BackendChoice;
 use crate::job::plan::{Format, Frames, Samples, Work, divide};
@@ -12,6 +11,7 @@ use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
 use crate::system::files::ShownPath;
+use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -65,8 +65,6 @@ pub struct PlanOptions {
     pub program: String,
     /// The command that makes the plan.
     pub command: String,
-    /// Warnings about flags that have no effect.
-    pub notes: Vec<String>,
 }
 
 /// Options of `weekender render-part`.
@@ -82,7 +80,7 @@ pub struct PartOptions {
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s")]
     pub every: Duration,
     /// Write the final figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", value_parser = json_target())]
+    #[arg(long, value_name = "FILE|-")]
     pub json: Option<JsonTarget>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
@@ -99,49 +97,46 @@ impl PartOptions {
     ///
     /// # Errors
     /// If neither a flag nor the environment says which part it is.
-    pub fn part(&self) -> Result<u64, CliError> {
+    pub fn part(&self) -> Result<u64> {
         let of_environment =
             || PART_VARIABLES.into_iter().find_map(|name| Some((name, std::env::var(name).ok()?)));
         match (self.part, of_environment()) {
             (Some(part), _) => Ok(part),
-            (None, Some((name, value))) => value.parse().map_err(|_| {
-                let limit = "but must be the number of a part; set it, or give --part NUMBER";
-                CliError::Refused(format!("{name} is {value:?}, {limit}"))
+            (None, Some((name, value))) => value.parse().with_context(|| {
+                format!(
+                    "{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER"
+                )
             }),
-            (None, None) => Err(CliError::Needs {
-                flag: "render-part",
-                other: "--part NUMBER",
-                reason: "neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part this task is to render",
-            }),
+            (None, None) => bail!(
+                "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part \
+                 this task is to render"
+            ),
         }
     }
 }
 
-pub(super) fn plan(flags: PlanFlags, line: &Line) -> Result<PlanOptions, CliError> {
+pub(super) fn plan(flags: PlanFlags, line: &Line) -> Result<PlanOptions> {
     let PlanFlags { picture, samples, parts, .. } = &flags;
-    if flags.out.to_str().is_none_or(|name| name.chars().any(char::is_control)) {
-        let path = flags.out.shown();
-        return Err(CliError::Refused(format!(
-            "--out is {path}, which cannot stand in a command: its name must be UTF-8 without control characters"
-        )));
-    }
+    ensure!(
+        flags.out.to_str().is_some_and(|name| !name.chars().any(char::is_control)),
+        "--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters",
+        flags.out.shown()
+    );
     let (mut chosen, job) = sources::picture(picture, samples, None)?;
-    let (work, count) = if flags.animation.check()?.is_some() {
+    let (work, count) = if flags.animation.is_given() {
         let Animation { frames, turntable, rate, .. } = flags.animation.of(&job, &chosen.recipe, picture)?;
         let work = Frames::new(&frames, turntable, rate, *parts);
         (work.map(Work::Frames), format!("{} frames", frames.len()))
     } else {
         let range = samples.sample_range.clone().unwrap_or(0..chosen.recipe.samples_per_pixel);
         chosen.recipe.samples_per_pixel = range.end;
-        let division = divide(range.clone(), *parts);
-        let work = division.map(|division| Work::Samples(Samples::new(&range, &division)));
-        (work, format!("{} samples per pixel", range.end - range.start))
+        let work = divide(range.clone(), *parts).map(|division| Samples::new(&range, &division));
+        (work.map(Work::Samples), format!("{} samples per pixel", range.end - range.start))
     };
-    let too_many =
-        || format!("--parts is {parts}, but there are {count} to divide; each part needs one at least");
-    let work = work.ok_or_else(|| CliError::Refused(too_many()))?;
+    let work = work.with_context(|| {
+        format!("--parts is {parts}, but there are {count} to divide; each part needs one at least")
+    })?;
     Ok(PlanOptions {
-        notes: sources::notes(&job, &chosen, picture, samples),
         flags: line.words(&[&backend::FLAGS[..], &["every"]].concat()),
         recipe: chosen.recipe,
         job,

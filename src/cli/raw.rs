@@ -1,11 +1,9 @@
 //! The flags of a picture, which rendering, planning and comparing share, and the values that several commands take.
 
 use super::values::{finite_number, parse_size, parse_vector, whole};
-use crate::job::output::PpmForm;
 use crate::job::recipe::Recipe;
 use crate::job::render::{DEPTH_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
-use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum, ValueHint};
 use glam::DVec3;
 
@@ -59,30 +57,10 @@ pub(super) struct CameraFlags {
     pub focus_distance: Option<f64>,
 }
 
-impl CameraFlags {
-    /// The flags that are given.
-    pub fn given(&self) -> Vec<&'static str> {
-        let flags = [
-            ("--look-from", self.look_from.is_some()),
-            ("--look-at", self.look_at.is_some()),
-            ("--vup", self.vup.is_some()),
-            ("--vfov", self.vfov.is_some()),
-            ("--defocus-angle", self.defocus_angle.is_some()),
-            ("--focus-distance", self.focus_distance.is_some()),
-        ];
-        flags.into_iter().filter_map(|(flag, is_given)| is_given.then_some(flag)).collect()
-    }
-}
-
 impl RawPicture {
     /// Whether any of these flags is given.
     pub fn is_given(&self) -> bool {
         *self != RawPicture::default()
-    }
-
-    /// Whether all stages are requested instead of one picture.
-    pub fn is_every_stage(&self) -> bool {
-        self.stage.as_deref() == Some("all")
     }
 }
 
@@ -98,32 +76,6 @@ pub enum DrawWith {
     Gl,
 }
 
-impl ValueEnum for SamplerKind {
-    fn value_variants<'a>() -> &'a [Self] {
-        &SamplerKind::ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.name()))
-    }
-}
-
-impl ValueEnum for PpmForm {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[PpmForm::Binary, PpmForm::Ascii]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(if *self == PpmForm::Binary { "binary" } else { "ascii" }))
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum RawSwitch {
-    On,
-    Off,
-}
-
 /// Whether progress is shown on standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProgressChoice {
@@ -136,7 +88,7 @@ pub enum ProgressChoice {
 }
 
 /// Replaces values of the recipe by those of the flags.
-pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<RawSwitch>) {
+pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<bool>) {
     fn set<T: Copy>(value: &mut T, flag: Option<T>) {
         *value = flag.unwrap_or(*value);
     }
@@ -146,7 +98,7 @@ pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Opti
     set(&mut settings.max_depth, raw.depth);
     set(&mut settings.sampler, raw.sampler);
     set(&mut settings.seed, raw.seed);
-    set(&mut settings.estimate_error, estimate_error.map(|switch| switch == RawSwitch::On));
+    set(&mut settings.estimate_error, estimate_error);
     set(&mut camera.look_from, flags.look_from);
     set(&mut camera.look_at, flags.look_at);
     set(&mut camera.vup, flags.vup);

@@ -1,13 +1,10 @@
 //! Rendering, in the window or to files.
 
-use super::animation::AnimationFlags;
-use super::error::CliError;
+use super::animation::{self, AnimationFlags};
 use super::raw::{DrawWith, ProgressChoice, RawPicture};
 use super::sources::{self, ChosenRecipe, SampleFlags};
-use super::values::{
-    JsonTarget, check_ending, json_target, parse_duration, parse_noise_target, parse_seconds,
-};
-use super::{Line, Paths, Request, backend};
+use super::values::{JsonTarget, file_ending, parse_duration, parse_noise_target, parse_seconds};
+use super::{Line, NamedPath, Request, backend};
 use crate::backends::BackendChoice;
 use crate::job::output::{OutputFormat, PpmForm};
 use crate::job::recipe::{Recipe, plain_name};
@@ -15,6 +12,7 @@ use crate::job::render::RenderJob;
 use crate::job::saved;
 use crate::progressive::{Plan, Stop};
 use crate::stages::Stage;
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -82,7 +80,8 @@ pub(super) struct FileFlags {
     ppm: Option<PpmForm>,
     /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
     /// existing file is never replaced, unless the render continues its film (--continue, --resume)
-    #[arg(long, value_name = "FILE.exr", requires = "batch", conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch",
+          conflicts_with = "AnimationFlags")]
     checkpoint: Option<PathBuf>,
     /// Continue the film of --checkpoint if it exists, so that one command starts a render and continues it
     #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume")]
@@ -92,13 +91,13 @@ pub(super) struct FileFlags {
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "checkpoint")]
     every: Duration,
     /// Continue a film; without --scene and --stage, with its own scene
-    #[arg(long, value_name = "FILE.exr", conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), conflicts_with = "AnimationFlags")]
     resume: Option<PathBuf>,
     /// Write the scene, with the changes of the other flags, as a scene file
     #[arg(long, value_name = "FILE.toml", conflicts_with = "AnimationFlags")]
     save_scene: Option<PathBuf>,
     /// Write the final figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", value_parser = json_target(), requires = "batch")]
+    #[arg(long, value_name = "FILE|-", requires = "batch")]
     pub json: Option<JsonTarget>,
 }
 
@@ -109,8 +108,8 @@ pub struct BatchOptions {
     pub renders: Vec<RenderOptions>,
     /// The directory for the pictures of all stages, which is created if necessary.
     pub directory: Option<PathBuf>,
-    /// A scene file to write as well.
-    pub save_scene: Option<SaveSceneOptions>,
+    /// A scene file to write as well, of the only picture.
+    pub save_scene: Option<PathBuf>,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<JsonTarget>,
@@ -174,27 +173,17 @@ pub struct RenderOptions {
     pub ppm: PpmForm,
     /// The command that renders it.
     pub command: String,
-    /// Warnings about flags that have no effect.
-    pub notes: Vec<String>,
-}
-
-/// A scene file to write.
-#[derive(Clone, Debug)]
-pub struct SaveSceneOptions {
-    /// Already validated.
-    pub recipe: Recipe,
-    pub path: PathBuf,
 }
 
 /// Validates the flags without a subcommand.
-pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
+pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request> {
     if flags.list {
         return Ok(Request::List);
     }
-    let files = &mut flags.files;
-    for (flag, path) in [("--checkpoint", &files.checkpoint), ("--resume", &files.resume)] {
-        path.as_ref().map_or(Ok(()), |path| check_ending(flag, path, "a film file", ".exr"))?;
+    if flags.animation.is_given() {
+        return Ok(Request::Frames(Box::new(animation::frames(flags, line)?)));
     }
+    let files = &mut flags.files;
     if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {
         files.resume.clone_from(&files.checkpoint);
     }
@@ -202,27 +191,25 @@ pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request, Cl
         (false, None) => Ok(Request::Window(Box::new(window(flags, line)?))),
         (false, Some(path)) => {
             check_paths(&flags, &[])?;
-            let recipe =
-                sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?.0.recipe;
-            Ok(Request::SaveScene(Box::new(SaveSceneOptions { recipe, path: path.clone() })))
+            let (chosen, _) =
+                sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
+            Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
         (true, _) => batch(flags, line),
     }
 }
 
-fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions, CliError> {
+fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
     let RenderFlags { picture, samples, stop, files, .. } = &flags;
-    if picture.is_every_stage() || samples.sample_range.is_some() {
-        let flag = if picture.is_every_stage() { "--stage all" } else { "--sample-range" };
-        let reason = "the window shows one picture, with buttons for the other stages";
-        return Err(CliError::Needs { flag, other: "--batch", reason });
-    }
+    ensure!(
+        samples.sample_range.is_none(),
+        "--sample-range needs --batch: the window renders all samples of its picture"
+    );
     let file = sources::scene_file(picture.scene.as_deref());
-    Paths::default()
-        .read("--scene", file)
-        .read("--resume", files.resume.as_deref())
-        .write("--frame-log", flags.frame_log.as_deref())
-        .check(&[])?;
+    super::check_paths(
+        &[("--scene", file), ("--resume", files.resume.as_deref())],
+        &[("--frame-log", flags.frame_log.as_deref())],
+    )?;
     let unchanged = sources::find(picture, files.resume.as_deref())?.recipe;
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
     if let Some(film) = &files.resume {
@@ -249,51 +236,52 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions, CliError> {
     })
 }
 
-fn batch(flags: RenderFlags, line: &Line) -> Result<Request, CliError> {
+fn batch(flags: RenderFlags, line: &Line) -> Result<Request> {
     let RenderFlags { picture, samples, files, .. } = &flags;
-    let (renders, directory) = if picture.is_every_stage() {
-        let directory = directory_of_all(files)?;
+    let (renders, directory) = if picture.stage.as_deref() == Some("all") {
+        ensure!(
+            files.checkpoint.is_none() && files.resume.is_none() && files.save_scene.is_none(),
+            "--stage all cannot be used with --checkpoint, --resume or --save-scene: these are for a single picture; \
+             choose one stage"
+        );
+        let reason = "--stage all needs --out DIR: it writes one picture for each stage";
+        let directory = files.out.clone().context(reason)?;
         let of_stage = |stage: &'static Stage| {
             let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
-            let (chosen, job) = sources::changed(chosen, picture, samples)?;
-            // Flags that one stage ignores may be needed by another, so there are no notes.
-            render(chosen, job, &flags, directory.join(format!("{}.png", stage.id)), line)
+            let chosen = sources::changed(chosen, picture, samples)?;
+            render(chosen, &flags, directory.join(format!("{}.png", stage.id)), line)
         };
-        (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>, _>>()?, Some(directory))
+        (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>>>()?, Some(directory))
     } else {
-        let (chosen, job) = sources::picture(picture, samples, files.resume.as_deref())?;
-        let notes = sources::notes(&job, &chosen, picture, samples);
-        let out = files.out.clone().unwrap_or_else(|| default_name(&chosen));
-        (vec![RenderOptions { notes, ..render(chosen, job, &flags, out, line)? }], None)
+        let chosen = sources::picture(picture, samples, files.resume.as_deref())?;
+        let name = chosen.0.stage.map_or(chosen.0.recipe.name.as_str(), |stage| stage.id);
+        let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
+        (vec![render(chosen, &flags, out, line)?], None)
     };
     check_paths(&flags, &renders)?;
-    let save_scene = files.save_scene.clone().zip(renders.first());
     Ok(Request::Batch(Box::new(BatchOptions {
-        save_scene: save_scene.map(|(path, only)| SaveSceneOptions { recipe: only.recipe.clone(), path }),
         renders,
         directory,
         backend: flags.backend,
         progress: flags.progress,
+        save_scene: flags.files.save_scene,
         json: flags.files.json,
         crashes_at: flags.simulate_crash,
     })))
 }
 
 fn render(
-    chosen: ChosenRecipe,
-    job: RenderJob,
+    (chosen, job): (ChosenRecipe, RenderJob),
     flags: &RenderFlags,
     out: PathBuf,
     line: &Line,
-) -> Result<RenderOptions, CliError> {
+) -> Result<RenderOptions> {
     let (files, format) = (&flags.files, OutputFormat::from_path(&out)?);
     if files.ppm.is_some() && format != OutputFormat::P6 {
-        let reason = "it is about how a PPM holds its numbers";
-        return Err(CliError::Needs { flag: "--ppm", other: "--out FILE.ppm", reason });
+        bail!("--ppm needs --out FILE.ppm: it is about how a PPM holds its numbers");
     }
     if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
-        let reason = "the error is estimated from the film's two halves";
-        return Err(CliError::Needs { flag: "--noise-target", other: "--estimate-error on", reason });
+        bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
     }
     Ok(RenderOptions {
         plan: plan(flags, &chosen.recipe),
@@ -306,21 +294,20 @@ fn render(
         resume: files.resume.clone(),
         ppm: files.ppm.unwrap_or_default(),
         command: line.command.clone(),
-        notes: Vec::new(),
     })
 }
 
-/// Refuses outputs that would replace each other or an input. A resumed film may be replaced by its continuation.
-fn check_paths(flags: &RenderFlags, renders: &[RenderOptions]) -> Result<(), CliError> {
+/// Refuses outputs that would replace each other or an input.
+fn check_paths(flags: &RenderFlags, renders: &[RenderOptions]) -> Result<()> {
     let files = &flags.files;
-    let paths = Paths::default()
-        .read("--scene", sources::scene_file(flags.picture.scene.as_deref()))
-        .read("--resume", files.resume.as_deref())
-        .write("--checkpoint", files.checkpoint.as_deref())
-        .write("--save-scene", files.save_scene.as_deref())
-        .write_json(files.json.as_ref());
-    let paths = renders.iter().fold(paths, |paths, render| paths.write("--out", Some(&render.out)));
-    paths.check(&[("--out", "--resume"), ("--checkpoint", "--resume")])
+    let scene = sources::scene_file(flags.picture.scene.as_deref());
+    let mut outputs: Vec<NamedPath> = vec![
+        ("--checkpoint", files.checkpoint.as_deref()),
+        ("--save-scene", files.save_scene.as_deref()),
+        ("--json", files.json.as_ref().and_then(JsonTarget::file)),
+    ];
+    outputs.extend(renders.iter().map(|render| ("--out", Some(render.out.as_path()))));
+    super::check_paths(&[("--scene", scene), ("--resume", files.resume.as_deref())], &outputs)
 }
 
 fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
@@ -332,25 +319,6 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
     };
     let stop = Stop { samples, seconds, noise };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
-}
-
-/// The directory of `--stage all`, which excludes the flags of a single film or scene.
-fn directory_of_all(files: &FileFlags) -> Result<PathBuf, CliError> {
-    if files.checkpoint.is_some() || files.resume.is_some() || files.save_scene.is_some() {
-        return Err(CliError::Together {
-            flag: "--stage all",
-            other: "--checkpoint, --resume or --save-scene",
-            reason: "these are for a single picture; choose one stage",
-        });
-    }
-    let reason = "it writes one picture for each stage";
-    files.out.clone().ok_or(CliError::Needs { flag: "--stage all", other: "--out DIR", reason })
-}
-
-/// `SCENE.png` in the current directory.
-fn default_name(chosen: &ChosenRecipe) -> PathBuf {
-    let name = chosen.stage.map_or(chosen.recipe.name.as_str(), |stage| stage.id);
-    PathBuf::from(format!("{}.png", plain_name(name)))
 }
 
 #[cfg(test)]

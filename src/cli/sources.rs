@@ -1,17 +1,16 @@
 //! Where a picture comes from (a built-in scene, a stage, a scene file or a film), with the changes of the flags.
 
-use super::error::CliError;
-use super::raw::{self, RawPicture, RawSwitch};
+use super::raw::{self, RawPicture};
 use super::values::{range, whole};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
 use crate::job::saved::Saved;
 use crate::stages::Stage;
+use anyhow::Result;
 use clap::Args;
+use clap::builder::BoolishValueParser;
 use std::ops::Range;
 use std::path::Path;
-
-pub(super) use super::values::check_ending;
 
 /// The scene that is rendered if none is named.
 pub const DEFAULT_SCENE: &str = "three-spheres";
@@ -29,8 +28,8 @@ pub(super) struct SampleFlags {
     pub sample_range: Option<Range<u64>>,
     /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
     /// [default: on, or the scene's]
-    #[arg(long, value_enum)]
-    pub estimate_error: Option<RawSwitch>,
+    #[arg(long, value_name = "on|off", value_parser = BoolishValueParser::new())]
+    pub estimate_error: Option<bool>,
 }
 
 /// A recipe and, if it comes from one, its stage.
@@ -46,7 +45,7 @@ pub(super) fn picture(
     raw: &RawPicture,
     samples: &SampleFlags,
     resume: Option<&Path>,
-) -> Result<(ChosenRecipe, RenderJob), CliError> {
+) -> Result<(ChosenRecipe, RenderJob)> {
     changed(find(raw, resume)?, raw, samples)
 }
 
@@ -55,7 +54,7 @@ pub(super) fn changed(
     mut chosen: ChosenRecipe,
     raw: &RawPicture,
     samples: &SampleFlags,
-) -> Result<(ChosenRecipe, RenderJob), CliError> {
+) -> Result<(ChosenRecipe, RenderJob)> {
     raw::change(&mut chosen.recipe, raw, samples.estimate_error);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
@@ -63,7 +62,7 @@ pub(super) fn changed(
 }
 
 /// The source that the flags name, before the changes of other flags.
-pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenRecipe, CliError> {
+pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenRecipe> {
     match (&raw.stage, &raw.scene, resume) {
         (Some(id), _, _) => {
             let stage = Stage::find(id)?;
@@ -78,24 +77,18 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenReci
     }
 }
 
+/// The example scene that is part of the program for use in reports.
+const NEAR_GLASS: &str = "near-glass";
+
 /// The scene with this name or in this file.
-pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
+pub(super) fn scene(name: &str) -> Result<Recipe> {
     match scene_file(Some(name)) {
         Some(path) => Ok(file::load(path)?),
-        None => Ok(Recipe::find(name)?),
+        None if name == NEAR_GLASS => {
+            Ok(file::parse(include_str!("../../assets/scenes/near-glass.toml"), NEAR_GLASS)?)
+        }
+        None => Recipe::find(name),
     }
-}
-
-/// The example scene `near-glass`, which is part of the program for use in reports.
-pub(super) const NEAR_GLASS: &str = "near-glass";
-
-/// A built-in scene, or [`NEAR_GLASS`].
-pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
-    if name != NEAR_GLASS {
-        return scene(name);
-    }
-    let recipe = file::parse(include_str!("../../assets/scenes/near-glass.toml"), NEAR_GLASS)?;
-    Ok(Recipe { name: name.to_owned(), ..recipe })
 }
 
 /// The scene file that `--scene` names, if it is one: the name has an extension or a directory.
@@ -110,71 +103,5 @@ pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
     if raw.size.is_none() && settings.width > width {
         let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
         (settings.width, settings.height) = (width, (height.round() as u32).max(1));
-    }
-}
-
-/// Warnings that name the flags without effect on the picture, each with the reason.
-pub(super) fn notes(
-    job: &RenderJob,
-    chosen: &ChosenRecipe,
-    raw: &RawPicture,
-    samples: &SampleFlags,
-) -> Vec<String> {
-    let (rules, what) = (job.rules(), chosen.stage.map_or("scene", |stage| stage.id));
-    let has_rays = rules.has_rays();
-    let has_bounces = has_rays && rules.has_bounces() && !job.scene().spheres.is_empty();
-    let has_lens = has_rays && job.camera().defocus_angle_degrees > 0.0;
-    let is_random =
-        has_rays && (rules.antialiasing || has_lens || has_bounces && job.settings().max_depth > 1);
-    let mut table: Vec<(&str, bool, &str)> =
-        raw.camera.given().into_iter().map(|flag| (flag, has_rays, "it traces no rays")).collect();
-    let lens = "its lens is a pinhole; add --defocus-angle";
-    let same = "all samples of a pixel are the same";
-    for (flag, is_given, has_effect, reason) in [
-        ("--focus-distance", raw.camera.focus_distance.is_some(), !has_rays || has_lens, lens),
-        ("--depth", raw.depth.is_some(), has_bounces, "its rays end where they first hit"),
-        ("--samples above 1", samples.samples.is_some_and(|samples| samples > 1), is_random, same),
-        ("--sampler", raw.sampler.is_some(), is_random, same),
-        ("--seed", raw.seed.is_some(), is_random, same),
-    ] {
-        table.extend(is_given.then_some((flag, has_effect, reason)));
-    }
-    let without = table.into_iter().filter(|(_, has_effect, _)| !has_effect);
-    without.map(|(flag, _, reason)| format!("{flag} has no effect on {what}: {reason}")).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::cli::{Request, parse};
-
-    #[test]
-    fn flags_without_effect_are_named_with_the_reason() {
-        let notes = |line: &str| match parse(format!("weekender --batch {line}").split(' ').map(Into::into)) {
-            Ok(Request::Batch(options)) => {
-                options.renders.into_iter().flat_map(|render| render.notes).collect()
-            }
-            Ok(Request::Frames(options)) => options.notes,
-            other => panic!("{other:?}"),
-        };
-        for (line, flags) in [
-            (
-                "--stage ppm-tiny --size 9x9 --samples 7 --depth 3 --look-from 1,2,3",
-                &["--look-from", "--depth", "--samples above 1"][..],
-            ),
-            ("--stage ppm-gradient --turntable=2 --vfov 30 --out d", &["--vfov"]),
-            ("--stage normals --samples 8 --depth 3 --seed 4", &["--depth", "--samples above 1", "--seed"]),
-            ("--stage sky --depth 9", &["--depth"]),
-            ("--scene three-spheres --focus-distance 2", &["--focus-distance"]),
-            ("--stage ppm-tiny --samples 1", &[]),
-            ("--stage sky --look-from 1,2,3 --defocus-angle 2 --focus-distance 3 --samples 9", &[]),
-            ("--stage antialiased --samples 9 --seed 3 --sampler independent", &[]),
-            ("--stage all --depth 3 --samples 9 --out d", &[]),
-        ] {
-            let notes: Vec<String> = notes(line);
-            assert_eq!(notes.len(), flags.len(), "{line}: {notes:?}");
-            for (note, flag) in notes.iter().zip(flags) {
-                assert!(note.starts_with(flag) && note.contains(" has no effect on "), "{line}: {note}");
-            }
-        }
     }
 }

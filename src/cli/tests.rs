@@ -99,7 +99,7 @@ fn a_plan_has_its_format_its_flags_and_its_frames() {
         ("--parts 2 --turntable=2deg", "--frames"),
         ("--parts 2 --turntable=9 --every 5s", "--every"),
         ("--parts 2 --turntable=9 --sample-range 4..8", "--sample-range"),
-        ("--parts 2 --fps 9", "--fps needs --frames"),
+        ("--parts 2 --fps 9", "--frames"),
         ("--parts 2 --stage all", "all"),
     ] {
         let error = refused(&format!("plan --out no-such-plan {flags}"));
@@ -144,7 +144,11 @@ fn diff_takes_sides_and_place_from_flags() {
     let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
     let flags = "--pixel 0,0 --sides gpu,portable --adapter some";
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
-    assert_eq!(compared(flags).sides, [gpu, cpu(Some(Isa::Portable))]);
+    assert_eq!(compared(flags).sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
+    assert_eq!(compared("--pixel 0,0 --sides cpu,cpu --isa portable").sides[0], cpu(Some(Isa::Portable)));
+    for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
+        assert!(refused(&format!("diff --find --sides {sides}")).contains("reference"), "{sides}");
+    }
     let given = |x, y, sample| PathChoice::Given { pixel: [x, y], sample };
     for (flags, width, path) in [
         ("--pixel 19,9 --sample 7 --size 20x10", 20, given(19, 9, 7)),
@@ -162,11 +166,4 @@ fn diff_takes_sides_and_place_from_flags() {
         let error = refused(&format!("diff --sides portable,reference {flags}"));
         assert!(error.contains(part), "{error}");
     }
-}
-
-#[test]
-fn a_report_has_the_reference_that_is_given() {
-    let line = "report --out no-such --backends portable --scenes metals --reference no-such.exr";
-    let Ok(Request::Report(options)) = request(line) else { panic!("no report") };
-    assert_eq!(options.reference().unwrap(), ReferenceChoice::File(PathBuf::from("no-such.exr")));
 }

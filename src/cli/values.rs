@@ -1,16 +1,16 @@
 //! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
-use super::error::CliError;
-use crate::backends::BackendError;
+use crate::backends::BackendChoice;
 use crate::film::ROUNDING_LIMIT;
 use crate::job::output::FrameRate;
 use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
-use crate::system::files::ShownPath;
+use anyhow::{Context, Result};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -26,27 +26,25 @@ pub enum JsonTarget {
     File(PathBuf),
 }
 
-impl From<PathBuf> for JsonTarget {
-    fn from(path: PathBuf) -> Self {
-        if path == Path::new("-") { JsonTarget::StandardOutput } else { JsonTarget::File(path) }
+impl JsonTarget {
+    pub fn file(&self) -> Option<&Path> {
+        if let JsonTarget::File(path) = self { Some(path) } else { None }
     }
 }
 
-/// A parser of [`JsonTarget`].
-pub(super) fn json_target() -> impl TypedValueParser<Value = JsonTarget> {
-    PathBufValueParser::new().map(JsonTarget::from)
+impl From<OsString> for JsonTarget {
+    fn from(text: OsString) -> Self {
+        if text == "-" { JsonTarget::StandardOutput } else { JsonTarget::File(text.into()) }
+    }
 }
 
-/// Returns an error unless the file name ends in `ending`, with the dot, in upper or lower case.
-pub(super) fn check_ending(
-    flag: &'static str,
-    path: &Path,
-    what: &'static str,
-    ending: &'static str,
-) -> Result<(), CliError> {
-    let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
-    let message = || format!("{flag} is {}, but the name of {what} must end in {ending}", path.shown());
-    if is_so { Ok(()) } else { Err(CliError::Refused(message())) }
+/// A parser of file names that end in `ending`, with the dot, in upper or lower case.
+pub(super) fn file_ending(ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| {
+        let own = path.extension().unwrap_or_default();
+        let is_so = own.eq_ignore_ascii_case(ending.trim_start_matches('.'));
+        if is_so { Ok(path) } else { Err(format!("its name must end in {ending}")) }
+    })
 }
 
 /// Number of lanes; `None` leaves the choice to the backend.
@@ -82,36 +80,15 @@ fn level_named(name: &str) -> Option<Isa> {
     Isa::ALL.into_iter().find(|isa| isa.name() == name)
 }
 
-/// Instruction levels.
+/// Instruction levels of this processor, the least capable first; `None` leaves the choice to the command.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Levels {
-    Auto,
-    /// All that the processor has.
-    All,
-    /// These, the least capable first.
-    Named(Vec<Isa>),
-}
-
-impl Levels {
-    /// Resolves the levels; `auto` chooses among those of this processor, the most capable last.
-    pub fn available(&self, auto: impl FnOnce(&[Isa]) -> Vec<Isa>) -> Result<Vec<Isa>, CliError> {
-        let available = Isa::available();
-        let levels = match self {
-            Levels::Auto => auto(&available),
-            Levels::All => available.clone(),
-            Levels::Named(levels) => levels.clone(),
-        };
-        match levels.iter().copied().find(|isa| !available.contains(isa)) {
-            Some(isa) => Err(BackendError::Cpu(CpuError::Isa { isa, available }).into()),
-            None => Ok(levels),
-        }
-    }
-}
+pub(super) struct Levels(pub Option<Vec<Isa>>);
 
 pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
+    let available = Isa::available();
     match text {
-        "auto" => return Ok(Levels::Auto),
-        "all" => return Ok(Levels::All),
+        "auto" => return Ok(Levels(None)),
+        "all" => return Ok(Levels(Some(available))),
         _ => {}
     }
     let named: Option<Vec<Isa>> = text.split(',').map(|name| level_named(name.trim())).collect();
@@ -121,7 +98,10 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
     })?;
     named.sort_unstable();
     named.dedup();
-    Ok(Levels::Named(named))
+    match named.iter().find(|isa| !available.contains(isa)) {
+        Some(isa) => Err(CpuError::Isa { isa: *isa, available }.to_string()),
+        None => Ok(Levels(Some(named))),
+    }
 }
 
 /// Numbers of spheres from `A` to `B`: `A` times powers of ten, and three times these.
@@ -237,29 +217,10 @@ where
     }
 }
 
-/// A backend that traces a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RawSide {
-    Cpu,
-    Portable,
-    Reference,
-    Gpu,
-}
-
-impl RawSide {
-    const ALL: [(&'static str, RawSide); 4] = [
-        ("cpu", RawSide::Cpu),
-        ("portable", RawSide::Portable),
-        ("reference", RawSide::Reference),
-        ("gpu", RawSide::Gpu),
-    ];
-}
-
-pub(super) fn parse_sides(text: &str) -> Result<[RawSide; 2], String> {
-    let side = |name: &str| RawSide::ALL.into_iter().find(|(known, _)| *known == name.trim()).map(|(_, s)| s);
-    text.split_once(',').and_then(|(a, b)| Some([side(a)?, side(b)?])).ok_or_else(|| {
-        let names = RawSide::ALL.map(|(name, _)| name).join(", ");
-        format!("must be two of {names} separated by a comma, such as cpu,reference")
+/// The backend of this name, one of [`BackendChoice::NAMES`].
+pub(super) fn backend_named(name: &str, adapter: Option<&str>) -> Result<BackendChoice> {
+    BackendChoice::named(name, adapter).with_context(|| {
+        format!("there is no backend {name:?}; choose among {}", BackendChoice::NAMES.join(", "))
     })
 }
 

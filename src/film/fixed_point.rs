@@ -15,7 +15,8 @@ pub const RADIANCE_LIMIT: f64 = 128.0;
 pub const FIXED_POINT_MAX: u32 = 2_147_483_520;
 
 /// Sums of one pixel in units of `2^-24`, RGB.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct PixelSum(pub [u64; 3]);
 
 impl PixelSum {

@@ -17,7 +17,7 @@ pub struct Histogram {
     /// Counts per bin, red, green and blue, from dark to bright. Darker and brighter values are in the outer bins.
     pub bins: [Vec<u32>; 3],
     pub pixels: u32,
-    /// Pixels with a channel at or above white.
+    /// Pixels with a channel above white.
     pub clipped: u32,
     /// The largest value of any channel.
     pub largest: f64,
@@ -38,7 +38,7 @@ impl Histogram {
                 bins[bin(value)] += 1;
             }
             let brightest = mean.into_iter().fold(0.0, f64::max);
-            clipped += u32::from(brightest >= white);
+            clipped += u32::from(brightest > white);
             largest = largest.max(brightest);
         }
         Histogram { bins, pixels, clipped, largest }
@@ -85,7 +85,8 @@ mod tests {
         let at = |channel: usize, value: f64| histogram.bins[channel][bin(value)];
         assert_eq!([at(0, 1.0), at(1, 2.0), at(1, 0.0), at(2, 0.25)], [2, 1, 1, 2]);
         assert!(histogram.bins.iter().all(|bins| bins.iter().sum::<u32>() == 2));
-        assert_eq!((histogram.pixels, histogram.clipped, histogram.largest), (2, 1, 2.0));
-        assert_eq!([0.5, 2.1].map(|white| Histogram::of(&film, white).clipped), [2, 0]);
+        assert_eq!((histogram.pixels, histogram.clipped, histogram.largest), (2, 0, 2.0));
+        let clipped = |white: f64| Histogram::of(&film, white).clipped;
+        assert_eq!([0.5, 1.0, 1.99].map(clipped), [2, 1, 1], "white itself loses nothing");
     }
 }

@@ -70,7 +70,7 @@ impl Film {
         let what = || format!("a film of {width}x{height} pixels");
         memory::check(what, Film::bytes(width, height, half_count), SMALLER_FILM)?;
         let pixels = width as usize * height as usize;
-        let half = |_| memory::filled(pixels, PixelSum::default(), what, SMALLER_FILM);
+        let half = |_| memory::zeroed::<PixelSum>(pixels, what, SMALLER_FILM);
         let halves = (0..half_count).map(half).collect::<Result<_, _>>()?;
         Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
     }

@@ -7,4 +7,5 @@ pub mod compare;
 pub mod diff;
 mod picture;
 
+pub use answer::check_outputs;
 pub use picture::Picture;

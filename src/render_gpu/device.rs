@@ -111,9 +111,6 @@ const LOOK: Duration = Duration::from_millis(20);
 /// How long the device does not respond during an injected fault.
 const INJECTED_SILENCE: Duration = Duration::from_secs(10);
 
-/// Number of buffers of the largest size that an injected fault allocates: no device has that much memory.
-const INJECTED_BUFFERS: usize = 4096;
-
 impl Gpu {
     /// Opens the first adapter whose name, backend or driver contains `wanted` (ignoring case), or the best adapter if
     /// `wanted` is `None`. Software adapters are opened only if `allow_software` is set.
@@ -229,7 +226,6 @@ impl Gpu {
     pub fn break_by(&self, fault: Fault) {
         match fault {
             Fault::Lost => self.device.destroy(),
-            Fault::OutOfMemory => self.use_up_memory(),
             Fault::Hang => self.silence().simulated_until = Some(Instant::now() + INJECTED_SILENCE),
             // The dispatch code injects these faults.
             Fault::Short | Fault::AlwaysShort => {}
@@ -243,20 +239,6 @@ impl Gpu {
                 });
                 self.queue.write_buffer(&small, 16, &[0; 16]);
             }
-        }
-    }
-
-    /// Allocates buffers until an allocation fails.
-    fn use_up_memory(&self) {
-        let size = self.adapter.buffer_limit / 16 * 16;
-        let mut taken = Vec::new();
-        while self.faults.check().is_ok() && taken.len() < INJECTED_BUFFERS {
-            taken.push(self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("injection"),
-                size,
-                usage: wgpu::BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            }));
         }
     }
 

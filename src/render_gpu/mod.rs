@@ -8,7 +8,6 @@ mod adapter;
 mod arrival;
 mod device;
 mod dispatches;
-mod exported;
 mod film_buffers;
 mod kernel;
 pub mod layout;
@@ -21,15 +20,13 @@ mod schedule;
 pub mod shader_source;
 mod small_programs;
 mod trace;
-mod turns;
 
 pub use adapter::{AdapterInfo, adapters};
-pub use exported::Exported;
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
     InjectionPoint,
 };
-pub use turns::TURN_LIMIT;
+pub use scene::{Exported, TURN_LIMIT};
 
 use crate::film::Film;
 use crate::job::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};

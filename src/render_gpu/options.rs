@@ -46,9 +46,7 @@ impl HierarchyKind {
 pub enum Fault {
     /// The device is lost: it was unplugged or reset, or its driver was.
     Lost,
-    /// The device is out of memory.
-    OutOfMemory,
-    /// The device received an invalid request, because of an error in this program or in the driver.
+    /// The device reports an error: it is out of memory, or it received an invalid request.
     Invalid,
     /// The device does not respond for 10 s.
     Hang,

@@ -1,11 +1,14 @@
-//! A scene's spheres, shading records and hierarchy, in the order in which the kernel reads them.
+//! A scene's spheres, shading records and hierarchy, in the order in which the kernel reads them, for this host and for
+//! others, such as a web page.
 
 use super::HierarchyKind;
 use super::layout::{GpuCwbvhNode, GpuJob};
 use crate::job::render::RenderJob;
-use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, RECORD_COLUMNS, words_of};
+use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use crate::prepared::wide_bvh::WideBvh;
+use crate::stages::SurfaceRule;
+use glam::DVec3;
 use std::borrow::Cow;
 
 /// The contents of a scene's buffers.
@@ -94,10 +97,65 @@ impl SceneData {
     }
 }
 
+/// Loop turns that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
+/// thread puts its path aside, and the next dispatch continues it.
+///
+/// This is half of the smallest limit known. llvmpipe ends every loop once the loops of a thread have taken 65,535
+/// turns together; it runs 8 threads in step, and turns that two of them take count twice.
+pub const TURN_LIMIT: u32 = 1 << 15;
+
+/// Loop turns over lists for one ray. Twin: `turns_over_lists` in shaders/path.wgsl.
+pub fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
+    let is_in_hierarchy = features.hierarchy && features.surface == SurfaceRule::Exact;
+    let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
+    (prepared.anchored.len() + listed) as u64
+}
+
+/// The contents of a job's buffers, and what a host must know to run its kernel.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// What the kernel must support. The host decides `aside`, which depends on its limit on loop turns.
+    pub features: Features,
+    /// The bytes of the buffers of group 0, by binding: see shaders/bindings.wgsl.
+    pub buffers: [Vec<u8>; 5],
+    /// The index in the scene of each shading record's sphere.
+    pub scene_index: Vec<u32>,
+    /// Loop turns over lists for one ray.
+    pub turns_over_lists: u64,
+    /// Most samples in a block: a power of two.
+    pub block_limit: u32,
+    /// The origin of the buffers' coordinates, in scene coordinates.
+    pub origin: DVec3,
+}
+
+impl Exported {
+    /// Prepares a job with the compressed hierarchy if it needs one.
+    ///
+    /// # Errors
+    /// If the hierarchy has more levels than a traversal supports.
+    pub fn new(job: &RenderJob) -> Result<Self, String> {
+        let prepared = PreparedScene::<f32>::new(job);
+        let kind = HierarchyKind::Compressed;
+        let data = SceneData::new(job, &prepared, kind)?;
+        let features = kind.in_features(prepared.features);
+        Ok(Exported {
+            features,
+            buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
+            turns_over_lists: turns_over_lists(&features, &prepared),
+            block_limit: prepared.block_limit,
+            origin: prepared.origin,
+            scene_index: data.scene_index,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::job::recipe::Recipe;
+    use crate::job::render::RenderSettings;
+    use crate::scene::{Camera, Material, Scene};
+    use crate::stages::Rules;
 
     #[test]
     fn each_sphere_has_its_record_and_its_rank() {
@@ -148,5 +206,58 @@ mod tests {
             let has_nodes = prepared.hierarchy.is_some();
             assert_eq!((data.node_count > 0, data.nodes.len() > 1), (has_nodes, has_nodes), "{name}");
         }
+    }
+
+    #[test]
+    fn a_ray_tests_all_spheres_that_are_in_no_hierarchy() {
+        let turns = |name: &str, surface: SurfaceRule| {
+            let mut recipe = Recipe::find(name).unwrap();
+            recipe.rules = Rules { surface, ..recipe.rules };
+            let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
+            let listed = prepared.opaque.len() + prepared.two_root.len();
+            let turns = turns_over_lists(&prepared.features, &prepared) as usize;
+            (turns - prepared.anchored.len(), listed)
+        };
+        assert_eq!(turns("field:60", SurfaceRule::Exact).0, 0);
+        for (name, surface) in [("three-spheres", SurfaceRule::Exact), ("field:60", SurfaceRule::Book)] {
+            let (turns, listed) = turns(name, surface);
+            assert!(turns == listed && listed > 3, "{name}: {turns} {listed}");
+        }
+    }
+
+    #[test]
+    fn the_buffers_are_relative_to_the_origin() {
+        for away in [DVec3::ZERO, DVec3::new(4096.0, 0.0, -65_536.0)] {
+            let mut scene = Scene::default();
+            let matte = scene.add_material("matte", Material::Lambertian { albedo: DVec3::splat(0.5) });
+            for x in [-1.5, 0.0, 1.5] {
+                scene.add_sphere(away + DVec3::new(x, 0.0, -1.0), 0.5, matte);
+            }
+            let book = Camera::BOOK;
+            let camera = Camera { look_from: away + book.look_from, look_at: away + book.look_at, ..book };
+            let job = RenderJob::new(scene, camera, RenderSettings::default(), Rules::default()).unwrap();
+            let exported = Exported::new(&job).unwrap();
+            assert_eq!(exported.origin == DVec3::ZERO, away == DVec3::ZERO, "{}", exported.origin);
+            let rows: Vec<[f32; 4]> =
+                exported.buffers[1].chunks_exact(16).map(bytemuck::pod_read_unaligned).collect();
+            assert_eq!(rows.len(), 3);
+            for ([x, y, z, _], index) in rows.into_iter().zip(&exported.scene_index) {
+                let center = exported.origin + DVec3::from([x, y, z].map(f64::from));
+                assert_eq!(center, job.scene().spheres[*index as usize].center);
+            }
+        }
+    }
+
+    #[test]
+    fn a_host_is_told_what_its_kernel_needs() {
+        let job = Recipe::find("field:60").unwrap().job().unwrap();
+        let prepared = PreparedScene::<f32>::new(&job);
+        let exported = Exported::new(&job).unwrap();
+        assert!(exported.features.hierarchy && exported.features.cwbvh, "{:?}", exported.features);
+        assert_eq!(exported.turns_over_lists, prepared.anchored.len() as u64);
+        assert_eq!(exported.block_limit, prepared.block_limit);
+        let mut indices = exported.scene_index;
+        indices.sort_unstable();
+        assert!(indices.into_iter().eq(0..job.scene().spheres.len() as u32));
     }
 }

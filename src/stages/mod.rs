@@ -38,7 +38,7 @@ pub struct Stage {
     pub sight: Sight,
     /// Description for those who cannot see the picture.
     pub alt: &'static str,
-    /// The stage that the wipe compares with by default.
+    /// The stage to compare with: the same scene, but another picture.
     pub pair: Option<&'static str>,
     pub setup: Setup,
 }
@@ -68,12 +68,23 @@ impl Stage {
         })
     }
 
-    pub fn next(&self) -> Option<&'static Stage> {
-        Self::ALL.get(self.index() + 1)
+    /// The stages of the book, without the scene that only serves for measuring.
+    pub fn walk() -> impl DoubleEndedIterator<Item = &'static Stage> {
+        Self::ALL.iter().filter(|stage| stage.is_in_book())
     }
 
+    pub fn is_in_book(&self) -> bool {
+        self.id != "three-spheres"
+    }
+
+    /// The next stage of the book.
+    pub fn next(&self) -> Option<&'static Stage> {
+        Self::walk().find(|stage| stage.index() > self.index())
+    }
+
+    /// The stage of the book before this one.
     pub fn previous(&self) -> Option<&'static Stage> {
-        Self::ALL.get(self.index().checked_sub(1)?)
+        Self::walk().rev().find(|stage| stage.index() < self.index())
     }
 
     /// Index in [`Stage::ALL`].

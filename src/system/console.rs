@@ -8,11 +8,7 @@ use std::io::{self, Write};
 
 /// Prints lines to standard error, without control characters. Failures are ignored.
 pub fn note(text: &str) {
-    note_painted(&(harmless(text.trim_end_matches('\n')) + "\n"));
-}
-
-/// As [`note`], for text that may contain the program's own colours and ends its own lines.
-pub fn note_painted(text: &str) {
+    let text = harmless(text.trim_end_matches('\n')) + "\n";
     let mut stderr = io::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }

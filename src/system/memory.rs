@@ -57,27 +57,23 @@ fn check_against(
     Ok(())
 }
 
-/// `count` copies of `value`.
+/// `count` zeros. The system provides each page when it is first written to, so this takes no time.
 ///
 /// # Errors
 /// [`MemoryError`] with this `remedy` if they do not fit.
-pub fn filled<T: Clone>(
+pub fn zeroed<T: bytemuck::Zeroable>(
     count: usize,
-    value: T,
     what: impl Fn() -> String,
     remedy: &'static str,
 ) -> Result<Vec<T>, MemoryError> {
     let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
     check(&what, bytes, remedy)?;
-    let mut items = Vec::new();
-    items.try_reserve_exact(count).map_err(|_| MemoryError {
+    bytemuck::allocation::try_zeroed_vec(count).map_err(|()| MemoryError {
         what: what(),
         needed_bytes: bytes,
         free_bytes: free_bytes().unwrap_or(0),
         remedy,
-    })?;
-    items.resize(count, value);
-    Ok(items)
+    })
 }
 
 /// Available bytes: the least of what the system and the limits of the process's control groups allow. `None` if the
@@ -128,8 +124,8 @@ mod tests {
         assert_eq!(check(rest, 9 << 30), Ok(()));
         assert!(check(rest + 1, 9 << 30).is_err(), "the program needs the rest");
 
-        let fill = |count: usize| filled(count, 7_u64, || "a list".to_owned(), "make it shorter");
-        assert_eq!(fill(3).unwrap(), [7; 3]);
+        let fill = |count: usize| zeroed::<u64>(count, || "a list".to_owned(), "make it shorter");
+        assert_eq!(fill(3).unwrap(), [0; 3]);
         for count in [1 << 50, usize::MAX] {
             let message = fill(count).unwrap_err().to_string();
             assert!(message.starts_with("a list needs") && message.ends_with("make it shorter"), "{message}");

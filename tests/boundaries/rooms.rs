@@ -17,7 +17,7 @@ progressive: numbers scene stages film job backends
 cli: system numbers scene stages film job render_cpu render_gpu backends progressive
 batch: system scene stages film job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
-measure: system numbers scene stages film job kernel prepared render_cpu render_gpu backends progressive cli
+measure: system numbers scene stages film job kernel prepared render_cpu render_gpu backends progressive cli pictures
 page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch measure
 app: system numbers scene stages film job prepared render_cpu render_gpu backends progressive cli pictures measure page";
 
@@ -35,7 +35,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("libm", &["numbers", "scene"]),
     ("image", &["numbers", "job", "pictures"]),
     ("indicatif", &["cli", "measure"]),
-    ("maud", &["measure", "page"]),
+    ("maud", &["page"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
     ("env_filter", &["system"]),

@@ -104,17 +104,12 @@ fn every_format_is_read() {
     assert_eq!(read(b"P3 1 1 1 0 1 1").bytes, [[0, 255, 255]]);
     assert_eq!(read(b"P3 1 1 65535 0 32768 65535").bytes, [[0, 127, 255]]);
     assert_eq!(read(b"P3 1 1 100 50 99 -7").bytes, [[127, 252, 0]]);
-    let png = |alpha: fn(u32) -> u8| {
-        let image =
-            image::RgbaImage::from_fn(16, 9, |x, y| image::Rgba([7, x as u8, 250 + y as u8 % 6, alpha(x)]));
-        let mut file = std::io::Cursor::new(Vec::new());
-        image.write_to(&mut file, image::ImageFormat::Png).unwrap();
-        read(file.get_ref())
-    };
-    let opaque = png(|_| 255);
-    assert_eq!((opaque.bytes[5 * 16 + 3], opaque.damages.len(), opaque.format), ([7, 3, 255], 0, "PNG"));
-    let some = png(|x| if x < 2 { 200 } else { 255 });
-    assert!(some.damages[0].title.starts_with("18 pixels are transparent"), "{:?}", some.damages);
+    let image =
+        image::RgbaImage::from_fn(16, 9, |x, y| image::Rgba([7, x as u8, 250 + y as u8 % 6, x as u8]));
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut file, image::ImageFormat::Png).unwrap();
+    let png = read(file.get_ref());
+    assert_eq!((png.bytes[5 * 16 + 3], png.format), ([7, 3, 255], "PNG"), "alpha is ignored");
 }
 
 #[test]
@@ -126,7 +121,6 @@ fn damage_is_repaired_and_reported() {
     let marked = [b"\xEF\xBB\xBF", P3.as_bytes()].concat();
     let with_messages = P3.replace("255\n0", "255\nScanlines remaining: 1\n0");
     let too_large = P3.replace("255\n0 1 2", "255\n-5 1 2").replace("253", "256");
-    let cr_lf = b"P6\r\n2 1\r\n255\r\n\x00\x01\r\n\xFD\xFE\xFF".to_vec();
     for (file, word) in [
         (utf_16, "UTF-16"),
         (utf_16_be, "UTF-16"),
@@ -138,7 +132,6 @@ fn damage_is_repaired_and_reported() {
         (P3.replace("0 1 2", "0 1.5 2").into_bytes(), "1 values are not whole"),
         (too_large.into_bytes(), "2 numbers"),
         (format!("{P3} 7").into_bytes(), "7 numbers"),
-        (cr_lf, "byte 10"),
     ] {
         let mine = Mine::decode(&file).unwrap();
         let [damage] = mine.damages.as_slice() else { panic!("{word}: {:?}", mine.damages) };
@@ -150,6 +143,7 @@ fn damage_is_repaired_and_reported() {
         (b"P3 2 2 255 0 0 0", "12 numbers"),
         (b"P3", "header"),
         (b"P6 2 1 255\n12", "binary mode"),
+        (b"P6\r\n2 1\r\n255\r\n\x00", "binary mode"),
         (b"P3 0 5 255", "0 x 5"),
         (b"P3 99999 99999 255", "4000000"),
         (b"P6 99999 99999 255\n", "99999x99999"),

@@ -68,11 +68,9 @@ fn films_are_read_and_written_where_no_thread_starts() {
     for (range, name) in [("0..4", "a.exr"), ("4..8", "b.exr"), ("0..8", "whole.exr")] {
         succeeds(&mut batch(at, "off", &["--sample-range", range, "--out", name]));
     }
-    for arguments in [
-        &["merge", "a.exr", "b.exr", "--out", "sum.exr"][..],
-        &["merge", "--check", "a.exr", "b.exr"],
-        &["compare", "sum.exr", "whole.exr"],
-    ] {
+    for arguments in
+        [&["merge", "a.exr", "b.exr", "--out", "sum.exr"][..], &["compare", "sum.exr", "whole.exr"]]
+    {
         succeeds(weekender(at, arguments).env("RUST_MIN_STACK", (1_u64 << 50).to_string()));
     }
     assert!(film(&at.join("sum.exr")) == film(&at.join("whole.exr")));

@@ -33,7 +33,6 @@ fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
     let prepared = PreparedScene::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
     assert!(prepared.hierarchy.is_some(), "there is a hierarchy");
-    assert_eq!(prepared.validate(job), Ok(()));
     trace_tables(&prepared, &mut boxed, 0..samples);
     trace_tables(&PreparedScene::as_list(job), &mut listed, 0..samples);
     assert_eq!(listed, boxed, "list and hierarchy");

@@ -40,7 +40,7 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     // Planning again repeats what it divides.
     let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "3"]].concat();
     let message = ends(at, 0, &again).1;
-    assert!(message.contains("3 parts of 2 to 3 frames"), "{message}");
+    assert!(message.contains("3 parts of at most 3 frames"), "{message}");
     for line in lines.lines().rev() {
         let words = shlex::split(line).unwrap();
         assert_eq!(words[1], "render-part");
@@ -64,7 +64,7 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     let info: Value = serde_json::from_str(&succeeds(at, &["info", "p", "--json"])).unwrap();
     assert_eq!((&info["frames"], &info["parts"]), (&"0..7".into(), &3.into()));
     assert_eq!(info["samples_per_pixel"], 4);
-    assert!(succeeds(at, &["info", "p"]).contains("4 per pixel of the frames 0..7 in 3 parts"));
+    assert!(succeeds(at, &["info", "p"]).contains("4 per pixel, frames 0..7, 3 parts"));
 }
 
 #[test]

@@ -47,7 +47,7 @@ fn files_say_what_they_are() {
         "film     a b.exr",
         "version 4",
         "three-spheres, 32x18",
-        "4 per pixel (0..4)",
+        "4 per pixel, samples 0..4",
         "RMSE",
         "program  Weekender",
     ] {

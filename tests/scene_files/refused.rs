@@ -124,17 +124,17 @@ fn bad_cameras_are_refused() {
 #[test]
 fn bad_settings_are_refused() {
     for (table, line, expected) in [
-        ("render", "width = 0", "width is 0, but must be within 1 and 16384; give pixels"),
-        ("render", "height = 100000", "height is 100000, but must be within 1 and 16384"),
-        ("render", "width = -5", "width is -5"),
-        ("render", "width = 99999999999", "width is 99999999999"),
+        ("render", "width = 0", "0 is not within 1 and 16384 in `render.width`"),
+        ("render", "height = 100000", "100000 is not within 1 and 16384"),
+        ("render", "width = -5", "-5 is not within"),
+        ("render", "width = 99999999999", "99999999999 is not within"),
         ("render", "width = 40.5", "expected a whole number in `render.width`"),
         ("render", "width = \"8\"", "expected a whole number in `render.width`"),
         ("render", "max_depth = 99999999999999999999", "expected a whole number in `render.max_depth`"),
-        ("render", "samples_per_pixel = 0", "samples_per_pixel is 0, but must be within 1 and 4294967296"),
-        ("render", "samples_per_pixel = 4294967297", "samples_per_pixel is 4294967297"),
-        ("render", "max_depth = 10001", "max_depth is 10001, but must be within 1 and 10000"),
-        ("render", "seed = -1", "seed is -1, but must be within 0 and 4294967295"),
+        ("render", "samples_per_pixel = 0", "0 is not within 1 and 4294967296 in `render.samples_per_pixel`"),
+        ("render", "samples_per_pixel = 4294967297", "4294967297 is not within"),
+        ("render", "max_depth = 10001", "10001 is not within 1 and 10000"),
+        ("render", "seed = -1", "-1 is not within 0 and 4294967295"),
         ("render", "sampler = \"random\"", "`sobol`"),
         ("render", "samples = 3", "unknown key `samples`"),
         ("render", "estimate_error = 1", "expected a boolean"),
@@ -187,9 +187,9 @@ fn files_that_cannot_be_read_are_refused() {
     let binary = folder.path().join("binary.toml");
     let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (bytes, part) in [
-        (b"[camera]\nlook_from = [0,\xff\xfe".to_vec(), "binary.toml:2:16: this is not UTF-8 text"),
-        ([b"\xff\xfe".to_vec(), wide.clone()].concat(), "binary.toml:1:1: this is not UTF-8 text"),
-        (wide, "binary.toml:1:"),
+        (b"[camera]\nlook_from = [0,\xff\xfe".to_vec(), "it is not UTF-8 text"),
+        ([b"\xff\xfe".to_vec(), wide.clone()].concat(), "it is not UTF-8 text"),
+        (wide, "binary.toml"),
     ] {
         std::fs::write(&binary, bytes).expect("written");
         assert!(message(&binary).contains(part), "{part}: {}", message(&binary));

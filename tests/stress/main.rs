@@ -81,7 +81,7 @@ fn program_writes_table_json_and_pictures() {
     assert_eq!(output.status.code(), Some(i32::from(!are_right)), "{text}");
     assert_eq!(cases[0]["id"], "shells/1");
     assert_eq!(cases[0]["measured"][0]["mean"], 0.5);
-    for name in ["index.html", "table.md", "shells-1-ours.png", "shells-1-book.png"] {
+    for name in ["table.md", "shells-1-ours.png", "shells-1-book.png"] {
         assert!(out.join(name).exists(), "{name}");
     }
 }

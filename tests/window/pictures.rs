@@ -1,13 +1,12 @@
 //! The README's pictures of the window. `cargo test --release --test window pictures -- --ignored` takes them anew.
 
-use crate::common::{choose_from_menu, control, drag_from, has_samples, until, window};
+use crate::common::{control, drag_from, has_samples, until, window};
 use crate::objects::{click, middle_sphere, on_screen, spheres};
 use eframe::egui::{self, Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use weekender::app::{Command, Theme, Window};
-use weekender::stages::Stage;
 
 /// Points around the window that the harness leaves empty.
 const EDGE: f32 = 8.0;
@@ -20,9 +19,7 @@ fn take(
     size: [f32; 2],
     act: impl FnOnce(&mut Harness<'static, Window>),
 ) {
-    let cache = tempfile::tempdir().unwrap();
     let mut shown = window(&format!("{arguments} --noise-target 0.004"));
-    shown.show_thumbnails(Some(cache.path().to_owned()));
     shown.send(Command::Theme(theme));
     let mut harness = Harness::builder()
         .with_size(size.map(|side| side + 2.0 * EDGE))
@@ -55,7 +52,6 @@ fn pictures_of_the_window() {
     });
     take("window-stages", "--stage metal-fuzzy", Theme::Dark, SIZE, |harness| {
         press(harness, Key::O);
-        until(harness, "all small pictures", |window| window.thumbnail_count() == Stage::ALL.len());
     });
     take("window-present", "--stage shadow-acne", Theme::Light, [1280.0, 720.0], |harness| {
         press(harness, Key::F5);
@@ -74,20 +70,21 @@ fn pictures_of_the_window() {
         let at = on_screen(harness, spheres(harness)[added].center);
         drag_from(harness, at, harness.state().picture_rect().lerp_inside(vec2(0.62, 0.16)) - at);
         harness.run_steps(40);
-        control(harness, "Material").click();
-        harness.run_steps(5);
-        harness.get_by_label("metal").click();
+        control(harness, "Metal").click();
         harness.run_steps(40);
     });
     take("window-path", "--stage hollow-glass", Theme::Light, SIZE, |harness| {
         let at = harness.state().picture_rect().lerp_inside(vec2(338.5 / 480.0, 148.5 / 270.0));
-        choose_from_menu(harness, at, "List the paths of this pixel");
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run_steps(5);
+        press(harness, Key::T);
         until(harness, "the paths", |window| window.listed_paths() == 16);
         harness.run_steps(30);
         press(harness, Key::ArrowRight);
     });
+    take("window-code", "--stage glass-schlick", Theme::Light, SIZE, |harness| press(harness, Key::K));
     take("window-lanes", "--stage hollow-glass", Theme::Dark, SIZE, |harness| {
         press(harness, Key::N);
-        until(harness, "the packet", |window| window.packet_steps().is_some());
+        until(harness, "the lanes", |window| window.lane_steps().is_some());
     });
 }

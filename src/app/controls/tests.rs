@@ -1,7 +1,7 @@
 //! Tests of the left panel.
 
 use super::*;
-use crate::app::spheres::Spheres;
+use crate::app::spheres::Selected;
 use crate::app::tests::{dressed, facts_of};
 use eframe::egui::{self, Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -18,7 +18,7 @@ fn panel(words: &str) -> Harness<'static, Panel> {
     let panel = Panel { facts: facts_of(words), edits: Vec::new(), commands: Vec::new() };
     let draw = |ui: &mut Ui, Panel { facts, edits, commands }: &mut Panel| {
         let (mut document, mut remembered) = (facts.model.document.clone(), facts.model.remembered.clone());
-        let selected = Spheres::default().selected(&facts.model);
+        let selected = Selected::of(&facts.model);
         egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 8)).show(ui, |ui| {
             ui.set_min_width(200.0);
             let chosen = (&mut document, selected.as_ref());

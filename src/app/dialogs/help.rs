@@ -2,75 +2,91 @@
 
 use super::outcome::Outcome;
 use crate::app::command::{Menu, ROWS};
-use eframe::egui::{self, RichText, Ui};
+use crate::app::theme;
+use crate::app::widgets::hint;
+use eframe::egui::{self, Frame, Label, RichText, Sides, TextStyle, Ui, vec2};
 
-const MOUSE: [(&str, &str); 17] = [
-    ("Drag", "orbit around what is there; in the sky, around the point looked at"),
-    ("Right drag", "look around"),
-    ("Wheel", "move towards what is there, or away"),
-    ("Ctrl and wheel", "zoom the picture at the pointer"),
-    ("Middle or Shift drag", "move the picture"),
-    ("Click", "select a sphere; on the sky: none"),
-    ("Drag the selected sphere", "move it; with Ctrl level"),
-    ("Drag its handle", "change its radius"),
-    ("Ctrl and click", "focus on what is there"),
-    ("Double click", "look at what is there"),
-    ("Right click", "a menu of what is there"),
-    ("T; Alt and click", "list the paths of a pixel"),
-    ("W A S D, Q E", "fly; with Shift fast"),
-    ("Click an end of the axes", "look from that side; drag them to orbit"),
-    ("Shift", "jump to a view or bookmark instead of flying"),
-    ("Drop a file", "open a picture, film or scene"),
-    ("Escape", "leave a control, the code, a crop, listed paths, a comparison, a view, a slot, full screen"),
+const MOUSE: [(&str, &str); 16] = [
+    ("Orbit around what is there; in the sky, around the point looked at", "Drag"),
+    ("Look around", "Right drag"),
+    ("Move towards what is there, or away", "Wheel"),
+    ("Zoom the picture at the pointer", "Ctrl and wheel"),
+    ("Move the picture", "Shift drag"),
+    ("Select a sphere; on the sky: none", "Click"),
+    ("Move the selected sphere; with Ctrl level", "Drag it"),
+    ("Change its radius", "Drag its dot"),
+    ("Focus on what is there", "Ctrl and click"),
+    ("Look at what is there", "Double click"),
+    ("A menu of what is there", "Right click"),
+    ("The paths of a pixel", "Alt and click"),
+    ("Fly; with Shift fast", "W A S D, Q E"),
+    ("Look from that side; drag the axes to orbit", "Click an end"),
+    ("Open a picture, film or scene", "Drop a file"),
+    ("Leave the innermost: menu, field, path, wipe, view, kept picture", "Escape"),
 ];
 
-/// Windows narrower than this many points get only one column.
-const TWO_COLUMNS: f32 = 640.0;
-
-const COLUMNS: [&[Option<Menu>]; 2] = [
-    &[None, Some(Menu::File), Some(Menu::Edit)],
-    &[Some(Menu::View), Some(Menu::Render), Some(Menu::Stage), Some(Menu::Help)],
-];
-
-pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
-    ui.set_width(ui.available_width());
-    ui.heading("Keyboard and mouse");
-    ui.add_space(6.0);
-    egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-        if ui.available_width() < TWO_COLUMNS {
-            COLUMNS.into_iter().flatten().for_each(|part| section(ui, *part));
-        } else {
-            ui.columns(COLUMNS.len(), |uis| {
-                for (ui, parts) in uis.iter_mut().zip(COLUMNS) {
-                    parts.iter().for_each(|part| section(ui, *part));
-                }
-            });
-        }
-    });
-    ui.add_space(8.0);
-    if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
+/// Keys and mouse, and the words to search for.
+#[derive(Default)]
+pub struct Keys {
+    text: String,
 }
 
-fn section(ui: &mut Ui, group: Option<Menu>) {
-    let title = group.map_or("Mouse and flying", Menu::name);
-    ui.label(RichText::new(title).small().color(ui.visuals().weak_text_color()));
-    egui::Grid::new(title).num_columns(2).min_row_height(0.0).spacing([14.0, 2.0]).show(ui, |ui| {
+impl Keys {
+    pub(super) fn ui(&mut self, ui: &mut Ui, height: f32) -> Outcome {
+        ui.heading("Keys and mouse");
+        let edit = egui::TextEdit::singleline(&mut self.text)
+            .hint_text("Search")
+            .margin(vec2(8.0, 8.0))
+            .desired_width(f32::INFINITY);
+        ui.add(edit).accessible_name("Search");
         let context = ui.ctx().clone();
-        let mut row = |keys: &str, what: &str| {
-            ui.label(RichText::new(keys).strong());
-            ui.add(egui::Label::new(what).wrap());
-            ui.end_row();
+        let of_menu = |menu: Option<Menu>| -> Vec<(String, String)> {
+            let rows = ROWS.iter().filter(|row| row.menu == menu && !row.name.is_empty());
+            let with_keys = |row: &_| -> Option<(String, String)> {
+                let row: &crate::app::command::Row = row;
+                Some((row.name.trim_end_matches('…').to_owned(), row.command.keys(&context)?))
+            };
+            rows.filter_map(with_keys).collect()
         };
-        match group {
-            None => MOUSE.into_iter().for_each(|(keys, what)| row(keys, what)),
-            Some(group) => {
-                for entry in ROWS.iter().filter(|entry| entry.menu == Some(group)) {
-                    if let Some(keys) = entry.command.keys(&context) {
-                        row(&keys, entry.name.trim_end_matches('…'));
-                    }
+        let mouse = MOUSE.map(|(what, keys)| (what.to_owned(), keys.to_owned())).to_vec();
+        let mut groups = vec![("The picture", mouse)];
+        let menus = [&Menu::BAR[..2], &[Menu::View, Menu::Show, Menu::Bookmarks], &Menu::BAR[3..]].concat();
+        groups.extend(menus.into_iter().map(|menu| (menu.name(), of_menu(Some(menu)))));
+        groups.push(("Without a menu", of_menu(None)));
+        let typed = self.text.to_lowercase();
+        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let mut is_empty = true;
+            for (title, mut rows) in groups {
+                rows.retain(|(what, keys)| format!("{title} {what} {keys}").to_lowercase().contains(&typed));
+                if rows.is_empty() {
+                    continue;
                 }
+                is_empty = false;
+                ui.add_space(8.0);
+                ui.label(RichText::new(title).small().color(theme::colours(ui).weak));
+                ui.add_space(4.0);
+                rows.iter().for_each(|(what, keys)| row(ui, what, keys));
             }
-        }
-    });
-    ui.add_space(6.0);
+            if is_empty {
+                hint(ui, "No key or command is called that.");
+            }
+        });
+        if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
+    }
+}
+
+fn row(ui: &mut Ui, what: &str, keys: &str) {
+    let sides = Sides::new().height(24.0).shrink_left().truncate();
+    sides.show(
+        ui,
+        |ui| ui.add(Label::new(what)),
+        |ui| {
+            let cap = Frame::new().fill(theme::colours(ui).raised).corner_radius(4);
+            cap.inner_margin(egui::Margin::symmetric(6, 1)).show(ui, |ui| {
+                ui.label(RichText::new(keys).text_style(TextStyle::Small));
+            });
+        },
+    );
 }

@@ -1,18 +1,22 @@
 //! Dialogs, which block the window until they are answered or closed.
 
+mod about;
 mod files;
 mod help;
 mod outcome;
 mod palette;
+mod sky;
 
 pub use files::{
     Chosen, LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
+pub use help::Keys;
 pub use outcome::Outcome;
 pub use palette::Palette;
 
 use super::command::Command;
 use super::facts::Facts;
+use super::model::edit::Edit;
 use eframe::egui::{Context, Id, Modal, PointerState, Ui};
 
 /// The dialog that is open.
@@ -20,7 +24,7 @@ pub enum Dialog {
     /// All commands by name.
     Palette(Palette),
     /// Keys and mouse.
-    Help,
+    Help(Keys),
     /// The colours of the sky.
     Sky,
     /// Version and licences.
@@ -40,12 +44,22 @@ pub struct Dialogs {
     /// The pointer, while what is behind a dialog is drawn.
     pointer: Option<PointerState>,
     pub system: files::System,
+    /// The commands that were used, the last one first.
+    used: Vec<Command>,
 }
 
 impl Dialogs {
     /// Whether a dialog is open.
     pub fn is_open(&self) -> bool {
         self.open.is_some()
+    }
+
+    /// Notes that a command was used, to offer it again.
+    pub fn note_used(&mut self, command: Command) {
+        if command.row().is_some_and(|row| row.is_listed) && command != Command::Palette {
+            self.used.retain(|other| *other != command);
+            self.used.insert(0, command);
+        }
     }
 
     /// Opens a dialog. It replaces an open one.
@@ -62,21 +76,26 @@ impl Dialogs {
     }
 
     /// Draws the dialog. Returns how it closes.
-    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> Outcome {
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        facts: &Facts,
+        (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
+    ) -> Outcome {
         if let Some(pointer) = self.pointer.take() {
             ui.ctx().input_mut(|input| input.pointer = pointer);
         }
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
         let modal = Modal::new(Id::unique("dialog")).show(ui.ctx(), |ui| {
-            let width = if matches!(dialog, Dialog::Help) { 700.0 } else { 560.0 };
-            ui.set_max_width((room.x - 40.0).min(width));
+            ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
                 Dialog::Palette(palette) => {
-                    palette.ui(ui, (room.y - 140.0).clamp(100.0, 360.0), facts, commands)
+                    palette.ui(ui, (room.y - 180.0).clamp(100.0, 360.0), (facts, &self.used), commands)
                 }
-                Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),
-                Dialog::Sky | Dialog::About => Outcome::Close,
+                Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
+                Dialog::Sky => sky::ui(ui, facts, edits),
+                Dialog::About => about::ui(ui, facts),
                 Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
                 Dialog::Large(large) => large.ui(ui),
@@ -114,13 +133,13 @@ mod tests {
         let mut dialogs = Dialogs::default();
         for is_open in [false, true] {
             if is_open {
-                dialogs.open(Dialog::Help);
+                dialogs.open(Dialog::Help(Keys::default()));
             }
             let mut seen = Vec::new();
             let mut harness = part([800.0, 600.0], |ui| {
                 dialogs.begin(ui.ctx());
                 let behind = ui.ctx().input(|input| input.pointer.hover_pos());
-                dialogs.ui(ui, &facts, &mut Vec::new());
+                dialogs.ui(ui, &facts, (&mut Vec::new(), &mut Vec::new()));
                 seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
             });
             rest_at(&mut harness, egui::pos2(400.0, 300.0));

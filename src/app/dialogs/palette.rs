@@ -1,48 +1,53 @@
-//! The command palette: type part of a name, then press Enter.
+//! Finds a command by what it does: type a few words, then press Enter.
 
 use super::outcome::Outcome;
 use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
 use crate::app::menu::line;
-use crate::app::theme;
+use crate::app::widgets::hint;
+use crate::measure::stress::shown_cases;
+use crate::stages::Stage;
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{
-    self, Align2, CornerRadius, Key, Modifiers, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui,
-    UiBuilder, vec2,
-};
+use eframe::egui::{self, Key, Label, Modifiers, Response, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
 
-/// Where a row says whether a switch is on: so far from its right end, points.
-const STATE: f32 = 130.0;
+/// What an empty box offers a user who has not used five commands yet.
+const USUAL: [Command; 5] =
+    [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
-/// The search text and the selected line.
+/// Fields of the left panel that are found by other words, too.
+const FIELDS: [(&str, &str); 3] = [
+    ("Field of view", "fov angle zoom lens"),
+    ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
+    ("Focus distance", "focus sharp"),
+];
+
+/// The search text and the selected line; none is selected in an empty box, so that Enter does nothing.
 #[derive(Default)]
 pub struct Palette {
     text: String,
     chosen: usize,
 }
 
-/// How well a text finds a command; less is better. `None` if a word of it is neither in the name nor in the help.
-fn rank(text: &str, name: &str, help: &str) -> Option<usize> {
-    let [text, name, help] = [text.trim(), name, help].map(str::to_lowercase);
-    let (typed, of_name): (Vec<&str>, _) = (text.split_whitespace().collect(), words_of(&name));
-    let everything = format!("{name} {help}");
-    let begins = |words: &[&str]| typed.iter().all(|typed| words.iter().any(|word| word.starts_with(typed)));
-    let contains = |place: &str| typed.iter().all(|typed| place.contains(typed));
-    let initials: String = of_name.iter().filter_map(|word| word.chars().next()).collect();
-    let is_at_a_word =
-        || name.match_indices(&text).any(|(at, _)| !name[..at].ends_with(char::is_alphanumeric));
-    let ways: [&dyn Fn() -> bool; 8] = [
-        &|| name == text,
-        &|| name.starts_with(&text),
-        &is_at_a_word,
-        // Beginnings of words, in any order.
-        &|| begins(&of_name),
-        &|| text.len() > 1 && initials.contains(&text),
-        &|| contains(&name),
-        &|| begins(&words_of(&everything)),
-        &|| contains(&everything),
+/// How well a text finds a command; less is better. `None` if it does not.
+fn rank(text: &str, name: &str, synonyms: &str, help: &str) -> Option<usize> {
+    let [text, name, synonyms, help] = [text.trim(), name, synonyms, help].map(str::to_lowercase);
+    let typed = words_of(&text);
+    let all = |words: &[&str], is_found: fn(&str, &str) -> bool| {
+        typed.iter().all(|typed| words.iter().any(|word| is_found(word, typed)))
+    };
+    let (whole, begins): (fn(&str, &str) -> bool, fn(&str, &str) -> bool) =
+        (|word, typed| word == typed, |word, typed| word.starts_with(typed));
+    let [of_name, of_synonyms, of_help] = [&name, &synonyms, &help].map(|text| words_of(text));
+    let everything = [of_name.clone(), of_synonyms.clone(), of_help].concat();
+    let ways: [bool; 6] = [
+        name.trim_end_matches('…') == text,
+        all(&of_name, whole),
+        all(&of_name, begins),
+        all(&of_synonyms, whole),
+        all(&of_synonyms, begins),
+        all(&everything, begins),
     ];
-    ways.iter().position(|is_so| is_so())
+    ways.into_iter().position(|is_so| is_so)
 }
 
 /// The words of a name. Numbers of sections, such as 11.4, are words.
@@ -50,31 +55,46 @@ fn words_of(text: &str) -> Vec<&str> {
     text.split(|c: char| !c.is_alphanumeric() && c != '.').filter(|word| !word.is_empty()).collect()
 }
 
-/// The commands that `text` finds, the best first; `is_enabled` decides between equally good ones, then the order of the
-/// menus.
-fn matching(
-    text: &str,
-    commands: impl Iterator<Item = (Command, String)>,
-    is_enabled: impl Fn(Command) -> bool,
-) -> Vec<(Command, String)> {
-    let mut found: Vec<_> = commands
-        .filter(|(command, _)| *command != Command::Palette)
-        .filter_map(|(command, name)| Some((rank(text, &name, command.help())?, command, name)))
-        .collect();
-    if !text.trim().is_empty() {
-        found.sort_by_cached_key(|(rank, command, _)| (*rank, !is_enabled(*command)));
-    }
-    found.into_iter().map(|(_, command, name)| (command, name)).collect()
+/// A line of the palette.
+struct Found {
+    command: Command,
+    name: String,
+    is_place: bool,
 }
 
-/// All commands, the bookmarks, and the files that were opened or saved last.
-fn listed(facts: &Facts) -> impl Iterator<Item = (Command, String)> {
-    let further = facts.bookmarks().chain(facts.recent());
-    ROWS.iter()
-        .filter(|row| row.is_listed)
-        .map(|row| row.command)
-        .chain(further)
-        .map(|command| (command, facts.name(command)))
+/// What a text finds: commands, then places, the best first and what is off last. `used` are the commands that were used, the
+/// last one first.
+fn found(text: &str, facts: &Facts, used: &[Command]) -> Vec<Found> {
+    let is_on = |command: &Command| facts.disabled_reason(*command).is_none();
+    let of = |command, is_place| Found { name: facts.name(command), command, is_place };
+    if text.trim().is_empty() {
+        let usual = USUAL.iter().filter(|command| is_on(command) && !used.contains(command));
+        return used.iter().chain(usual).take(5).map(|command| of(*command, false)).collect();
+    }
+    let has_rays = facts.no_rays().is_none();
+    let fields = FIELDS.into_iter().filter(|_| has_rays);
+    let listed = ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette);
+    let commands = listed
+        .map(|row| (row.command, row.synonyms, false))
+        .chain(fields.map(|(name, synonyms)| (Command::Field(name), synonyms, false)));
+    let stages = Stage::ALL.iter().map(Command::Stage);
+    let places = stages
+        .chain(shown_cases().iter().map(Command::Extreme))
+        .chain(facts.recent())
+        .chain(facts.bookmarks())
+        .map(|command| (command, "", true));
+    let mut ranked: Vec<_> = commands
+        .chain(places)
+        .filter_map(|(command, synonyms, is_place)| {
+            let found = of(command, is_place);
+            let rank = rank(text, &found.name, synonyms, command.help())?;
+            let age = used.iter().position(|other| *other == command).unwrap_or(usize::MAX);
+            let length = if is_place { 0 } else { found.name.len() };
+            Some(((is_place, !is_on(&command), rank, age, length), found))
+        })
+        .collect();
+    ranked.sort_by_key(|(key, _)| *key);
+    ranked.into_iter().map(|(_, found)| found).collect()
 }
 
 impl Palette {
@@ -93,41 +113,46 @@ impl Palette {
         &mut self,
         ui: &mut Ui,
         height: f32,
-        facts: &Facts,
+        (facts, used): (&Facts, &[Command]),
         commands: &mut Vec<Command>,
     ) -> Outcome {
         ui.set_width(ui.available_width());
-        let (up, down, enter) = ui.input_mut(|input| {
-            (
-                input.count_and_consume_key(Modifiers::NONE, Key::ArrowUp),
-                input.count_and_consume_key(Modifiers::NONE, Key::ArrowDown),
-                input.key_pressed(Key::Enter),
-            )
-        });
+        let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+        let (up, down) = (presses(Key::ArrowUp), presses(Key::ArrowDown));
+        let is_enter = ui.input(|input| input.key_pressed(Key::Enter));
         let edit = egui::TextEdit::singleline(&mut self.text)
             .hint_text("What do you want to do?")
+            .margin(vec2(8.0, 8.0))
             .desired_width(f32::INFINITY);
         let response = ui.add(edit).accessible_name("Command");
         response.request_focus();
         if response.changed() {
             self.chosen = 0;
         }
-        let is_enabled = |command| facts.disabled_reason(command).is_none();
-        let found = matching(&self.text, listed(facts), is_enabled);
-        let last = found.len().saturating_sub(1);
-        self.chosen = (self.chosen + down).min(last).saturating_sub(up);
-        let mut run = enter.then(|| found.get(self.chosen)).flatten().map(|(command, _)| *command);
-        ui.add_space(6.0);
-        let mut told = found.get(self.chosen).map(|(command, _)| *command);
+        let found = found(&self.text, facts, used);
+        // Counted from 1; 0 is none.
+        let first = usize::from(!self.text.trim().is_empty() && !found.is_empty());
+        self.chosen = (self.chosen.max(first) + down).min(found.len()).saturating_sub(up).max(first);
+        let chosen = found.get(self.chosen.wrapping_sub(1)).map(|found| found.command);
+        let (mut run, mut told) = (chosen.filter(|_| is_enter), chosen);
         let list =
             egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
         list.show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
             if found.is_empty() {
-                ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
+                hint(ui, "No command is called that. Keys and mouse (F1) lists them all.");
             }
-            for (index, (command, name)) in found.iter().enumerate() {
-                let response = row(ui, facts, *command, name, index == self.chosen);
-                if index == self.chosen && up + down > 0 {
+            let mut was_place = false;
+            for Found { command, name, is_place } in &found {
+                if *is_place && !std::mem::replace(&mut was_place, true) {
+                    let color = ui.visuals().weak_text_color();
+                    ui.add_space(8.0);
+                    ui.label(RichText::new("Stages, scenes, files and bookmarks").small().color(color));
+                    ui.add_space(4.0);
+                }
+                let is_chosen = chosen == Some(*command);
+                let response = row(ui, facts, *command, name, is_chosen);
+                if is_chosen && up + down > 0 {
                     response.scroll_to_me(None);
                 }
                 if response.hovered() {
@@ -138,7 +163,6 @@ impl Palette {
                 }
             }
         });
-        ui.add_space(4.0);
         about(ui, facts, told);
         match run {
             Some(command) => {
@@ -153,23 +177,15 @@ impl Palette {
 /// A command, whether it is on, and its keys.
 fn row(ui: &mut Ui, facts: &Facts, command: Command, name: &str, is_chosen: bool) -> Response {
     let is_enabled = facts.disabled_reason(command).is_none();
-    let is_filled = is_chosen && is_enabled;
-    let response = ui.add_enabled(is_enabled, line(ui, command, name.to_owned(), is_filled));
-    if is_chosen && !is_enabled {
-        // Dimmed text would not be readable on the accent colour.
-        let stroke = Stroke::new(1.5, theme::accent(ui));
-        ui.painter().rect_stroke(response.rect, CornerRadius::same(5), stroke, StrokeKind::Inside);
-    }
-    if let Some(is_on) = facts.switch(command) {
-        let visuals = ui.visuals();
-        let colour = match (is_filled, is_on) {
-            (true, _) => visuals.selection.stroke.color,
-            (false, true) => visuals.strong_text_color(),
-            (false, false) => visuals.weak_text_color(),
-        };
-        let at = response.rect.right_center() - vec2(STATE, 0.0);
-        let font = TextStyle::Button.resolve(ui.style());
-        ui.painter().text(at, Align2::LEFT_CENTER, if is_on { "on" } else { "off" }, font, colour);
+    let switch = facts.switch(command);
+    let state = match switch {
+        Some(true) => RichText::new("on").strong(),
+        _ => RichText::new(""),
+    };
+    let gap = if switch == Some(true) { "  " } else { "" };
+    let response =
+        ui.add_enabled(is_enabled, line(ui, command, (name, gap, state), is_chosen)).accessible_name(name);
+    if let Some(is_on) = switch {
         let toggled = if is_on { Toggled::True } else { Toggled::False };
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_toggled(toggled));
     }
@@ -182,49 +198,46 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
         facts.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
     });
     let height = 2.0 * ui.text_style_height(&TextStyle::Body);
-    let size = vec2(ui.available_width(), height);
-    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let mut within = ui.new_child(UiBuilder::new().max_rect(place));
     within.shrink_clip_rect(place);
     let text = RichText::new(text).color(ui.visuals().weak_text_color());
-    within.add(egui::Label::new(text).wrap());
+    within.add(Label::new(text).wrap());
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    use crate::stages::Stage;
-
-    fn found(text: &str) -> Vec<Command> {
-        let all = Command::all().into_iter().map(|command| (command, command.name()));
-        matching(text, all, |_| true).into_iter().map(|(command, _)| command).collect()
-    }
+    use crate::app::model::remembered::Theme;
+    use crate::app::tests::facts_of;
 
     #[test]
-    fn every_command_is_found_by_its_name() {
-        for command in Command::all().into_iter().filter(|command| *command != Command::Palette) {
-            assert!(found(&command.name()).contains(&command), "{command:?}");
+    fn what_is_meant_comes_first() {
+        let facts = facts_of("--stage glass-schlick --size 32x18");
+        let first = |text: &str| found(text, &facts, &[]).first().map(|found| found.command);
+        for (text, expected) in [
+            ("dark", Command::Theme(Theme::Dark)),
+            ("night", Command::Theme(Theme::Dark)),
+            ("save", Command::Save),
+            ("png", Command::Save),
+            ("blur", Command::Field("Defocus angle")),
+            ("dof", Command::Field("Defocus angle")),
+            ("fov", Command::Field("Field of view")),
+            ("beamer", Command::Present),
+            ("homework", Command::CheckPicture),
+            ("11.4", Command::Stage(Stage::find("glass-schlick").unwrap())),
+        ] {
+            assert_eq!(first(text), Some(expected), "{text}");
         }
-        assert!(found("xyzzy").is_empty());
-    }
-
-    #[test]
-    fn names_come_before_help() {
-        assert_eq!(found("undo").first(), Some(&Command::Undo));
-        let stage = Stage::find("glass-schlick").unwrap();
-        assert_eq!(found("11.4").first(), Some(&Command::Stage(stage)));
-    }
-
-    #[test]
-    fn the_palette_begins_with_what_is_typed_in_the_frame_that_opens_it() {
-        let text = |letters: &str| egui::Event::Text(letters.to_owned());
-        let events = vec![text("zo"), egui::Event::PointerGone, text("om")];
-        let context = egui::Context::default();
-        let mut opened = Palette { text: "before".to_owned(), chosen: 3 };
-        let _ = context.run_ui(egui::RawInput { events, ..egui::RawInput::default() }, |ui| {
-            opened = Palette::typed(ui.ctx());
-        });
-        assert_eq!((opened.text.as_str(), opened.chosen), ("zoom", 0));
+        assert_eq!(first("xyzzy"), None);
+        for row in ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette) {
+            let found = found(row.name, &facts, &[]);
+            let is_off = facts.disabled_reason(row.command).is_some();
+            let place = found.iter().position(|found| found.command == row.command);
+            assert!(place.is_some_and(|place| is_off || place == 0), "{}: {place:?}", row.name);
+        }
+        let used = [Command::Undo, Command::Keep];
+        assert_eq!(found("", &facts, &used).len(), 5);
+        assert!(found(" ", &facts, &used)[1].command == Command::Keep);
     }
 }

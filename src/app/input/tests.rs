@@ -2,89 +2,26 @@
 
 use super::*;
 
-const KEYBOARD: Keyboard = Keyboard {
-    had_focus: false,
-    has_code: false,
-    is_other_view: false,
-    is_cropping: false,
-    has_paths: false,
-    is_at_slot: false,
-    has_selection: false,
-    is_full_screen: false,
-    has_first_steps: false,
-    has_sight: false,
-    is_presenting: false,
-};
-
 fn key(key: Key, modifiers: Modifiers) -> egui::Event {
     egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
 }
 
 /// The commands of these events, and whether held keys may move the camera then.
-fn taken(events: Vec<egui::Event>, keyboard: &Keyboard, context: &egui::Context) -> (Vec<Command>, bool) {
+fn taken(events: Vec<egui::Event>, context: &egui::Context) -> (Vec<Command>, bool) {
     let input = egui::RawInput { events, ..egui::RawInput::default() };
     let (mut commands, mut is_free) = (Vec::new(), false);
-    let _ = context.run_ui(input, |ui| is_free = take_keys(ui.ctx(), keyboard, &mut commands));
+    let _ = context.run_ui(input, |ui| is_free = take_keys(ui.ctx(), false, &mut commands));
     (commands, is_free)
-}
-
-fn commands_in(keyboard: &Keyboard, pressed: Key) -> Vec<Command> {
-    taken(vec![key(pressed, Modifiers::NONE)], keyboard, &egui::Context::default()).0
 }
 
 #[test]
 fn every_shortcut_gives_its_command() {
-    for command in Command::all() {
-        let Some(shortcut) = command.shortcut() else { continue };
+    for row in ROWS.iter() {
+        let Some(shortcut) = row.keys else { continue };
         let event = key(shortcut.logical_key, shortcut.modifiers);
-        let found = taken(vec![event], &KEYBOARD, &egui::Context::default());
-        assert_eq!(found, (vec![command], !command.opens_dialog()), "{command:?}");
+        let found = taken(vec![event], &egui::Context::default());
+        assert_eq!(found, (vec![row.command], !row.command.opens_dialog()), "{:?}", row.command);
     }
-}
-
-#[test]
-fn escape_leaves_one_thing_after_the_other() {
-    let mut keyboard = Keyboard {
-        had_focus: true,
-        has_code: true,
-        is_other_view: true,
-        is_cropping: true,
-        has_paths: true,
-        is_at_slot: false,
-        has_selection: true,
-        is_full_screen: true,
-        has_first_steps: true,
-        has_sight: true,
-        is_presenting: false,
-    };
-    let escape = |keyboard: &Keyboard| commands_in(keyboard, Key::Escape);
-    assert!(escape(&keyboard).is_empty(), "a control has the keyboard");
-    keyboard.had_focus = false;
-    assert_eq!(escape(&keyboard), [Command::Code]);
-    keyboard.has_code = false;
-    assert_eq!(escape(&keyboard), [Command::FirstSteps]);
-    keyboard.is_presenting = true;
-    assert_eq!(escape(&keyboard), [Command::Crop], "a presentation has no card");
-    (keyboard.is_presenting, keyboard.has_first_steps) = (false, false);
-    assert_eq!(escape(&keyboard), [Command::Crop]);
-    keyboard.is_cropping = false;
-    assert_eq!(escape(&keyboard), [Command::ClearPaths]);
-    (keyboard.is_at_slot, keyboard.has_sight) = (true, false);
-    assert_eq!(escape(&keyboard), [Command::Show(Show::Picture)], "a slot has no paths");
-    (keyboard.is_at_slot, keyboard.has_sight, keyboard.has_paths) = (false, true, false);
-    assert_eq!(escape(&keyboard), [Command::Deselect]);
-    keyboard.is_at_slot = true;
-    assert_eq!(escape(&keyboard), [Command::ShowMe], "no sphere is selected in a slot");
-    keyboard.has_sight = false;
-    assert_eq!(escape(&keyboard), [Command::Show(Show::Picture)]);
-    keyboard.is_other_view = false;
-    assert_eq!(escape(&keyboard), [Command::Slot(SlotCommand::LookLive)]);
-    (keyboard.is_at_slot, keyboard.has_selection, keyboard.is_presenting) = (false, false, true);
-    assert_eq!(escape(&keyboard), [Command::Present]);
-    keyboard.is_presenting = false;
-    assert_eq!(escape(&keyboard), [Command::FullScreen]);
-    keyboard.is_full_screen = false;
-    assert!(escape(&keyboard).is_empty());
 }
 
 #[test]
@@ -92,11 +29,11 @@ fn each_press_counts_and_a_dialog_gets_the_keys_that_follow() {
     let context = egui::Context::default();
     let plain = |pressed| key(pressed, Modifiers::NONE);
     let thrice = vec![plain(Key::Plus), plain(Key::Plus), plain(Key::Plus)];
-    assert_eq!(taken(thrice, &KEYBOARD, &context).0, [Command::Brighter; 3]);
+    assert_eq!(taken(thrice, &context).0, [Command::Brighter; 3]);
     let dialog = vec![key(Key::P, Modifiers::COMMAND), plain(Key::M)];
-    assert_eq!(taken(dialog, &KEYBOARD, &context), (vec![Command::Palette], false));
+    assert_eq!(taken(dialog, &context), (vec![Command::Palette], false));
     let copied = vec![egui::Event::Copy, egui::Event::Text("c".to_owned())];
-    assert_eq!(taken(copied, &KEYBOARD, &context).0, [Command::CopyPicture]);
+    assert_eq!(taken(copied, &context).0, [Command::CopyPicture]);
 }
 
 #[test]
@@ -114,7 +51,7 @@ fn a_control_with_the_keyboard_keeps_its_own_keys() {
                 context.memory_mut(|memory| memory.request_focus(egui::Id::unique("a control")));
             }
             let expected = if is_focused && pressed != Key::F { vec![] } else { vec![command] };
-            let found = taken(vec![key(pressed, Modifiers::NONE)], &KEYBOARD, &context).0;
+            let found = taken(vec![key(pressed, Modifiers::NONE)], &context).0;
             assert_eq!(found, expected, "{pressed:?}");
         }
     }

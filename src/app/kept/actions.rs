@@ -1,7 +1,8 @@
 //! Keeps pictures, and goes on from them. What is kept is in the model.
 
-use super::{KeptPicture, KeptThread, Verdict};
+use super::{KeptPicture, Verdict, run};
 use crate::app::answers::Answers;
+use crate::app::dock::Cards;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::tracer::Tracer;
@@ -18,10 +19,9 @@ pub struct Reopened {
 
 #[derive(Default)]
 pub struct KeptActions {
-    /// Reads kept films.
-    pub thread: KeptThread,
     /// The pictures of the kept films that are shown.
     pub picture: KeptPicture,
+    pub cards: Cards,
     pub verdict: Verdict,
     pub copied: Answers<Result<Kept, String>>,
     pub reopened: Answers<Result<Reopened, String>>,
@@ -49,7 +49,7 @@ impl KeptActions {
     /// Copies a kept film to go on from it. The answer arrives in `reopened`.
     pub fn reopen(&self, context: &Context, kept: &Arc<Kept>) {
         let (kept, answer) = (Arc::clone(kept), self.reopened.answer_or(context, Err));
-        self.thread.run(move || {
+        run(move || {
             let seconds = kept.seconds_before.map(|before| before + kept.status.trace.as_secs_f64());
             let copy = kept.film.try_copy().map_err(|error| error.to_string());
             answer.give(copy.map(|film| Reopened { document: kept.document.clone(), film, seconds }));

@@ -1,10 +1,9 @@
 //! A kept film on the screen, for tests of what asks films.
 
-use super::{KeptThread, Subject};
+use super::{Subject, run};
 use crate::app::model::document::Document;
 use crate::app::model::kept::{Kept, Named};
 use crate::app::model::origin::Origin;
-
 use crate::app::model::view::ViewState;
 use crate::app::tracer::Tracer;
 use crate::film::{Film, PixelSum};
@@ -17,7 +16,6 @@ pub struct OnScreen {
     live: Document,
     main: Tracer,
     view: ViewState,
-    thread: KeptThread,
 }
 
 impl OnScreen {
@@ -33,21 +31,21 @@ impl OnScreen {
         let place = view.kept.add(Named { name: String::new(), kept });
         view.look(Some(place));
         let live = Document::new(Origin::usual());
-        OnScreen { live, main: Tracer::new().unwrap(), view, thread: KeptThread::default() }
+        OnScreen { live, main: Tracer::new().unwrap(), view }
     }
 
     /// The film.
     pub fn subject(&self) -> Subject<'_> {
-        Subject::new(&self.view, (&self.live, &self.main), None, &self.thread)
+        Subject::new(&self.view, (&self.live, &self.main), None)
     }
 
     /// Does this before the film answers anything, and waits until everything that it asks has been answered.
     pub fn before_answers<T>(&self, act: impl FnOnce(&Subject<'_>) -> T) -> T {
         let (open, gate) = channel::<()>();
-        self.thread.run(move || _ = gate.recv());
+        run(move || _ = gate.recv());
         let done = act(&self.subject());
         let (answer, answers) = channel();
-        self.thread.run(move || answer.send(()).unwrap());
+        run(move || answer.send(()).unwrap());
         drop(open);
         answers.recv().unwrap();
         done

@@ -1,6 +1,5 @@
 //! The film on the screen: the live one, or one that was kept.
 
-use super::thread::KeptThread;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::ViewState;
@@ -24,25 +23,18 @@ pub struct Subject<'a> {
     live: &'a Document,
     main: &'a Tracer,
     kept: Option<&'a Arc<Kept>>,
-    thread: &'a KeptThread,
     seconds_before: Option<f64>,
 }
 
 impl<'a> Subject<'a> {
-    /// What `view` looks at: the film that `main` traces for `live`, or a kept one, which `thread` reads.
-    /// `seconds_before` is the tracing time of the live film's samples from before its render, if known.
+    /// What `view` looks at: the film that `main` traces for `live`, or a kept one. `seconds_before` is the tracing time of
+    /// the live film's samples from before its render, if known.
     pub fn new(
         view: &'a ViewState,
         (live, main): (&'a Document, &'a Tracer),
         seconds_before: Option<f64>,
-        thread: &'a KeptThread,
     ) -> Self {
-        Subject { live, main, kept: view.kept.shown(), thread, seconds_before }
-    }
-
-    /// The traced one.
-    pub fn live(self) -> Self {
-        Subject { kept: None, ..self }
+        Subject { live, main, kept: view.kept.shown(), seconds_before }
     }
 
     /// Whether it is a kept film.
@@ -92,17 +84,12 @@ impl<'a> Subject<'a> {
         self.kept.is_some() || self.main.has_samples(self.live)
     }
 
-    /// The film itself, if nothing will be added to it.
-    pub fn shared_film(&self) -> Option<Arc<Film>> {
-        self.kept.map(|kept| Arc::clone(&kept.film))
-    }
-
     /// Runs `look` with the film on another thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         match self.kept {
             Some(kept) => {
                 let film = Arc::clone(&kept.film);
-                self.thread.run(move || look(&film));
+                super::run(move || look(&film));
             }
             None => self.main.inspect(look),
         }
@@ -112,42 +99,32 @@ impl<'a> Subject<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::kept::Named;
     use crate::app::model::origin::Origin;
-    use crate::app::model::slots::{Slot, SlotNumber};
     use crate::stages::Stage;
     use std::sync::mpsc::channel;
 
     #[test]
     fn a_kept_film_takes_the_place_of_the_live_one() {
-        let (main, thread) = (Tracer::new().unwrap(), KeptThread::default());
+        let main = Tracer::new().unwrap();
         let (live, mut view) = (Document::new(Origin::usual()), ViewState::default());
         let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         let mut film = Film::new(4, 2, 1);
         film.record(0..7, 0).unwrap();
         let status = Status { run: 3, ..Status::default() };
         let kept = Arc::new(Kept::new(document, film, Arc::new(status), Some(5.0)));
-        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept: Arc::clone(&kept) });
-        let is_live = |subject: &Subject<'_>| {
-            std::ptr::eq(subject.document(), &live)
-                && !subject.is_kept()
-                && subject.shared_film().is_none()
-                && (subject.film_id(), subject.status().run) == (FilmId::Live(0), 0)
-                && (subject.samples(), subject.shown_samples()) == (0, 0)
-                && subject.seconds_before() == Some(2.0)
-                && !subject.is_full()
-                && !subject.has_samples()
-        };
-        assert!(is_live(&Subject::new(&view, (&live, &main), Some(2.0), &thread)));
-        view.look(Some(SlotNumber::ALL[0]));
-        let subject = Subject::new(&view, (&live, &main), Some(2.0), &thread);
+        let place = view.kept.add(Named { name: String::new(), kept: Arc::clone(&kept) });
+        let subject = Subject::new(&view, (&live, &main), Some(2.0));
+        assert!(std::ptr::eq(subject.document(), &live) && !subject.is_kept() && !subject.has_samples());
+        assert_eq!((subject.film_id(), subject.seconds_before()), (FilmId::Live(0), Some(2.0)));
+        view.look(Some(place));
+        let subject = Subject::new(&view, (&live, &main), Some(2.0));
         assert!(std::ptr::eq(subject.document(), &kept.document));
         assert!(subject.is_kept() && subject.is_full() && subject.has_samples());
-        assert!(Arc::ptr_eq(&subject.shared_film().unwrap(), &kept.film));
         assert_eq!((subject.film_id(), subject.status().run), (FilmId::Kept(kept.number()), 3));
         assert_eq!((subject.samples(), subject.shown_samples(), subject.seconds_before()), (7, 7, Some(5.0)));
         let (answer, answers) = channel();
         subject.inspect(move |film| answer.send(film.sample_count()).unwrap());
         assert_eq!(answers.recv().unwrap(), 7);
-        assert!(is_live(&subject.live()));
     }
 }

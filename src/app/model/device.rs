@@ -98,21 +98,6 @@ impl Device {
         }
     }
 
-    /// A description with the adapter's name.
-    pub fn long_help(self) -> String {
-        match (self, adapter()) {
-            (Device::Gpu | Device::Both, Ok(adapter)) => {
-                let note = if adapter.is_software {
-                    ", a software adapter, which runs on the processor and is slower"
-                } else {
-                    ""
-                };
-                format!("{} ({}{note})", self.help(), adapter.name)
-            }
-            _ => self.help().to_owned(),
-        }
-    }
-
     /// The device of a backend.
     pub fn of(choice: &BackendChoice) -> Self {
         match choice {

@@ -1,6 +1,6 @@
 //! Edits of a scene's spheres.
 
-use crate::scene::{Material, NamedMaterial, Scene, Sphere};
+use crate::scene::{Material, NamedMaterial, Scene, Sky, Sphere};
 use glam::DVec3;
 
 /// A sphere with its material, as the user edits it.
@@ -33,6 +33,8 @@ pub enum Edit {
     Duplicate(usize, DVec3),
     /// Removes a sphere.
     Delete(usize),
+    /// Gives the sky these colours.
+    Sky(Sky),
 }
 
 /// The name of the material of a sphere that was added.
@@ -57,6 +59,10 @@ impl Edit {
             }),
             Edit::Delete(index) => {
                 delete(&mut scene, index);
+                None
+            }
+            Edit::Sky(sky) => {
+                scene.sky = sky;
                 None
             }
         };

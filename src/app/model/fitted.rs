@@ -42,16 +42,6 @@ impl Fitted {
         let is_inside = share.iter().all(|share| (0.0..1.0).contains(share));
         is_inside.then(|| [0, 1].map(|axis| (share[axis] * f64::from(self.theirs[axis])) as u32))
     }
-
-    /// That the picture is scaled, to follow its title; empty if it is not.
-    pub fn words(&self) -> String {
-        let ([width, height], has_bars) = (self.theirs, self.covered != [1.0; 2]);
-        match has_bars {
-            _ if self.is_exact() => String::new(),
-            true => format!(", scaled from {width}x{height}, with bars"),
-            false => format!(", scaled from {width}x{height}"),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -62,7 +52,6 @@ mod tests {
     fn a_picture_of_another_shape_has_bars() {
         let square = Fitted::new([64, 64], [128, 72]);
         assert_eq!(square.part(), [0.21875, 0.0, 0.78125, 1.0]);
-        assert_eq!(square.words(), ", scaled from 64x64, with bars");
         // 28 pixels at the left and at the right are bars.
         assert_eq!(
             [27, 28, 99, 100].map(|x| square.pixel([x, 0]).map(|[x, _]| x)),

@@ -4,6 +4,7 @@ use super::document::Document;
 use crate::film::{Film, to_byte};
 use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
 use crate::system::memory::words;
+use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
@@ -18,40 +19,29 @@ pub struct Thumbnail {
 
 impl Thumbnail {
     /// The longer side, pixels.
-    const SIDE: u32 = 128;
+    const SIDE: u32 = 264;
 
-    /// Pixels that are averaged across and down, at most, for one pixel of the thumbnail.
-    const TAPS: u32 = 6;
+    /// Pixels across and down that are averaged for one pixel of the thumbnail.
+    const TAPS: usize = 4;
 
     /// The thumbnail of a film with samples.
     pub fn of(film: &Film, document: &Document) -> Self {
         let full = [film.width(), film.height()];
-        let divisor = f64::from(full[0].max(full[1])) / f64::from(Self::SIDE);
-        let size = full.map(|length| ((f64::from(length) / divisor.max(1.0)).round() as u32).max(1));
+        let scale = (f64::from(Self::SIDE) / f64::from(full[0].max(full[1]))).min(1.0);
+        let size = full.map(|length| ((f64::from(length) * scale).round() as u32).max(1));
+        let [[width, height], [columns, rows]] = [full, size].map(|size| size.map(|length| length as usize));
         let transfer = document.rules().transfer;
-        let mut rgb8 = Vec::new();
-        // The pixels that are looked at for pixel `at` of the thumbnail along an axis.
-        let taps = |at: u32, axis: usize| {
-            let edge = |at: u32| u64::from(at) * u64::from(full[axis]) / u64::from(size[axis]);
-            let (from, to) = (edge(at), edge(at + 1).max(edge(at) + 1));
-            let count = (to - from).min(u64::from(Self::TAPS));
-            (0..count).map(move |tap| (from + (to - from) * tap / count) as usize)
+        let pixel = |at: usize| {
+            let (x, y) = (at % columns, at / columns);
+            let row = |tap: usize| (y * Self::TAPS + tap) * height / (rows * Self::TAPS);
+            let taps = (0..Self::TAPS * Self::TAPS).map(|tap| {
+                let column = (x * Self::TAPS + tap % Self::TAPS) * width / (columns * Self::TAPS);
+                DVec3::from(film.mean(row(tap / Self::TAPS) * width + column))
+            });
+            let mean = taps.sum::<DVec3>() / (Self::TAPS * Self::TAPS) as f64;
+            mean.to_array().map(|value| to_byte(value, transfer, row(0), height))
         };
-        for y in 0..size[1] {
-            for x in 0..size[0] {
-                let (mut sum, mut count, mut row) = ([0.0; 3], 0.0, 0);
-                for down in taps(y, 1) {
-                    row = down;
-                    for across in taps(x, 0) {
-                        let mean = film.mean(down * full[0] as usize + across);
-                        sum = [0, 1, 2].map(|channel| sum[channel] + mean[channel]);
-                        count += 1.0;
-                    }
-                }
-                rgb8.extend(sum.map(|total| to_byte(total / count, transfer, row, full[1] as usize)));
-            }
-        }
-        Thumbnail { size, rgb8 }
+        Thumbnail { size, rgb8: (0..columns * rows).flat_map(pixel).collect() }
     }
 }
 
@@ -187,7 +177,7 @@ impl KeptList {
         self.chosen = self.looked.or(self.chosen);
     }
 
-    /// Adds a picture, or says why there is no memory for it.
+    /// Says why there is no memory for another picture, if so.
     ///
     /// # Errors
     /// If the kept pictures would take more than [`BYTES_LIMIT`].
@@ -218,11 +208,7 @@ impl KeptList {
             return;
         }
         self.pictures.remove(place);
-        let after = |other: usize| match other.cmp(&place) {
-            std::cmp::Ordering::Less => Some(other),
-            std::cmp::Ordering::Equal => None,
-            std::cmp::Ordering::Greater => Some(other - 1),
-        };
+        let after = |other: usize| (other != place).then(|| other - usize::from(other > place));
         self.looked = self.looked.and_then(after);
         self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
     }

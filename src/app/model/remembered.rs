@@ -70,6 +70,8 @@ pub enum Tab {
     Stage,
     Code,
     Check,
+    /// The controls, if the window is too narrow for two panels.
+    Controls,
 }
 
 /// A saved camera.

@@ -215,20 +215,6 @@ impl ViewState {
         }
     }
 
-    /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
-    pub fn has_other_camera(&self, document: &Document) -> bool {
-        self.with == With::Stage && document.stage().is_some_and(is_of_cameras)
-    }
-
-    /// Whether the other picture is an earlier stage of the book or an earlier picture, which a wipe shows at the left.
-    pub fn is_other_earlier(&self, document: &Document) -> bool {
-        match (document.stage(), self.compared(document)) {
-            (_, Some(Other::Kept(_))) => true,
-            (Some(mine), Some(Other::Stage(other))) => other.index() < mine.index(),
-            _ => false,
-        }
-    }
-
     /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
     pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
@@ -249,11 +235,9 @@ impl ViewState {
     }
 }
 
-/// The stage that `stage` is compared with: its pair, or else the previous stage if it shows the same scene.
+/// The stage that `stage` is compared with, if one teaches something.
 pub fn partner(stage: &Stage) -> Option<&'static Stage> {
-    let pair = stage.pair.and_then(|id| Stage::find(id).ok());
-    let is_of_same_scene = |other: &&Stage| other.recipe().scene == stage.recipe().scene;
-    pair.or_else(|| stage.previous().filter(is_of_same_scene))
+    Stage::find(stage.pair?).ok()
 }
 
 /// Whether `stage` and its partner differ in their cameras, so that each keeps its own.

@@ -33,28 +33,24 @@ impl Viewpoint {
 
     /// The name of its view.
     pub fn name(self) -> &'static str {
-        match self {
-            Viewpoint::Right => "Look from the right",
-            Viewpoint::Top => "Look from above",
-            Viewpoint::Front => "Look from the front",
-            Viewpoint::Left => "Look from the left",
-            Viewpoint::Bottom => "Look from below",
-            Viewpoint::Back => "Look from the back",
-        }
+        [
+            "Look from the right",
+            "Look from above",
+            "Look from the front",
+            "Look from the left",
+            "Look from below",
+            "Look from the back",
+        ][self as usize]
     }
 
     /// The number of its axis, 0 to 2.
     pub fn axis(self) -> usize {
-        match self {
-            Viewpoint::Right | Viewpoint::Left => 0,
-            Viewpoint::Top | Viewpoint::Bottom => 1,
-            Viewpoint::Front | Viewpoint::Back => 2,
-        }
+        self as usize % 3
     }
 
     /// Whether it is the end of a positive axis.
     pub fn is_positive(self) -> bool {
-        matches!(self, Viewpoint::Right | Viewpoint::Top | Viewpoint::Front)
+        (self as usize) < 3
     }
 
     /// The unit vector that points to this side.
@@ -68,8 +64,7 @@ impl Viewpoint {
     pub fn camera(self, camera: &Camera, up: DVec3) -> Camera {
         /// Above this cosine of the angle to the axis, `up` counts as parallel to it.
         const PARALLEL: f64 = 0.999;
-        let away = self.direction();
-        let up = up.normalize_or_zero();
+        let (away, up) = (self.direction(), up.normalize_or_zero());
         let is_upright = up != DVec3::ZERO && up.dot(away).abs() < PARALLEL;
         // The x axis points right, as from the front; from the sides, y points up.
         let right = if self.axis() == 0 { away.cross(DVec3::Y) } else { DVec3::X };

@@ -1,13 +1,11 @@
-//! Paths drawn as lines over the picture, and the directions that the explained ray's successor was chosen from.
+//! Paths drawn as lines over the picture.
 
 use super::{Path, Paths};
 use crate::app::model::document::Document;
 use crate::app::theme;
 use crate::backends::explain::{Event, Lobe, Step};
 use crate::scene::Camera;
-use eframe::egui::{
-    Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, vec2,
-};
+use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
 use glam::DVec3;
 
 /// The length at which a ray to the sky is drawn, in scene units.
@@ -22,43 +20,52 @@ const UNIT_SHARE: f64 = 0.1;
 /// The normal at a hit.
 const NORMAL: Color32 = Color32::from_rgb(90, 200, 250);
 
-/// The directions that the next ray was chosen from.
+/// The directions around which the next ray was chosen.
 const LOBE: Color32 = Color32::from_rgb(255, 214, 10);
 
-/// The number of points of a circle.
-const CIRCLE: usize = 48;
+/// So many of the other paths are drawn, faintly.
+const FAINT: usize = 16;
 
 impl Paths {
-    /// Draws all paths; the selected one is drawn last and most clearly.
+    /// Draws the paths; the shown one is drawn last and most clearly.
     pub fn paint(&self, document: &Document, ui: &Ui, painter: &Painter, rect: Rect) {
-        let Some(listed) = &self.listed else { return };
+        let (Some(listed), Some(shown)) = (&self.listed, self.path()) else { return };
         let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
         let accent = theme::accent(ui);
-        let view = View {
-            camera: &document.camera,
-            aspect: document.aspect(),
-            rect,
-            is_from_eye: listed.document.camera == document.camera,
+        let view = View { camera: &document.camera, aspect: document.aspect(), rect };
+        // From the eye, first rays are points.
+        let first = usize::from(listed.document.camera == document.camera);
+        let lines = |path: &Path, [shade, width]: [f32; 2], line: Stroke| {
+            let shade = Stroke::new(width, Color32::from_black_alpha(shade as u8));
+            for stroke in [shade, line] {
+                path.iter().skip(first).for_each(|(ray, _)| view.paint_ray(ray, stroke, painter));
+            }
         };
-        for (index, path) in listed.paths.iter().enumerate() {
-            if Some(index) != self.selected {
-                let (shade, line) = (Color32::from_black_alpha(50), accent.gamma_multiply(0.5));
-                view.paint_lines(path, painter, [Stroke::new(2.0, shade), Stroke::new(1.0, line)]);
-            }
+        for (_, path) in listed.paths.iter().enumerate().take(FAINT).filter(|(at, _)| *at != self.selected) {
+            lines(path, [50.0, 2.0], Stroke::new(1.0, accent.gamma_multiply(0.5)));
         }
-        if let Some(path) = self.selected() {
-            let shade = Color32::from_black_alpha(150);
-            view.paint_lines(path, painter, [Stroke::new(4.5, shade), Stroke::new(2.0, accent)]);
-            if let Some((step, _)) = path.steps.get(self.ray) {
-                view.paint_step(step, painter);
-            }
-            view.paint_numbers(path, self.ray, painter, accent, TextStyle::Small.resolve(ui.style()));
+        lines(shown, [150.0, 4.5], Stroke::new(2.0, accent));
+        if let Some((ray, _)) = shown.get(self.point) {
+            view.paint_ray(ray, Stroke::new(3.0, Color32::WHITE), painter);
+        }
+        if let Some((ray, _)) = self.point.checked_sub(1).and_then(|before| shown.get(before)) {
+            view.paint_choice(ray, painter);
+        }
+        let font = TextStyle::Small.resolve(ui.style());
+        for (number, (ray, _)) in shown.iter().enumerate() {
+            let Some(at) = view.place(end_of(ray)) else { continue };
+            let (radius, fill) = if number + 1 == self.point { (6.0, Color32::WHITE) } else { (4.0, accent) };
+            painter.circle(at, radius, fill, Stroke::new(1.0, Color32::BLACK));
+            let text = painter.layout_no_wrap((number + 2).to_string(), font.clone(), Color32::WHITE);
+            let place = Rect::from_min_size(at + vec2(7.0, -6.0 - text.size().y), text.size());
+            painter.rect_filled(place.expand2(vec2(3.0, 1.0)), 3, Color32::from_black_alpha(235));
+            painter.galley(place.min, text, Color32::WHITE);
         }
     }
 }
 
 /// The end of a ray, or the point up to which it is drawn.
-pub(super) fn end_of(step: &Step) -> DVec3 {
+fn end_of(step: &Step) -> DVec3 {
     step.hit.map_or(step.origin + step.direction * SKY_LENGTH, |hit| hit.point)
 }
 
@@ -67,8 +74,6 @@ struct View<'a> {
     camera: &'a Camera,
     aspect: f64,
     rect: Rect,
-    /// The paths start at this camera, so their first rays project to points.
-    is_from_eye: bool,
 }
 
 impl View<'_> {
@@ -91,76 +96,28 @@ impl View<'_> {
         Some([self.place(a)?, self.place(b)?])
     }
 
-    fn paint_lines(&self, path: &Path, painter: &Painter, strokes: [Stroke; 2]) {
-        let first = usize::from(self.is_from_eye);
-        for stroke in strokes {
-            for (step, _) in path.steps.iter().skip(first) {
-                if let Some(line) = self.line(step.origin, end_of(step)) {
-                    painter.line_segment(line, stroke);
-                }
-            }
+    fn paint_ray(&self, ray: &Step, stroke: Stroke, painter: &Painter) {
+        if let Some(line) = self.line(ray.origin, end_of(ray)) {
+            painter.line_segment(line, stroke);
         }
     }
 
-    /// The explained ray, with the normal where it ends and what the next direction was chosen from.
-    fn paint_step(&self, step: &Step, painter: &Painter) {
-        if let Some(line) = self.line(step.origin, end_of(step)) {
-            painter.line_segment(line, Stroke::new(3.0, Color32::WHITE));
-        }
-        let Some(hit) = step.hit else { return };
+    /// The normal where a ray ends, and the directions around which the next one was chosen.
+    fn paint_choice(&self, ray: &Step, painter: &Painter) {
+        let Some(hit) = ray.hit else { return };
         let unit = UNIT_SHARE * hit.point.distance(self.camera.look_from);
-        self.paint_arrow(hit.point, hit.normal * unit, NORMAL, painter);
-        let (Event::Scattered(lobe) | Event::Absorbed(lobe)) = step.event else { return };
-        match lobe {
-            // The heads of the random vectors lie on a sphere.
-            Lobe::Hemisphere => self.paint_ball(hit.point, unit, painter),
-            Lobe::Lambertian => self.paint_ball(hit.point + hit.normal * unit, unit, painter),
-            Lobe::Metal { mirrored, fuzz } => {
-                self.paint_arrow(hit.point, mirrored * unit, LOBE, painter);
-                self.paint_ball(hit.point + mirrored * unit, fuzz * unit, painter);
-            }
-            Lobe::Glass { mirrored, refracted, .. } => {
-                for direction in std::iter::once(mirrored).chain(refracted) {
-                    self.paint_arrow(hit.point, direction * unit, LOBE, painter);
-                }
-            }
-        }
-    }
-
-    fn paint_arrow(&self, from: DVec3, by: DVec3, colour: Color32, painter: &Painter) {
-        if let Some([start, end]) = self.line(from, from + by) {
+        let directions = match ray.event {
+            Event::Scattered(Lobe::Metal { mirrored, .. })
+            | Event::Absorbed(Lobe::Metal { mirrored, .. }) => [Some(mirrored), None],
+            Event::Scattered(Lobe::Glass { mirrored, refracted, .. }) => [Some(mirrored), refracted],
+            _ => [None; 2],
+        };
+        let arrows = directions.into_iter().flatten().map(|direction| (direction, LOBE));
+        for (direction, colour) in std::iter::once((hit.normal, NORMAL)).chain(arrows) {
+            let Some([start, end]) = self.line(hit.point, hit.point + direction * unit) else { continue };
             for stroke in [Stroke::new(4.0, Color32::from_black_alpha(150)), Stroke::new(2.0, colour)] {
                 painter.arrow(start, end - start, stroke);
             }
-        }
-    }
-
-    /// The outline of a ball.
-    fn paint_ball(&self, center: DVec3, radius: f64, painter: &Painter) {
-        let away = (center - self.camera.look_from).normalize_or_zero();
-        let (u, v) = away.any_orthonormal_pair();
-        let at = |index: usize| {
-            let (sine, cosine) = (std::f64::consts::TAU * index as f64 / CIRCLE as f64).sin_cos();
-            self.place(center + (u * cosine + v * sine) * radius)
-        };
-        if let Some(points) = (0..CIRCLE).map(at).collect::<Option<Vec<_>>>() {
-            for stroke in [Stroke::new(3.0, Color32::from_black_alpha(120)), Stroke::new(1.5, LOBE)] {
-                painter.add(Shape::closed_line(points.clone(), stroke));
-            }
-        }
-    }
-
-    fn paint_numbers(&self, path: &Path, ray: usize, painter: &Painter, colour: Color32, font: FontId) {
-        for (index, (step, _)) in path.steps.iter().enumerate() {
-            let Some(at) = self.place(end_of(step)) else { continue };
-            let (radius, fill) = if index == ray { (6.0, Color32::WHITE) } else { (4.0, colour) };
-            painter.circle(at, radius, fill, Stroke::new(1.0, Color32::BLACK));
-            let (number, corner) = ((index + 1).to_string(), at + vec2(7.0, -6.0));
-            let place = painter.layout_no_wrap(number.clone(), font.clone(), Color32::WHITE).size();
-            let behind = Rect::from_min_size(corner - vec2(0.0, place.y), place).expand2(vec2(3.0, 1.0));
-            painter.rect_filled(behind, 3.0, Color32::from_black_alpha(235));
-            painter.rect_stroke(behind, 3.0, Stroke::new(1.0, Color32::WHITE), StrokeKind::Outside);
-            painter.text(corner, Align2::LEFT_BOTTOM, number, font.clone(), Color32::WHITE);
         }
     }
 }

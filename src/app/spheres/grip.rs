@@ -104,63 +104,31 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
     }
 }
 
-/// From a sphere to a place for its copy: beside it, where the copy is in no other sphere, nothing hides it, and the whole
-/// of it is in the picture, or else its centre; above it if there is no such place.
+/// From a sphere to a place for its copy: beside it, where it is seen and touches no other sphere; above it if there is no
+/// such place.
 pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
     let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
-    let radius = original.radius;
+    let (radius, eye, basis) = (original.radius, camera.look_from, camera.basis());
     let overlaps = |center: DVec3, other: &Sphere| {
         center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
     };
-    let basis = camera.basis();
-    let is_in_picture = |point: DVec3| {
-        let place = camera.place_of(point, aspect);
-        place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)))
+    // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
+    let is_free = |center: DVec3| {
+        let is_obstacle = |other: &Sphere| overlaps(center, other) && !overlaps(original.center, other);
+        !scene.spheres.iter().any(is_obstacle)
     };
-    let edges = [basis.u, -basis.u, basis.v, -basis.v].map(|direction| radius * direction);
-    let is_whole = |by: &DVec3| edges.iter().all(|edge| is_in_picture(original.center + *by + *edge));
-    let is_free = |by: &DVec3| {
-        let center = original.center + *by;
-        let is_in_sight = is_in_picture(center) && camera.look_from.distance(center) > 2.0 * radius;
-        // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
-        let is_obstacle = |other: &&Sphere| overlaps(center, other) && !overlaps(original.center, other);
-        is_in_sight && scene.spheres.iter().find(is_obstacle).is_none()
-    };
-    let is_seen = |by: &DVec3| {
-        let center = original.center + *by;
-        let hides = |(index, other): (usize, &Sphere)| {
-            (index == sphere || !overlaps(original.center, other))
-                && !is_glass(scene, other)
-                && is_before(other, camera.look_from, center, radius)
-        };
-        !scene.spheres.iter().enumerate().any(hides)
+    let is_seen = |center: DVec3| {
+        let place = camera.place_of(center, aspect);
+        let is_in_picture = place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)));
+        let (direction, distance) = ((center - eye).normalize_or_zero(), eye.distance(center));
+        let hiding = || scene.pick(eye, direction).is_some_and(|pick| pick.distance < distance - radius);
+        is_in_picture && distance > 2.0 * radius && !hiding()
     };
     let (right, up, back) = (basis.u, basis.v, basis.w);
-    let beside = [right, -right, up];
-    let aslant = [up + right, up - right, up - back, right - back, -right - back];
-    let directions = beside.into_iter().chain(aslant.map(DVec3::normalize)).chain([back]);
-    let places = directions.map(|direction| COPY_RADII * radius * direction);
-    let free: Vec<DVec3> = places.filter(is_free).filter(is_seen).collect();
-    let best = free.iter().find(|by| is_whole(by)).or(free.first());
-    best.copied().unwrap_or(COPY_RADII * radius * basis.v)
-}
-
-fn is_glass(scene: &Scene, sphere: &Sphere) -> bool {
-    let material = scene.materials.get(sphere.material).map(|named| named.material);
-    matches!(material, Some(Material::Dielectric { .. }))
-}
-
-/// Whether a sphere is in front of the middle of another one, of this `center` and `radius`, as seen from `eye`.
-fn is_before(sphere: &Sphere, eye: DVec3, center: DVec3, radius: f64) -> bool {
-    let distance = eye.distance(center);
-    let to_sphere = sphere.center - eye;
-    let along = to_sphere.dot(center - eye) / distance;
-    let across = to_sphere.length_squared() - along * along;
-    let half_chord = sphere.radius * sphere.radius - across;
-    half_chord > 0.0 && {
-        let nearest = along - half_chord.sqrt();
-        0.0 < nearest && nearest < distance - radius
-    }
+    let directions = [right, -right, up, right + up, up - right, right - back, -right - back, back];
+    let places = directions.map(|direction| COPY_RADII * radius * direction.normalize());
+    let is_good = |by: &&DVec3| is_free(original.center + **by) && is_seen(original.center + **by);
+    *places.iter().find(is_good).unwrap_or(&places[2])
 }
 
 /// Rounds a positive number to two digits.
@@ -170,4 +138,62 @@ fn two_digits(value: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const BODY: Body = Body {
+        center: DVec3::new(0.4, -0.2, -3.0),
+        radius: 0.5,
+        material: Material::Lambertian { albedo: DVec3::ONE },
+    };
+
+    fn held(grip: Grip, start: [f64; 2]) -> Held {
+        Held { grip, sphere: 0, before: BODY, start, offset: [0.0; 2] }
+    }
+
+    proptest! {
+        #[test]
+        fn a_dragged_sphere_follows_the_pointer(x in 0.05..0.95f64, y in 0.05..0.95f64) {
+            let camera = Camera::BOOK;
+            let start = camera.place_of(BODY.center, 1.5).unwrap();
+            let moved = held(Grip::Centre, start).dragged(&camera, 1.5, [x, y]);
+            let place = camera.place_of(moved.center, 1.5).unwrap();
+            prop_assert!((place[0] - x).abs() < 1e-9 && (place[1] - y).abs() < 1e-9);
+            prop_assert!((moved.center.z - BODY.center.z).abs() < 1e-9 && moved.radius == BODY.radius);
+            let sized = held(Grip::Radius, start).dragged(&camera, 1.5, [x, y]);
+            prop_assert!(sized.center == BODY.center && sized.radius < camera.look_from.distance(BODY.center));
+        }
+    }
+
+    #[test]
+    fn a_level_drag_ends_far_away() {
+        // The plane is 0.2 under the eye, and the limit is eight times (3.03 + 0.5).
+        let start = Camera::BOOK.place_of(BODY.center, 1.0).unwrap();
+        let to = |along: f64| {
+            let below = 0.2 / (along * along - 0.04).sqrt();
+            held(Grip::Level, start).dragged(&Camera::BOOK, 1.0, [0.5, 0.5 + 0.5 * below])
+        };
+        for (along, is_moved) in [(28.2, true), (28.4, false)] {
+            assert_eq!(to(along) != BODY, is_moved, "{along}");
+        }
+        assert!((to(28.2).center.y + 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_new_sphere_and_a_copy_touch_nothing_else() {
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, -100.5, -3.0), 100.0, 0);
+        let hit = scene.pick(DVec3::ZERO, Camera::BOOK.direction_through([0.5, 0.8], 1.5));
+        let lying = new_body(hit, &Camera::BOOK, 1.5, [0.5, 0.8]);
+        let gap = lying.center.distance(scene.spheres[0].center) - 100.0 - lying.radius;
+        assert!(gap.abs() < 1e-9 && lying.radius > 0.01, "{lying:?}");
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
+        for direction in [DVec3::X, DVec3::NEG_X, DVec3::Y] {
+            let by = to_copy(&scene, &Camera::BOOK, 1.5, 1);
+            assert!((by / (0.5 * COPY_RADII)).distance(direction) < 1e-12, "{direction}: {by}");
+            scene.add_sphere(scene.spheres[1].center + direction, 0.5, 0);
+        }
+        assert_eq!(to_copy(&scene, &Camera::BOOK, 1.5, 99), DVec3::ZERO);
+    }
+}

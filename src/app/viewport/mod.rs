@@ -1,23 +1,13 @@
 //! The viewport: the picture, and mouse input on it.
 
-mod badge;
-mod dropped;
-mod gizmo;
-mod legend;
-mod mark;
+mod axes;
 mod moving;
-mod outline;
 mod paint;
 mod placement;
-mod point;
 mod selection;
-mod still;
-mod touch;
 
 pub use paint::{Pictures, SecondPicture};
 pub use placement::Placement;
-use placement::whole_pixels;
-pub use touch::Touch;
 
 use super::command::Command;
 use super::facts::Facts;
@@ -27,41 +17,41 @@ use super::model::edit::Edit;
 use super::model::view::Mode;
 use super::navigation;
 use super::spheres::Selected;
-use super::spheres::grip::new_body;
+use super::widgets::compact;
 use crate::scene::Camera;
-use dropped::paint_drop;
-use eframe::egui::{
-    self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, vec2,
-};
-use mark::Mark;
-use moving::{Moving, Target};
-use paint::{own_side, paint};
-use point::place_at;
+use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
+use moving::Moving;
+use placement::{Zoom, whole_pixels};
 use selection::Selection;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// How close the pointer must be to the wipe's divider to grab it, in points.
-const GRIP: f32 = 8.0;
+const GRIP: f32 = 12.0;
+
+/// Space around the picture, in points.
+const MARGIN: f32 = 8.0;
+
+/// How long the axes stay after the camera has turned.
+const AXES_STAY: Duration = Duration::from_millis(500);
 
 /// The state of the viewport.
 #[derive(Default)]
 pub struct Viewport {
     /// Position and scale of the picture.
     pub placement: Placement,
-    mark: Option<Mark>,
+    /// Those of the traced picture, while a kept one is shown or the window presents.
+    parked: Option<Placement>,
     moving: Moving,
     is_dragging_divider: bool,
-    /// Where the context menu was opened, if on the picture.
-    menu_at: Option<Pos2>,
-    /// The area of the viewport when it was last drawn.
+    /// The pixel where the context menu was opened.
+    menu_at: Option<[u32; 2]>,
     room: Option<Rect>,
-    /// The room for the picture when it was last drawn, pixels of the screen.
     room_pixels: [u32; 2],
-    /// The selected sphere in the picture.
     selection: Selection,
-    /// The drag that marks a part of the picture.
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
+    /// When the camera was turned last.
+    turned: Option<Instant>,
 }
 
 /// The state that the viewport may change.
@@ -70,8 +60,32 @@ pub struct Handle<'a> {
     pub camera: &'a mut Camera,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: &'a mut f32,
-    /// The selected sphere.
     pub selected: Option<&'a Selected>,
+}
+
+/// What the user does in a frame.
+#[derive(Default)]
+pub struct Touch {
+    /// The camera was moved.
+    pub is_move: bool,
+    /// The camera would have moved, but the stage traces no rays.
+    pub is_refused: bool,
+    /// The camera was dragged around a point.
+    pub is_orbit: bool,
+    /// A drag has ended that leaves nothing but sky and ground in sight.
+    pub is_lost: bool,
+    /// The pixel under the pointer.
+    pub hovered: Option<[u32; 2]>,
+    /// The pixel whose paths the user asked for.
+    pub listed: Option<[u32; 2]>,
+    /// What a click has done, in words.
+    pub said: Option<String>,
+    /// The sphere that the user selected; the inner `None` stands for no sphere.
+    pub select: Option<Option<usize>>,
+    pub is_divider_moved: bool,
+    pub edit: Option<Edit>,
+    /// The area of the viewport.
+    pub room: Option<Rect>,
 }
 
 impl Viewport {
@@ -85,6 +99,12 @@ impl Viewport {
         self.room_pixels
     }
 
+    /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
+    pub fn aim(&self) -> [f64; 2] {
+        const FOREGROUND: [f64; 2] = [0.5, 0.7];
+        self.pointer.unwrap_or(FOREGROUND)
+    }
+
     /// Draws the picture and handles input on it.
     pub fn ui(
         &mut self,
@@ -95,67 +115,95 @@ impl Viewport {
         commands: &mut Vec<Command>,
     ) -> Touch {
         let Handle { camera, divider, selected } = handle;
-        let is_kept = facts.model.view.kept.looked().is_some();
-        let selected = selected.filter(|_| !is_kept);
-        let sight = Target { document: facts.document(), has_rays: facts.no_rays().is_none() };
+        let (view, live) = (&facts.model.view, facts.document());
+        let is_kept = view.kept.looked().is_some();
+        let (selected, has_rays) = (selected.filter(|_| !is_kept), live.no_rays().is_none());
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
-        self.room = Some(room);
-        let pixels = facts.shown().size();
-        let size = vec2(pixels[0] as f32, pixels[1] as f32);
-        let margin = if facts.model.remembered.has_panels { 10.0 } else { 0.0 };
-        let scale = ui.ctx().pixels_per_point();
-        let rect = self.placement.place(room.shrink(margin), size, scale);
-        self.room_pixels = whole_pixels(room.shrink(margin), scale);
-
+        let rect = self.place(ui, room, facts);
         let mut touch = Touch { room: Some(room), ..Touch::default() };
-        let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);
-        let before = *divider;
+        let is_wipe = view.mode() == Some(Mode::Wipe);
+        let before = (*divider, *camera);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        touch.is_divider_moved = *divider != before;
+        touch.is_divider_moved = *divider != before.0;
         if is_kept && !is_held {
-            still::handle(ui, &response, &mut self.placement);
+            moving::move_picture(ui, &response, &mut self.placement);
             is_held = true;
         }
         if !is_held {
-            (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, facts.document());
+            (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, live);
         }
-        if !is_held {
-            self.moving.handle(ui, &response, &mut self.placement, (camera, sight), &mut touch);
-            self.handle_click(ui, &response, sight, camera, &mut touch);
-        } else {
+        if is_held {
             self.moving = Moving::default();
+        } else {
+            self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
+            self.handle_click(ui, &response, live, camera, &mut touch);
+        }
+        if touch.is_move && camera.basis().w != before.1.basis().w {
+            self.turned = Some(Instant::now());
         }
         let document = match is_kept {
             true => facts.shown().clone(),
-            false => Document { camera: *camera, ..facts.document().clone() },
+            false => Document { camera: *camera, ..live.clone() },
         };
-        let notices = pictures.notices.len();
-        let taken = paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
-        let is_left = facts.model.view.is_other_earlier(&document);
-        let clip = if is_wipe { own_side(rect, *divider, is_left) } else { rect };
-        let rows = if notices > 0 { notices + usize::from(is_wipe) } else { 0 };
-        self.selection.paint(ui, (rect, clip.intersect(room)), selected, (rows, &taken));
-        self.moving.paint(ui, clip.intersect(room), rect, &document);
-        self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
+        paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, facts);
+        let own = if is_wipe {
+            Rect { min: egui::pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.top()), ..rect }
+        } else {
+            rect
+        };
+        self.selection.paint(ui, (rect, own.intersect(room)), selected, &document);
+        self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
-        touch.hovered = response.hover_pos().and_then(|at| self.placement.pixel_at(at, pixels));
+        let pixel = |at| self.placement.pixel_at(at, document.size());
+        touch.hovered = response.hover_pos().and_then(pixel);
         if response.secondary_clicked() {
-            self.menu_at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
+            let at = response.interact_pointer_pos();
+            self.menu_at = at.and_then(pixel);
+            if let Some(at) = at.filter(|at| rect.contains(*at) && !is_kept && has_rays) {
+                touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
+            }
         }
-        response.context_menu(|ui| self.context_menu(ui, camera, sight, (facts, commands), &mut touch));
-        if facts.model.has_panels() && facts.model.remembered.has_axes && sight.has_rays && !is_kept {
-            gizmo::ui(ui, room, (camera, sight), commands, &mut touch);
+        if response.context_menu(|ui| context_menu(ui, facts, commands)).is_some() {
+            // The entries mean the pixel where the menu was opened.
+            touch.hovered = self.menu_at;
         }
-        paint_drop(ui, room);
+        if has_rays && !is_kept && facts.model.presentation.is_none() && self.has_axes(ui, facts) {
+            axes::ui(ui, room, (camera, live), commands, &mut touch);
+        }
+        paint::paint_drop(ui, room);
         touch
     }
 
-    /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
-    pub fn aim(&self) -> [f64; 2] {
-        const FOREGROUND: [f64; 2] = [0.5, 0.7];
-        self.pointer.unwrap_or(FOREGROUND)
+    /// Places the picture. A kept one, and one that is presented, have a place of their own.
+    fn place(&mut self, ui: &Ui, room: Rect, facts: &Facts) -> Rect {
+        let model = &facts.model;
+        let is_presenting = model.presentation.is_some();
+        let is_apart = is_presenting || model.view.kept.looked().is_some();
+        match (is_apart, self.parked.take()) {
+            (true, None) => self.parked = Some(self.placement.clone()),
+            (false, Some(parked)) => self.placement = parked,
+            (_, parked) => self.parked = parked,
+        }
+        let is_of_sight = matches!(self.placement.zoom(), Zoom::Part(_));
+        if !facts.has_sight && (is_presenting || is_of_sight) {
+            self.placement.fit();
+        }
+        let margin = if is_presenting || !model.has_panels() { 0.0 } else { MARGIN };
+        let (inner, scale) = (room.shrink(margin), ui.ctx().pixels_per_point());
+        (self.room, self.room_pixels) = (Some(room), whole_pixels(inner, scale));
+        let [width, height] = facts.shown().size().map(|along| along as f32);
+        self.placement.place(inner, vec2(width, height), scale)
+    }
+
+    /// Whether the axes are shown: always if the user wants that, otherwise while the camera turns and a little longer.
+    fn has_axes(&self, ui: &Ui, facts: &Facts) -> bool {
+        let left = self.turned.and_then(|at| AXES_STAY.checked_sub(at.elapsed()));
+        if let Some(left) = left {
+            ui.ctx().request_repaint_after(left);
+        }
+        facts.model.remembered.has_axes || left.is_some()
     }
 
     fn handle_divider(&mut self, ui: &Ui, response: &Response, is_wipe: bool, divider: &mut f32) -> bool {
@@ -164,22 +212,18 @@ impl Viewport {
             return false;
         }
         let rect = self.placement.rect();
-        let x = rect.left() + rect.width() * *divider;
-        let pointer = response.interact_pointer_pos().or(response.hover_pos());
-        let is_near = pointer.is_some_and(|at| (at.x - x).abs() < GRIP);
+        let is_near = |at: Pos2| (at.x - rect.lerp_inside(vec2(*divider, 0.0)).x).abs() < GRIP;
         if response.drag_started_by(PointerButton::Primary) {
-            let origin = ui.input(|input| input.pointer.press_origin());
-            self.is_dragging_divider = origin.is_some_and(|at| (at.x - x).abs() < GRIP);
+            self.is_dragging_divider = ui.input(|input| input.pointer.press_origin()).is_some_and(is_near);
         }
-        if self.is_dragging_divider {
-            if let Some(at) = response.interact_pointer_pos() {
-                *divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
-            }
-            if !response.dragged() {
-                self.is_dragging_divider = false;
-            }
+        let pointer = response.interact_pointer_pos().or(response.hover_pos());
+        let is_on_it = self.is_dragging_divider || (!response.dragged() && pointer.is_some_and(is_near));
+        if self.is_dragging_divider
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            *divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
         }
-        let is_on_it = self.is_dragging_divider || (is_near && !response.dragged());
+        self.is_dragging_divider &= response.dragged();
         if is_on_it {
             ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
         }
@@ -190,147 +234,83 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &Response,
-        sight: Target<'_>,
+        live: &Document,
         camera: &mut Camera,
         touch: &mut Touch,
     ) {
         let rect = self.placement.rect();
-        let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) else { return };
-        if !sight.has_rays {
-            touch.is_refused |= response.clicked();
-        } else if response.double_clicked() {
-            self.use_at(Spot::Centre, at, sight, camera, touch);
-        } else if response.clicked() {
-            let is_held = |is_it: fn(&egui::Modifiers) -> bool| {
-                ui.input(|input| is_it(&input.modifiers)) || is_release(ui, is_it)
-            };
-            let spot = if is_held(|modifiers| modifiers.alt) {
-                Spot::Paths
-            } else if is_held(|modifiers| modifiers.command) {
-                Spot::Focus
-            } else {
-                Spot::Select
-            };
-            self.use_at(spot, at, sight, camera, touch);
-        }
-    }
-
-    fn use_at(&mut self, spot: Spot, at: Pos2, sight: Target<'_>, camera: &mut Camera, touch: &mut Touch) {
-        let document = sight.document;
-        let place = place_at(self.placement.rect(), at);
-        match spot {
-            Spot::Select => {
-                let sphere = document.pick(camera, place).map(|pick| pick.sphere);
-                touch.select = Some(sphere);
-                if sphere.is_none() {
-                    self.mark = Some(Mark { place, text: "sky".to_owned(), since: Instant::now() });
-                }
-            }
-            Spot::Add => {
-                let hit = document.pick(camera, place);
-                touch.edit = Some(Edit::Add(new_body(hit, camera, document.aspect(), place)));
-            }
-            Spot::Focus => self.focus(sight, camera, place),
-            Spot::Centre => self.recentre(sight, camera, place),
-            Spot::Paths => {
-                let settings = document.settings;
-                touch.listed = self.placement.pixel_at(at, [settings.width, settings.height]);
-            }
-        }
-    }
-
-    fn focus(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
-        let text = match sight.document.pick(camera, place) {
-            Some(pick) => {
-                *camera = navigation::focus(camera, pick.point);
-                let distance = camera.depth_of(pick.point);
-                let is_pinhole = camera.defocus_angle_degrees == 0.0;
-                let note = if is_pinhole { " (a pinhole is sharp everywhere)" } else { "" };
-                format!("focus {distance:.3}{note}")
-            }
-            None => "sky".to_owned(),
-        };
-        self.mark = Some(Mark { place, text, since: Instant::now() });
-    }
-
-    fn recentre(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
-        if let Some(pick) = sight.document.pick(camera, place) {
-            *camera = navigation::recentre(camera, pick.point);
-            let text = "centre".to_owned();
-            self.mark = Some(Mark { place: [0.5, 0.5], text, since: Instant::now() });
-        }
-    }
-
-    fn context_menu(
-        &mut self,
-        ui: &mut Ui,
-        camera: &mut Camera,
-        sight: Target<'_>,
-        (facts, commands): (&Facts, &mut Vec<Command>),
-        touch: &mut Touch,
-    ) {
-        ui.set_width(menu::MENU_WIDTH);
-        if still::menu(ui, facts, commands) {
+        let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
+        let Some(at) = at.filter(|_| response.clicked()) else { return };
+        if live.no_rays().is_some() {
+            touch.is_refused = true;
             return;
         }
-        if let Some(at) = self.menu_at {
-            for spot in Spot::ALL {
-                let [name, mouse] = spot.names();
-                let mouse = RichText::new(mouse).color(ui.visuals().weak_text_color());
-                let button =
-                    egui::Button::new(name).shortcut_text(mouse).min_size(vec2(ui.available_width(), 0.0));
-                let reason = facts.no_rays();
-                let response = ui.add_enabled(reason.is_none(), button);
-                if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
-                    self.use_at(spot, at, sight, camera, touch);
-                    ui.close();
-                }
+        let place = place_at(rect, at);
+        let pick = live.pick(camera, place);
+        if response.double_clicked() {
+            if let Some(pick) = pick {
+                *camera = navigation::recentre(camera, pick.point);
             }
-            ui.separator();
-        }
-        if facts.model.selected.is_some() {
-            for command in [Command::DuplicateSphere, Command::DeleteSphere] {
-                menu::item(ui, facts, commands, command);
-            }
-            ui.separator();
-        }
-        for command in [Command::Home, Command::AddBookmark, Command::Keep, Command::CopyCommand] {
-            menu::item(ui, facts, commands, command);
-        }
-    }
-}
-
-/// An action for a point of the picture.
-#[derive(Clone, Copy)]
-enum Spot {
-    Select,
-    Focus,
-    Centre,
-    Paths,
-    Add,
-}
-
-impl Spot {
-    /// All actions, in the order of the menu.
-    const ALL: [Spot; 5] = [Spot::Select, Spot::Focus, Spot::Centre, Spot::Paths, Spot::Add];
-
-    /// Its name in the menu, and its mouse shortcut.
-    fn names(self) -> [&'static str; 2] {
-        match self {
-            Spot::Select => ["Select this", "Click"],
-            Spot::Focus => ["Focus on this", "Ctrl and click"],
-            Spot::Centre => ["Look at this", "Double click"],
-            Spot::Paths => ["List the paths of this pixel", "T"],
-            Spot::Add => ["Add a sphere here", ""],
+        } else if is_held(ui, |modifiers| modifiers.alt) {
+            touch.listed = self.placement.pixel_at(at, live.size());
+        } else if is_held(ui, |modifiers| modifiers.command) {
+            let said = pick.map(|pick| {
+                *camera = navigation::focus(camera, pick.point);
+                let is_pinhole = camera.defocus_angle_degrees == 0.0;
+                let note = if is_pinhole { "; a pinhole is sharp everywhere" } else { "" };
+                format!("Focus distance {}{note}", compact(camera.depth_of(pick.point)))
+            });
+            touch.said = Some(said.unwrap_or_else(|| "The sky has no distance".to_owned()));
+        } else {
+            touch.select = Some(pick.map(|pick| pick.sphere));
         }
     }
 }
 
 /// Whether a key was held when a button was released. In a long frame, it may have been released since.
-fn is_release(ui: &Ui, is_held: impl Fn(&egui::Modifiers) -> bool) -> bool {
-    let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if is_held(modifiers));
-    ui.input(|input| input.events.iter().any(is_it))
+fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
+    let is_release = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if is_it(modifiers));
+    ui.input(|input| is_it(&input.modifiers) || input.events.iter().any(is_release))
 }
 
-#[cfg(test)]
-mod tests;
+/// The menu of a right click.
+fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    use Command as C;
+    ui.set_width(menu::MENU_WIDTH);
+    let is_kept = facts.model.view.kept.looked().is_some();
+    let of_sphere: &[Command] = match facts.model.selected {
+        Some(_) if !is_kept => &[C::LookAtSphere, C::FocusSphere, C::DuplicateSphere, C::DeleteSphere],
+        _ => &[],
+    };
+    let of_picture: &[Command] = match is_kept {
+        true => &[
+            C::LookLive,
+            C::KeptWipe,
+            C::KeptDifference,
+            C::OnlyNoise,
+            C::GoOnFromKept,
+            C::Save,
+            C::DeleteKept,
+        ],
+        false => &[C::ListPaths, C::CopyPicture, C::Keep],
+    };
+    for command in of_sphere {
+        menu::item(ui, facts, commands, *command);
+    }
+    if !of_sphere.is_empty() {
+        ui.separator();
+    }
+    for command in of_picture {
+        menu::item(ui, facts, commands, *command);
+    }
+}
+
+/// The position in the picture of a point of the screen, 0 to 1 from the upper left.
+fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
+    let along = (at - rect.min) / rect.size();
+    [f64::from(along.x), f64::from(along.y)]
+}
+
+fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
+    rect.min + vec2(place[0] as f32, place[1] as f32) * rect.size()
+}

@@ -1,9 +1,6 @@
-//! Draws the viewport: the picture, the second picture and labels.
+//! Draws the viewport: the picture, the second picture, and words over them.
 
-use super::badge::{badge, badge_below};
-use super::legend::paint_scale;
-use super::placement::{Placement, Zoom};
-use super::selection::ROW;
+use super::placement::Placement;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::fitted::Fitted;
@@ -13,14 +10,24 @@ use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::numbers::heat::HeatScale;
+use crate::app::widgets::{Sign, paint_sign};
+use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
-use eframe::egui::{self, Align2, Color32, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2, vec2};
+use eframe::egui::{
+    self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
+    vec2,
+};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
+
+/// From this many screen pixels per pixel on, a grid parts the pixels.
+const GRID: f32 = 16.0;
+
+/// From an edge of the picture to the words in its corner, in points.
+const CORNER: f32 = 8.0;
 
 /// The pictures to draw.
 pub struct Pictures<'a> {
@@ -30,111 +37,99 @@ pub struct Pictures<'a> {
     pub has_film: bool,
     /// The second picture.
     pub second: Option<SecondPicture<'a>>,
-    /// Paths to draw over the picture, if it is the live one.
+    /// Paths to draw over the picture, if it is the traced one.
     pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
-    /// What the user should know about the picture.
-    pub notices: Vec<String>,
+    /// The titles of the two pictures of a comparison, the other one first, each from the longest to the shortest.
+    pub titles: [Vec<String>; 2],
+    /// Whether a difference is nothing anywhere.
+    pub is_same: bool,
 }
 
 /// The picture at the other side of a wipe.
 pub struct SecondPicture<'a> {
-    /// Its pixels.
     pub texture: &'a mut Texture,
     /// The factor by which it is smaller than its full size.
     pub divisor: u32,
-    /// Its name.
-    pub title: String,
     /// Where it lies in the place of the first picture.
     pub fitted: Fitted,
 }
 
-/// Draws the picture at `rect`, within `room`. Returns the places of the words at its top, which others must not cover.
+/// Draws the picture at `rect`, within `room`.
 pub(super) fn paint(
     ui: &Ui,
     [room, rect]: [Rect; 2],
-    placement: &Placement,
-    divider: f32,
+    (placement, divider): (&Placement, f32),
     pictures: Pictures<'_>,
     document: &Document,
     facts: &Facts,
-) -> Vec<Rect> {
-    let mut taken = Vec::new();
+) {
     let painter = ui.painter().with_clip_rect(room);
+    let times = placement.times();
     let options = |divisor: u32, is_scaled: bool| {
         // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
         // are always smooth.
-        let is_exact = (placement.times() - 1.0).abs() < 1e-4;
-        let is_square = divisor == 1 && !is_scaled && (is_exact || placement.times() >= SQUARES);
+        let is_exact = (times - 1.0).abs() < 1e-4;
+        let is_square = divisor == 1 && !is_scaled && (is_exact || times >= SQUARES);
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
-    let context = ui.ctx();
-    let Pictures { main, has_film, second, paths, values, notices } = pictures;
-    let second = second.map(|SecondPicture { texture, divisor, title, fitted }| {
-        (texture.id(context, options(divisor, !fitted.is_exact())), title, fitted)
-    });
-    let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor, false)), divisor));
+    let Pictures { main, has_film, second, paths, values, titles, is_same } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::surround(ui));
-    if let Some((texture, _)) = main {
-        painter.image(texture, rect, WHOLE, Color32::WHITE);
-    }
-    let font = TextStyle::Body.resolve(ui.style());
     let view = &facts.model.view;
-    if view.mode() == Some(Mode::Wipe)
-        && let Some((texture, title, fitted)) = second
-    {
-        let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
-        let titles = [facts.title(), format!("{title}{whose}{}", fitted.words())];
-        let is_left = view.is_other_earlier(document);
-        taken.extend(paint_wipe(ui, &painter, rect, divider, (texture, is_left, fitted), &titles));
-    }
-    let is_difference = view.mode() == Some(Mode::Difference);
-    let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
-    if let Some(scale) = scale {
-        paint_scale(ui, &painter, rect.intersect(room), &scale);
+    if let Some((texture, divisor)) = main {
+        painter.image(texture.id(ui.ctx(), options(divisor, false)), rect, WHOLE, Color32::WHITE);
+        if times >= GRID && divisor == 1 {
+            paint_grid(&painter, rect, document.size());
+        }
+        values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
-    if let Some((_, divisor @ 2..)) = main {
-        let text = format!("preview 1/{divisor}");
-        let at = (corners.left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP);
-        taken.push(badge_below(ui, &painter, at, &text, &font, &taken));
+    let [theirs, mine] = titles.each_ref().map(Vec::as_slice);
+    match (view.mode(), second) {
+        (Some(Mode::Wipe), Some(second)) => {
+            let texture = second.texture.id(ui.ctx(), options(second.divisor, !second.fitted.is_exact()));
+            let x = rect.lerp_inside(vec2(divider, 0.0)).x;
+            let side = Rect { max: pos2(x, rect.bottom()), ..rect };
+            paint_second(ui, &painter, rect, side, (texture, &second.fitted));
+            paint_divider(&painter, corners, x);
+            title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
+            title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
+        }
+        (Some(Mode::Difference), _) => {
+            let whole: Vec<_> = theirs.iter().map(|title| format!("Difference from {title}")).collect();
+            title(ui, &painter, corners, Align2::LEFT_TOP, &whole);
+        }
+        _ => {}
     }
-    for (row, notice) in notices.iter().enumerate() {
-        // Below the titles of a wipe.
-        let row = row + usize::from(view.mode() == Some(Mode::Wipe));
-        let at = corners.center_top() + vec2(0.0, 8.0 + ROW * row as f32);
-        taken.push(badge_below(ui, &painter, (at, Align2::CENTER_TOP), notice, &font, &taken));
+    let is_difference = view.mode() == Some(Mode::Difference);
+    if is_same {
+        title(ui, &painter, corners, Align2::RIGHT_TOP, &["Identical to the bit".to_owned()]);
+    }
+    let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
+    if let Some(scale) = scale {
+        paint_scale(ui, &painter, corners, &scale);
+    } else if view.tone.exposure != 0.0 && view.show() == Show::Picture {
+        let text = format!("Exposure {:+.1}", view.tone.exposure).replace('-', "\u{2212}");
+        title(ui, &painter, corners, Align2::LEFT_BOTTOM, &[text]);
     }
     if !has_film {
         let text = match (&facts.invalid, &facts.status.phase) {
             (Some(reason), _) | (None, Phase::Failed(reason)) => reason.as_str(),
-            _ => "preparing…",
+            _ => "Starting",
         };
-        let colour = ui.visuals().weak_text_color();
-        painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
+        let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     }
-    if let Zoom::Times(_) = placement.zoom() {
-        let text = format!("{:.0} %", 100.0 * placement.times());
-        let at = (corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP);
-        taken.push(badge_below(ui, &painter, at, &text, &font, &taken));
-    }
-    if facts.model.view.tone.exposure != 0.0 && view.show() == Show::Picture && !is_difference {
-        let text = format!("exposure {:+.1} stops", view.tone.exposure);
-        let at = corners.left_bottom() + vec2(8.0, -8.0);
-        badge(ui, &painter, at, Align2::LEFT_BOTTOM, &text, &font);
-    }
-    values.paint(ui, room, rect, document.size(), &view.tone);
     if let Some(paths) = paths {
         paths.paint(document, ui, &painter, rect);
     }
-    taken
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
-fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32) {
+fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     if !hole.is_positive() {
         painter.rect_filled(room, 0.0, colour);
         return;
@@ -149,29 +144,14 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
-/// The side of a wipe at `rect` with the first picture. `is_left` says that the second one is left of the divider.
-pub(super) fn own_side(rect: Rect, share: f32, is_left: bool) -> Rect {
-    let x = rect.left() + rect.width() * share;
-    if is_left {
-        Rect { min: pos2(x, rect.top()), ..rect }
-    } else {
-        Rect { max: pos2(x, rect.bottom()), ..rect }
-    }
-}
-
-/// Draws the second picture to the left or right of the divider, and labels both sides. Returns the places of the labels.
-fn paint_wipe(
+/// Draws the second picture at its `side` of the divider.
+fn paint_second(
     ui: &Ui,
-    painter: &egui::Painter,
+    painter: &Painter,
     rect: Rect,
-    share: f32,
-    (texture, is_left, fitted): (egui::TextureId, bool, Fitted),
-    [mine, theirs]: &[String; 2],
-) -> [Rect; 2] {
-    let x = rect.left() + rect.width() * share;
-    let shares = if is_left { [0.0, share] } else { [share, 1.0] };
-    let [from, to] = shares.map(|share| rect.left() + rect.width() * share);
-    let side = Rect::from_x_y_ranges(from..=to, rect.y_range());
+    side: Rect,
+    (texture, fitted): (egui::TextureId, &Fitted),
+) {
     let [left, top, right, bottom] = fitted.part().map(|share| share as f32);
     let place = Rect::from_min_max(rect.lerp_inside(vec2(left, top)), rect.lerp_inside(vec2(right, bottom)));
     let seen = place.intersect(side);
@@ -180,21 +160,117 @@ fn paint_wipe(
         let [min, max] = [seen.min, seen.max].map(|corner| ((corner - place.min) / place.size()).to_pos2());
         painter.image(texture, seen, Rect { min, max }, Color32::WHITE);
     }
-    let [left, right] = if is_left { [theirs, mine] } else { [mine, theirs] };
-    painter.vline(x, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
-    painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+}
+
+fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
+    const HANDLE: f32 = 24.0;
+    painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
+    painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
     let knob = pos2(x, rect.center().y);
-    painter.circle(knob, 9.0, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
-    for side in [-1.0, 1.0] {
-        let tip = knob + vec2(6.0 * side, 0.0);
-        let back = knob + vec2(2.5 * side, 0.0);
-        let points = vec![tip, back + vec2(0.0, -3.5), back + vec2(0.0, 3.5)];
-        painter.add(egui::Shape::convex_polygon(points, Color32::from_gray(60), Stroke::NONE));
+    painter.circle(knob, 0.5 * HANDLE, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
+    for (sign, along) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
+        let place = Rect::from_center_size(knob + vec2(along, 0.0), vec2(10.0, 10.0));
+        paint_sign(painter, place, sign, Color32::from_gray(30));
     }
-    let y = rect.top().max(painter.clip_rect().top()) + 8.0;
-    // Labels are clipped at the picture's edges.
-    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    let font = TextStyle::Body.resolve(ui.style());
-    [(x - 14.0, Align2::RIGHT_TOP, left), (x + 14.0, Align2::LEFT_TOP, right)]
-        .map(|(x, anchor, title)| badge(ui, painter, pos2(x, y), anchor, title, &font))
+}
+
+/// A line of 1 point between pixels.
+fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
+    let (clip, stroke) =
+        (rect.intersect(painter.clip_rect()), Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.5)));
+    for (count, axis) in [(width, 0), (height, 1)] {
+        for line in 1..count {
+            let at = rect.min[axis] + rect.size()[axis] * line as f32 / count as f32;
+            if clip.min[axis] < at && at < clip.max[axis] {
+                if axis == 0 {
+                    painter.vline(at, clip.y_range(), stroke)
+                } else {
+                    painter.hline(clip.x_range(), at, stroke)
+                };
+            }
+        }
+    }
+}
+
+/// The longest of these titles that has room in a corner of the area; none if none has.
+fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
+    let area = area.shrink(CORNER);
+    let at = corner.pos_in_rect(&area);
+    if let Some(text) =
+        titles.iter().find(|text| plate(ui, painter, at, corner, text).0.width() <= area.width())
+    {
+        label(ui, painter, at, corner, text);
+    }
+}
+
+/// The place of words on a plate, and the words.
+fn plate(
+    ui: &Ui,
+    painter: &Painter,
+    at: Pos2,
+    anchor: Align2,
+    text: &str,
+) -> (Rect, std::sync::Arc<egui::Galley>) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let pad = vec2(0.65, 0.35) * font.size;
+    let galley = painter.layout_no_wrap(text.to_owned(), font, ui.visuals().strong_text_color());
+    (anchor.anchor_size(at, galley.size() + 2.0 * pad), galley)
+}
+
+/// Words on a plate, readable on any picture and within the painter's area.
+pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
+    let (rect, galley) = plate(ui, painter, at, anchor, text);
+    let clip = painter.clip_rect();
+    let inwards = (clip.min - rect.min).max(egui::Vec2::ZERO) - (rect.max - clip.max).max(egui::Vec2::ZERO);
+    let rect = rect.translate(inwards);
+    let fill = match ui.visuals().dark_mode {
+        true => theme::surround(ui).gamma_multiply(0.88),
+        false => ui.visuals().panel_fill.gamma_multiply(0.93),
+    };
+    painter.rect_filled(rect, CornerRadius::same(4), fill);
+    painter.galley(rect.center() - 0.5 * galley.size(), galley, Color32::WHITE);
+}
+
+/// Draws the legend of a heat map in the lower left corner of `rect`.
+fn paint_scale(ui: &Ui, painter: &Painter, rect: Rect, scale: &HeatScale) {
+    const STEPS: usize = 64;
+    let (font, visuals) = (TextStyle::Small.resolve(ui.style()), ui.visuals());
+    // The legend is as large as its letters.
+    let em = font.size;
+    let size = vec2(20.0 * em, 5.0 * em);
+    let legend = Rect::from_min_size(rect.left_bottom() + vec2(CORNER, -size.y - CORNER), size);
+    painter.rect_filled(legend, CornerRadius::same(4), visuals.panel_fill.gamma_multiply(0.9));
+    let title = legend.min + vec2(2.0, 0.5) * em;
+    painter.text(title, Align2::LEFT_TOP, scale.title, font.clone(), visuals.weak_text_color());
+    let bar = Rect::from_min_size(title + vec2(0.0, 1.5 * em), vec2(size.x - 4.0 * em, em));
+    for step in 0..STEPS {
+        let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
+        let [from, to] = [step, step + 1].map(|step| bar.left() + bar.width() * step as f32 / STEPS as f32);
+        let part = Rect::from_x_y_ranges(from..=to + 0.5, bar.y_range());
+        painter.rect_filled(part, 0.0, Color32::from_rgb(red, green, blue));
+    }
+    for (value, name) in scale.marks() {
+        let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 0.2 * em);
+        painter.text(at, Align2::CENTER_TOP, name, font.clone(), visuals.text_color());
+    }
+}
+
+/// Shows what will happen to files that are dragged over the window.
+pub(super) fn paint_drop(ui: &Ui, room: Rect) {
+    let Some(file) = ui.input(|input| input.raw.hovered_files.first().cloned()) else { return };
+    let name = file.path.as_ref().and_then(|path| path.file_name()).unwrap_or_default();
+    let text = format!("Drop to open {}", name.to_string_lossy());
+    let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
+    let painter = ui.ctx().layer_painter(layer);
+    painter.rect_filled(room, 0.0, ui.visuals().panel_fill.gamma_multiply(0.8));
+    let edge = Stroke::new(2.0, theme::accent(ui));
+    painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
+    let font = TextStyle::Heading.resolve(ui.style());
+    painter.text(
+        room.center(),
+        Align2::CENTER_CENTER,
+        text.trim_end(),
+        font,
+        ui.visuals().strong_text_color(),
+    );
 }

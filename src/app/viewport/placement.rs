@@ -1,6 +1,6 @@
 //! The position and scale of the picture.
 
-use eframe::egui::{Pos2, Rect, Vec2, pos2, vec2};
+use eframe::egui::{Pos2, Rect, Vec2, pos2};
 
 /// The scale of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,6 +111,9 @@ impl Placement {
             }
             Zoom::Times(times) => times,
         };
+        // The picture's edges stay outside of the room, or in its middle.
+        let beyond = (0.5 * (size * self.times / pixels_per_point - room.size())).max(Vec2::ZERO);
+        self.pan = self.pan.clamp(-beyond, beyond);
         let rect = Rect::from_center_size(room.center() + self.pan, size * self.times / pixels_per_point);
         let corner = (rect.min.to_vec2() * pixels_per_point).round() / pixels_per_point;
         self.rect = Rect::from_min_size(corner.to_pos2(), rect.size());
@@ -141,31 +144,27 @@ pub fn whole_pixels(room: Rect, pixels_per_point: f32) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::{pos2, vec2};
+    use eframe::egui::vec2;
 
     const ROOM: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(900.0, 650.0) };
-    const SIZE: Vec2 = vec2(320.0, 180.0);
+    const SIZE: Vec2 = vec2(320.0, 240.0);
 
-    fn placed() -> Placement {
+    fn placed(scale: f32) -> Placement {
         let mut placement = Placement::default();
-        placement.place(ROOM, SIZE, 1.0);
+        placement.place(ROOM, SIZE, scale);
         placement
-    }
-
-    /// The position in the picture at a point of the screen, in pixels.
-    fn under(placement: &Placement, at: Pos2) -> Vec2 {
-        (at - placement.rect().min) / placement.times()
     }
 
     #[test]
     fn a_zoom_at_the_pointer_leaves_there_what_is_there() {
         for at in [pos2(150.0, 300.0), pos2(700.0, 200.0), ROOM.center(), pos2(880.0, 560.0)] {
-            let mut placement = placed();
+            let mut placement = placed(1.0);
+            let under = |placement: &Placement| (at - placement.rect().min) / placement.times();
             for factor in [1.25, 3.0, 0.5, 1.7] {
-                let before = under(&placement, at);
+                let before = under(&placement);
                 placement.zoom_at(at, factor);
                 placement.place(ROOM, SIZE, 1.0);
-                let off = (under(&placement, at) - before) * placement.times();
+                let off = (under(&placement) - before) * placement.times();
                 // The corner is aligned to a whole pixel.
                 assert!(off.length() < 1.5, "{at}, {factor}: off by {off} points");
             }
@@ -173,43 +172,40 @@ mod tests {
     }
 
     #[test]
-    fn a_zoom_has_its_limits() {
-        let mut placement = placed();
-        placement.zoom_by(1e6);
-        assert_eq!(placement.zoom(), Zoom::Times(128.0));
-        placement.zoom_by(1e-9);
-        assert_eq!(placement.zoom(), Zoom::Times(0.05));
-        placement.zoom_at(ROOM.center(), 1e9);
-        assert_eq!(placement.zoom(), Zoom::Times(128.0));
-        for (times, limited) in [(1e3, 128.0), (3.0, 3.0), (1e-3, 0.05)] {
-            placement.show_as(Framing { times, middle: [0.5, 0.5], size: [320, 180] });
-            placement.place(ROOM, SIZE, 1.0);
-            assert_eq!(placement.times(), limited);
+    fn no_pan_leaves_a_gap_beside_the_picture() {
+        let mut placement = placed(1.0);
+        placement.zoom_by(2.0);
+        for pan in [vec2(1e4, -1e4), vec2(-1e5, 1e5), vec2(30.0, 30.0)] {
+            placement.pan_by(pan);
+            assert!(placement.place(ROOM, SIZE, 1.0).expand(0.5).contains_rect(ROOM), "{pan}");
         }
+        // The last pan is not swallowed by what went too far.
+        assert_eq!(placement.rect().left(), ROOM.left() - 800.0 + 30.0);
+        placement.zoom_by(0.1);
+        placement.pan_by(vec2(50.0, 50.0));
+        assert!(
+            placement.place(ROOM, SIZE, 1.0).center().distance(ROOM.center()) < 1.0,
+            "smaller than the room"
+        );
     }
 
     #[test]
-    fn points_count_in_pixels_of_the_screen() {
-        for (scale, times) in [(1.0, 2.5), (1.5, 3.75), (2.0, 5.0)] {
-            let mut placement = Placement::default();
-            let rect = placement.place(ROOM, SIZE, scale);
-            assert!((rect.size() - vec2(800.0, 450.0)).length() < 1e-3, "{scale}: {rect}");
-            assert!((placement.times() - times).abs() < 1e-5, "{scale}");
+    fn points_count_in_pixels_of_the_screen_and_zooms_have_limits() {
+        for scale in [1.0, 1.5, 2.0] {
+            let mut placement = placed(scale);
+            assert!((placement.rect().size() - ROOM.size()).length() < 1e-3);
+            assert!((placement.times() - 2.5 * scale).abs() < 1e-5, "{scale}");
             placement.show_part([0.5, 0.5, 1.0, 1.0]);
             let rect = placement.place(ROOM, SIZE, scale);
-            assert!((rect.size() - vec2(1600.0, 900.0)).length() < 1e-3, "{scale}: {rect}");
-            assert!((placement.times() - 2.0 * times).abs() < 1e-5, "{scale}");
+            assert!((rect.size() - 2.0 * ROOM.size()).length() < 1e-3, "{scale}: {rect}");
             assert!(rect.lerp_inside(vec2(0.75, 0.75)).distance(ROOM.center()) < 1.0, "{scale}: {rect}");
+            for (factor, limit) in [(1e6, 128.0), (1e-9, 0.05)] {
+                placement.zoom_by(factor);
+                assert_eq!(placement.zoom(), Zoom::Times(limit));
+                placement.place(ROOM, SIZE, scale);
+            }
         }
-        // A picture that is less than a pixel and a half smaller than the room is not enlarged.
-        for (width, is_exact) in [(799.0, true), (798.6, true), (798.0, false), (800.5, false)] {
-            let mut placement = Placement::default();
-            placement.place(ROOM, vec2(width, 10.0), 1.0);
-            assert_eq!(placement.times() == 1.0, is_exact, "{width}");
-        }
-        assert_eq!(whole_pixels(ROOM, 1.0), [800, 600]);
         let odd = Rect::from_min_size(ROOM.min, vec2(99.996, 50.5));
         assert_eq!((whole_pixels(odd, 1.0), whole_pixels(odd, 2.0)), ([100, 50], [200, 101]));
-        assert_eq!(whole_pixels(Rect::NOTHING, 1.0), [0, 0]);
     }
 }

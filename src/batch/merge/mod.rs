@@ -1,20 +1,23 @@
 //! `weekender merge`: adds films of the same picture, or the parts of a plan as they come, and makes an animated PNG of
 //! frames.
 
-mod films;
 mod pieces;
 mod plan;
 
-use crate::cli::MergeOptions;
-use crate::film::{Description, Film, SampleRanges};
+use crate::cli::terminal::print;
+use crate::cli::{MergeOptions, NamedPath, check_paths};
+use crate::film::{Description, Film, SampleRanges, merge_files};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::plan::Plan;
-use crate::job::saved::Replaced;
+use crate::job::recipe::file;
+use crate::job::saved::{Replaced, same_job};
+use crate::progressive::describe::counted;
 use crate::stages::Transfer;
 use crate::system::console;
-use crate::system::failure::{FAILED, Failure, output_failure};
+use crate::system::failure::Failure;
 use crate::system::files::{FileLock, ShownPath, check_writable};
 use anyhow::anyhow;
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -36,11 +39,38 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
         films if films.iter().any(|film| Plan::is_at(film)) => refuse(
             "a plan names its parts itself: merge it alone, then merge the result with the other files",
         ),
-        _ if options.watch => refuse(
-            "--watch needs a plan: only a plan says which parts are to come; make one with `weekender plan`",
+        _ if options.watch || options.check => refuse(
+            "--watch and --check need a plan: only a plan says which parts there should be; make one with `weekender plan`",
         ),
-        films => films::run(films, options),
+        films => merge(films, options),
     }
+}
+
+/// Merges films of one picture.
+fn merge(films: &[PathBuf], options: &MergeOptions) -> Result<ExitCode, Failure> {
+    let mut seen = HashSet::new();
+    let is_again = |film: &&PathBuf| !seen.insert(film.canonicalize().unwrap_or_else(|_| film.to_path_buf()));
+    if let Some(film) = films.iter().find(is_again) {
+        return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
+    }
+    check_outputs("the merge", films, options)?;
+    let sum = merge_files(films, same_job).map_err(Failure::input)?;
+    let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
+    warn_of_loss(&options.out, &sum.film, &sum.description);
+    write(&options.out, &sum.film, recipe.rules.transfer, &sum.description)?;
+    let samples = sum.film.samples();
+    let (count, from) = (counted(samples.count(), "sample"), counted(films.len() as u64, "film"));
+    let text = format!("{count} per pixel ({samples}) from {from}\n{}", wrote(&options.out));
+    print(&text).map_err(Failure::Run)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses to replace an input, which is `what`, by a result.
+fn check_outputs(what: &'static str, inputs: &[PathBuf], options: &MergeOptions) -> Result<(), Failure> {
+    fn named<'a>(what: &'static str, paths: &'a [PathBuf]) -> Vec<NamedPath<'a>> {
+        paths.iter().map(|path| (what, Some(path.as_path()))).collect()
+    }
+    check_paths(&named(what, inputs), &named("--out", &options.out)).map_err(Failure::Input)
 }
 
 /// Warns of samples that are lost because `film` replaces a film that has others.
@@ -58,12 +88,4 @@ fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Descrip
 
 fn wrote(out: &[PathBuf]) -> String {
     out.iter().map(|out| format!("wrote {}\n", out.shown())).collect()
-}
-
-/// Prints the findings of `--check` in full, however long they are: some are commands.
-fn print_findings(lines: &[String], is_good: bool) -> Result<ExitCode, Failure> {
-    let lines = lines.iter().flat_map(|line| line.split('\n'));
-    let text: String = lines.map(|line| console::printable(line).into_owned() + "\n").collect();
-    console::write_out(&text).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
-    Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }

@@ -4,7 +4,7 @@ use crate::film::{SampleRanges, checkpoint};
 use crate::job::plan::{Commands, Part, Plan, Work};
 use crate::job::saved::FrameState;
 use crate::progressive::describe::SOFTWARE;
-use crate::system::files::{ShownPath, Stamp};
+use crate::system::files::ShownPath;
 use std::path::PathBuf;
 
 /// What exists of a film or frame.
@@ -28,8 +28,6 @@ pub(super) struct Piece {
     kind: Kind,
     pub path: PathBuf,
     pub state: State,
-    /// The file as last seen.
-    seen: Option<Stamp>,
     /// Whether its final version is in the sum.
     pub is_merged: bool,
 }
@@ -49,14 +47,7 @@ pub(super) struct Pieces<'a> {
 impl<'a> Pieces<'a> {
     /// The films or frames, not checked yet.
     pub fn of(plan: &'a Plan) -> Self {
-        let piece = |part, kind, path| Piece {
-            part,
-            kind,
-            path,
-            state: State::Missing,
-            seen: None,
-            is_merged: false,
-        };
+        let piece = |part, kind, path| Piece { part, kind, path, state: State::Missing, is_merged: false };
         let all = match &plan.manifest.work {
             Work::Samples(work) => {
                 let film =
@@ -73,18 +64,16 @@ impl<'a> Pieces<'a> {
         Pieces { plan, all }
     }
 
-    /// Checks the files that changed since the last call, and returns them. Only the head of a film is read.
-    pub fn look(&mut self) -> Vec<&Piece> {
-        let mut changed = Vec::new();
+    /// Checks the files that were not whole. Only the head of a film is read.
+    pub fn look(&mut self) {
         for piece in self.all.iter_mut().filter(|piece| piece.state != State::Whole) {
-            let now = Stamp::of(&piece.path).ok().flatten();
-            if now != piece.seen {
-                piece.state = if now.is_some() { piece.look(self.plan) } else { State::Missing };
-                piece.seen = now;
-                changed.push(&*piece);
-            }
+            piece.state = piece.look(self.plan);
         }
-        changed
+    }
+
+    /// A line for each file that is damaged, of another picture or of other samples.
+    pub fn wrong(&self) -> impl Iterator<Item = String> {
+        self.all.iter().filter(|piece| matches!(piece.state, State::Wrong(_))).map(Piece::line)
     }
 
     fn lacking(&self) -> impl Iterator<Item = &Piece> {
@@ -121,6 +110,7 @@ impl<'a> Pieces<'a> {
 impl Piece {
     fn look(&self, plan: &Plan) -> State {
         match (&self.kind, &plan.manifest.work) {
+            _ if self.path.symlink_metadata().is_err() => State::Missing,
             (Kind::Frame(frame), Work::Frames(work)) => {
                 let recipe = plan.recipe.at_frame(&work.camera_path(&plan.recipe), *frame);
                 match FrameState::of(&self.path, &recipe, SOFTWARE) {

@@ -32,11 +32,6 @@ impl Display {
         }
     }
 
-    /// Whether it is a bar, whose length shows the progress.
-    pub fn is_bar(&self) -> bool {
-        matches!(self, Display::Bar(_))
-    }
-
     /// Shows `text` at step `position`. A line is printed only if one is due.
     pub fn update(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
@@ -63,6 +58,10 @@ impl Display {
     /// Prints a message that must be read, even if progress is off.
     pub fn say(&self, message: &str) {
         self.above(|| console::note(message));
+    }
+
+    pub fn warn(&self, warning: &str) {
+        self.say(&format!("warning: {warning}"));
     }
 
     /// Hides the bar while `print` writes to the terminal.

@@ -25,28 +25,11 @@ pub fn print(text: &str) -> Result<()> {
 /// # Errors
 /// As for [`print()`]. Standard error never fails.
 pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
-    if is_taken(json) {
+    if json == Some(&JsonTarget::StandardOutput) {
         console::note(text);
         return Ok(());
     }
     print(text)
-}
-
-/// As [`print_beside`], for text with the program's own colours.
-///
-/// # Errors
-/// As for [`print()`].
-pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
-    if is_taken(json) {
-        console::note_painted(text);
-        return Ok(());
-    }
-    checked(console::write_out(text))
-}
-
-/// Whether standard output is reserved for JSON.
-pub fn is_taken(json: Option<&JsonTarget>) -> bool {
-    json == Some(&JsonTarget::StandardOutput)
 }
 
 /// Writes `value` as JSON, followed by a newline.

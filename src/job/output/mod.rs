@@ -1,17 +1,14 @@
-//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`],
-//! 8-bit ones without the recipe if it is longer than [`RECIPE_LIMIT`]. Pictures of other programs can be read, too:
-//! [`read_picture`].
+//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`].
+//! Pictures of other programs can be read, too: [`read_picture`].
 
 mod apng;
 mod limits;
-mod long_recipe;
 mod pfm;
 mod png;
 mod ppm;
 mod read;
 
 pub use apng::{FrameRate, animation_in, check_frame, write_animation};
-pub use long_recipe::{RECIPE_LIMIT, length_of_missing, recipe_in_picture};
 pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
@@ -21,6 +18,9 @@ use crate::stages::Transfer;
 use crate::system::files::{self, InputError, ShownPath, WriteError, replace_file};
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
+
+/// Longest recipe that is read from a PNG or PPM file, bytes: about two million listed spheres.
+const RECIPE_LIMIT: usize = 256 << 20;
 
 /// File format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -84,7 +84,7 @@ pub enum OutputError {
 }
 
 /// How a PPM stores its numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum PpmForm {
     /// As bytes (P6).
     #[default]

@@ -1,7 +1,7 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
 use super::limits::invalid;
-use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
+use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use ::png::EncodingError;
@@ -63,8 +63,7 @@ pub(super) fn begin<W: Write>(
         if latin_1 { encoder.add_text_chunk(key, value)? } else { encoder.add_itxt_chunk(key, value)? }
     }
     let mut writer = encoder.write_header()?;
-    let mut recipe =
-        ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, recipe_in_picture(description.recipe()));
+    let mut recipe = ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, description.recipe());
     recipe.compressed = true;
     recipe.compress_text()?;
     writer.write_text_chunk(&recipe)?;

@@ -1,7 +1,7 @@
 //! PPM, binary (P6) or as text (P3). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
 //! key alone, then the lines of the recipe.
 
-use super::{Description, PpmForm, RECIPE_KEY, RECIPE_LIMIT, recipe_in_picture, write_rows};
+use super::{Description, PpmForm, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Write};
@@ -18,7 +18,7 @@ pub(super) fn write(
         writeln!(writer, "# {line}")?;
     }
     writeln!(writer, "# {RECIPE_KEY}:")?;
-    for line in recipe_in_picture(description.recipe()).split('\n') {
+    for line in description.recipe().split('\n') {
         writeln!(writer, "# {line}")?;
     }
     writeln!(writer, "{} {}\n255", film.width(), film.height())?;

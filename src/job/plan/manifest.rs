@@ -12,7 +12,6 @@ use crate::stages::Stage;
 use crate::system::files::{self, ShownPath, write_text};
 use anyhow::{Result, anyhow, ensure};
 use serde::{Deserialize, Serialize};
-use std::collections::HashSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -115,14 +114,20 @@ impl Part {
 impl Samples {
     /// The parts of a division of `samples`, with the names of their files.
     pub fn new(samples: &Range<u64>, division: &Division) -> Self {
-        let digits = division.parts.len().saturating_sub(1).to_string().len();
+        let count = division.parts.len();
         let part = |(index, range): (usize, &Range<u64>)| Part {
-            file: format!("part-{index:0digits$}.exr"),
+            file: part_file(index, count),
             samples: [range.start, range.end],
         };
         let parts = division.parts.iter().enumerate().map(part).collect();
         Samples { samples: [samples.start, samples.end], block: division.block, parts }
     }
+}
+
+/// The film file of a part, with as many digits as the last of `count` parts needs.
+fn part_file(index: usize, count: usize) -> String {
+    let digits = count.saturating_sub(1).to_string().len();
+    format!("part-{index:0digits$}.exr")
 }
 
 impl FramePart {
@@ -197,14 +202,6 @@ impl Work {
     }
 }
 
-/// Read first: other versions of a manifest may have other keys.
-#[derive(Deserialize)]
-struct Versions {
-    plan_version: u32,
-    sample_version: u32,
-    program: String,
-}
-
 impl Manifest {
     /// A manifest of this version, without the scene.
     pub fn new(work: Work) -> Self {
@@ -233,27 +230,28 @@ impl Manifest {
                 path.shown()
             )
         };
-        let Versions { plan_version, sample_version, program } =
+        let manifest: Manifest =
             serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
+        let Manifest { sample_version, program, .. } = &manifest;
         ensure!(
-            sample_version == SAMPLE_VERSION,
+            *sample_version == SAMPLE_VERSION,
             "{} is a plan for samples of version {sample_version}, made by {program}, but this program ({SOFTWARE}) \
              traces version {SAMPLE_VERSION}; use {program} on every machine, or plan into another directory with this one",
             path.shown()
         );
-        if !(1..=2).contains(&plan_version) {
-            return Err(damaged(format!(
-                "it has version {plan_version}, but this program reads version 1 and version 2"
-            )));
-        }
-        let manifest: Manifest =
-            serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
         manifest.check().map_err(damaged)?;
         Ok(manifest)
     }
 
-    /// Checks that the parts cover the whole, and that each file has its own name in the plan's directory.
+    /// Checks that the parts cover the whole, and that the files have the names that this program gives them.
     fn check(&self) -> Result<(), String> {
+        let (version, result) = self.work.kind();
+        if self.plan_version != version {
+            return Err(format!(
+                "it has version {}, but this program reads version {version}",
+                self.plan_version
+            ));
+        }
         let (whole, parts, limit) = self.work.ranges();
         let mut next = whole[0];
         for (index, [start, end]) in parts.iter().enumerate() {
@@ -268,16 +266,13 @@ impl Manifest {
                 whole[1]
             ));
         }
-        let mut names = HashSet::from([MANIFEST]);
-        for name in self.work.files().chain([self.scene_file.as_str(), &self.result]) {
-            if Path::new(name).file_name().is_none_or(|file| file != name) {
-                return Err(format!("{name:?} is not the name of a file beside it"));
-            }
-            if !names.insert(name) {
-                return Err(format!("{name:?} is the name of two of its files; each needs one of its own"));
-            }
+        let own = [(self.scene_file.as_str(), SCENE.to_owned()), (self.result.as_str(), result.to_owned())];
+        let of_parts =
+            self.work.files().enumerate().map(|(index, name)| (name, part_file(index, parts.len())));
+        match own.into_iter().chain(of_parts).find(|(name, expected)| name != expected) {
+            Some((name, expected)) => Err(format!("a file is called {name:?} instead of {expected:?}")),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

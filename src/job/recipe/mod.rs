@@ -8,10 +8,10 @@ use crate::scene::animation::{CameraPath, Keyframe};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
 use crate::scene::{Camera, Scene, Sphere};
 use crate::stages::{Rules, Setup, Stage};
-use crate::system::memory::{self, MemoryError};
+use crate::system::memory;
 use crate::system::suggest::{or_nearest, similar_names};
+use anyhow::{Context, Result, bail};
 use std::sync::Arc;
-use thiserror::Error;
 
 /// Samples per pixel of a scene file that does not set them.
 pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
@@ -47,25 +47,28 @@ impl Recipe {
     /// The built-in scene of this name; `field:N` is a field of `N` spheres.
     ///
     /// # Errors
-    /// [`SceneNameError`], with similar names or the limits of a field.
-    pub fn find(name: &str) -> Result<Recipe, SceneNameError> {
+    /// If there is none; the message has similar names or the limits of a field.
+    pub fn find(name: &str) -> Result<Recipe> {
         if let Some(builtin) = BuiltinScene::find(name) {
             let (scene, camera) = (builtin.build)();
             return Ok(Self::of_builtin(builtin, name, scene, camera));
         }
         let Some(count) = name.strip_prefix("field:") else {
             let near = similar_names(name, BuiltinScene::ALL.iter().map(|scene| scene.name));
-            return Err(SceneNameError::Unknown { name: name.to_owned(), near });
+            bail!("there is no scene {name:?}; {}", or_nearest(&near));
         };
-        match count.parse() {
-            Ok(number) if FIELD_COUNT_LIMITS.contains(&number) => {
-                let bytes = number * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE);
-                memory::check(|| format!("field:{number}"), bytes, "choose a field of fewer spheres")?;
-                let (scene, camera) = field(number);
-                Ok(Self::of_builtin(&BuiltinScene::FIELD, name, scene, camera))
-            }
-            _ => Err(SceneNameError::FieldCount { count: count.to_owned() }),
-        }
+        let number = count.parse().ok().filter(|number| FIELD_COUNT_LIMITS.contains(number));
+        let number = number.with_context(|| {
+            let (lowest, highest) = (FIELD_COUNT_LIMITS.start(), FIELD_COUNT_LIMITS.end());
+            format!(
+                "field:{count} has {count:?} for its number of spheres, which must be within {lowest} and {highest}; try \
+                 field:10000"
+            )
+        })?;
+        let bytes = number * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE);
+        memory::check(|| format!("field:{number}"), bytes, "choose a field of fewer spheres")?;
+        let (scene, camera) = field(number);
+        Ok(Self::of_builtin(&BuiltinScene::FIELD, name, scene, camera))
     }
 
     fn of_builtin(builtin: &BuiltinScene, name: &str, scene: Scene, camera: Camera) -> Recipe {
@@ -109,30 +112,6 @@ impl Stage {
             samples_per_pixel,
         }
     }
-}
-
-/// No built-in scene has this name.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum SceneNameError {
-    #[error("there is no scene {name:?}; {}", or_nearest(near))]
-    Unknown {
-        name: String,
-        /// Best match first.
-        near: Vec<&'static str>,
-    },
-    /// `field:N` with an `N` out of range.
-    #[error(
-        "field:{count} has {count:?} for its number of spheres, which must be within {} and {}; try field:10000",
-        FIELD_COUNT_LIMITS.start(),
-        FIELD_COUNT_LIMITS.end()
-    )]
-    FieldCount {
-        /// The text after the colon.
-        count: String,
-    },
-    /// There is not enough memory for so many spheres.
-    #[error(transparent)]
-    Memory(#[from] MemoryError),
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 mod settings;
 
-pub use settings::{NamedSetting, RenderSettings, SamplerKind, SettingValue};
+pub use settings::{NamedSetting, RenderSettings, SamplerKind};
 
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 

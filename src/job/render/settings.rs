@@ -1,10 +1,9 @@
 //! Render settings, and their names in flags and scene files.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// The sampler, which generates the numbers of a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum SamplerKind {
     /// Independent random numbers, as in the book.
@@ -72,29 +71,8 @@ pub struct NamedSetting {
     pub key: &'static str,
     /// The comment after it in scene files; may be empty.
     pub comment: &'static str,
-    /// Reads the value from the settings.
-    pub value: fn(&RenderSettings) -> SettingValue,
-}
-
-/// The value of a setting. Its `Display` form is what the flag accepts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SettingValue {
-    /// A whole number.
-    Number(u32),
-    /// One of a fixed set of names.
-    Name(&'static str),
-    /// A switch: on or off.
-    Switch(bool),
-}
-
-impl fmt::Display for SettingValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            SettingValue::Number(number) => write!(f, "{number}"),
-            SettingValue::Name(name) => f.write_str(name),
-            SettingValue::Switch(is_on) => f.write_str(if *is_on { "on" } else { "off" }),
-        }
-    }
+    /// Reads the value from the settings, as the flag takes it.
+    pub value: fn(&RenderSettings) -> String,
 }
 
 impl RenderSettings {
@@ -104,25 +82,20 @@ impl RenderSettings {
             flag: "depth",
             key: "max_depth",
             comment: "rays of a path",
-            value: |settings| SettingValue::Number(settings.max_depth),
+            value: |settings| settings.max_depth.to_string(),
         },
         NamedSetting {
             flag: "sampler",
             key: "sampler",
             comment: "",
-            value: |settings| SettingValue::Name(settings.sampler.name()),
+            value: |settings| settings.sampler.name().to_owned(),
         },
-        NamedSetting {
-            flag: "seed",
-            key: "seed",
-            comment: "",
-            value: |settings| SettingValue::Number(settings.seed),
-        },
+        NamedSetting { flag: "seed", key: "seed", comment: "", value: |settings| settings.seed.to_string() },
         NamedSetting {
             flag: "estimate-error",
             key: "estimate_error",
             comment: "",
-            value: |settings| SettingValue::Switch(settings.estimate_error),
+            value: |settings| if settings.estimate_error { "on" } else { "off" }.to_owned(),
         },
     ];
 }
@@ -150,7 +123,7 @@ mod tests {
         }
         assert_eq!(RenderSettings::NAMED.len(), others.len());
         assert_eq!((width, height), (800, 450));
-        let values = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings).to_string());
+        let values = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings));
         assert_eq!(values.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
     }
 }

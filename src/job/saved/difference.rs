@@ -35,8 +35,7 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
 fn named_values(job: &RenderJob) -> Vec<(String, String)> {
     let (settings, camera) = (job.settings(), job.camera());
     let mut values = vec![("size", format!("{}x{}", settings.width, settings.height))];
-    values
-        .extend(RenderSettings::NAMED.iter().map(|named| (named.flag, (named.value)(settings).to_string())));
+    values.extend(RenderSettings::NAMED.iter().map(|named| (named.flag, (named.value)(settings))));
     let distance = camera.focus_distance.map_or("that to the point looked at".to_owned(), |d| d.to_string());
     values.extend([
         ("look-from", camera.look_from.to_string()),

@@ -1,8 +1,8 @@
 //! Checks whether the file of a frame exists and is right.
 
 use super::difference::same_job;
-use crate::film::{Description, key};
-use crate::job::output::{check_frame, length_of_missing, read_description, recipe_in_picture};
+use crate::film::key;
+use crate::job::output::{check_frame, read_description};
 use crate::job::recipe::{Recipe, file};
 use crate::system::files::ShownPath;
 use std::path::Path;
@@ -29,15 +29,11 @@ impl FrameState {
             Err(error) => return FrameState::Wrong(error.to_string()),
         };
         let wrong = |what: String| FrameState::Wrong(format!("{} is {what}", path.shown()));
-        let wanted = Description::new(&file::to_picture_toml(recipe));
-        if found.recipe() != recipe_in_picture(wanted.recipe()) {
-            // A recipe that is too long is not in the picture.
-            return match same_job(wanted.recipe(), found.recipe()) {
-                Err(difference) if length_of_missing(found.recipe()).is_none() => {
-                    wrong(format!("of another picture: {difference}"))
-                }
-                _ => wrong("of another picture".to_owned()),
-            };
+        let wanted = file::to_picture_toml(recipe);
+        if found.recipe() != wanted {
+            let difference = same_job(&wanted, found.recipe()).err();
+            let difference = difference.unwrap_or_else(|| "its recipe is written in another way".to_owned());
+            return wrong(format!("of another picture: {difference}"));
         }
         let entry = |key| found.get(key).unwrap_or("unknown");
         let samples = recipe.samples_per_pixel.to_string();
@@ -57,9 +53,8 @@ impl FrameState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::output::{RECIPE_LIMIT, write_image};
-    use crate::job::saved::Saved;
-    use std::sync::Arc;
+    use crate::film::Description;
+    use crate::job::output::write_image;
 
     #[test]
     fn frame_is_whole_only_if_all_inputs_match() {
@@ -94,30 +89,5 @@ mod tests {
         refused(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
         std::fs::write(&path, "no picture").unwrap();
         refused(&recipe, "Weekender 1", "frame.png");
-    }
-
-    #[test]
-    fn frame_with_a_long_recipe_is_whole() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("frame.png");
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
-        let mut film = recipe.job().unwrap().new_film();
-        film.record(0..2, 0).unwrap();
-        let scene = Arc::make_mut(&mut recipe.scene);
-        let mut long = scene.materials[0].clone();
-        long.name = "x".repeat(RECIPE_LIMIT);
-        scene.materials.push(long);
-
-        let mut description = Description::new(&file::to_picture_toml(&recipe));
-        description.set(key::SOFTWARE, "Weekender 1");
-        description.set(key::SAMPLES, 2);
-        write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
-        assert_eq!(FrameState::of(&path, &recipe, "Weekender 1"), FrameState::Whole);
-        recipe.settings.seed = 5;
-        let state = FrameState::of(&path, &recipe, "Weekender 1");
-        assert_eq!(state, FrameState::Wrong(format!("{} is of another picture", path.shown())));
-        let message = Saved::describe(&path).unwrap().recipe().unwrap_err().to_string();
-        assert!(message.contains("frame.png") && message.contains("open the scene file"), "{message}");
     }
 }

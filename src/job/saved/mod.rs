@@ -12,7 +12,7 @@ pub use replaced::Replaced;
 pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
-use crate::job::output::{OutputError, RECIPE_LIMIT, length_of_missing, read_description};
+use crate::job::output::{OutputError, read_description};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
@@ -79,12 +79,6 @@ impl Saved {
     /// [`OpenError::Recipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
         let no_recipe = |what| OpenError::Recipe { path: self.path.clone(), what };
-        if let Some(length) = length_of_missing(self.description.recipe()) {
-            return Err(no_recipe(format!(
-                "does not hold its recipe, which has {length} bytes; a picture holds at most {RECIPE_LIMIT}; open the \
-                 scene file, or a film (.exr) of the picture"
-            )));
-        }
         let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
             .map_err(|reason| no_recipe(format!("has a recipe that cannot be read: {reason}")))?;

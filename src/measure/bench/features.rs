@@ -18,7 +18,7 @@ impl Bench<'_> {
     /// differ.
     pub(super) fn features(&mut self, scenes: &[BenchScene]) -> Result<()> {
         let pairs = self.pairs();
-        self.expect_runs(pairs.len() * scenes.len() * (1 + self.options.runs()));
+        self.expect_runs(pairs.len() * scenes.len() * (1 + self.options.runs));
         for mut pair in pairs {
             let skipped = pair.iter_mut().find_map(|candidate| candidate.start().err());
             let skipped = skipped.map(|error| error.to_string());
@@ -101,7 +101,7 @@ impl Bench<'_> {
         let samples = row.samples_per_pixel;
         general.trace(job, samples, cancel)?;
         self.progress.finished(1.0);
-        for turn in 0..self.options.runs() {
+        for turn in 0..self.options.runs {
             // Alternate which kernel goes first.
             let early = (turn % 2 == 1).then(|| general.trace(job, samples, cancel)).transpose()?;
             let of_own = own.trace(job, samples, cancel)?;

@@ -15,9 +15,9 @@ use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
 use crate::job::render::RenderJob;
 use crate::numbers::chart;
+use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Kind, Row, Run, SceneFigures, Spread};
 use std::process::ExitCode;
@@ -38,15 +38,10 @@ const WARM_UP_SECONDS: f64 = 0.2;
 
 /// Measures, prints tables and writes files. [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
-    let scenes = options.scenes().map_err(Failure::input)?;
-    let levels = options.levels().map_err(Failure::input)?;
-    let json = options.json();
-    if let Some(JsonTarget::File(path)) = &json {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    if let Some(path) = &options.plot {
-        check_writable(path).map_err(Failure::input)?;
-    }
+    let scenes = options.scenes().map_err(Failure::Input)?;
+    let levels = options.levels();
+    let json = &options.json;
+    check_outputs(json.as_ref(), options.plot.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);
@@ -110,7 +105,7 @@ impl Bench<'_> {
 
     fn scenes(&mut self, scenes: &[BenchScene]) {
         let mut candidates = self.candidates();
-        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs()));
+        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs));
         for BenchScene { name, job, samples, .. } in scenes {
             let rows = self.rows(name, job, *samples, &mut candidates);
             self.figures.scenes.push(SceneFigures::new(name, job, rows));
@@ -160,7 +155,7 @@ impl Bench<'_> {
     ) -> Vec<Row> {
         let mut rows: Vec<Row> =
             candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
-        'turns: for turn in 0..=self.options.runs() {
+        'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
                     self.progress.at(&format!("{scene}: {}", row.name), 0.0);

@@ -2,9 +2,7 @@
 
 use super::super::machine::Machine;
 use super::figures::{BenchFigures, Kind, ScaleFigures, SceneFigures, Spread};
-use crate::numbers::chart::{
-    Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series,
-};
+use crate::numbers::chart::{Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Series};
 
 /// Height of a bar's row, and of everything around the rows, points.
 const ROW_HEIGHT: u32 = 36;
@@ -58,8 +56,8 @@ fn scale(rows: &[ScaleFigures], about: String) -> Figure {
     let chart = |title: &str, unit: &str, series: Vec<Series>, legend| {
         Panel::Lines(LineChart {
             title: title.to_owned(),
-            x: Axis::new("spheres", Scale::Log),
-            y: Axis::new(unit, Scale::Log),
+            x: Axis::new("spheres"),
+            y: Axis::new(unit),
             series,
             legend,
         })

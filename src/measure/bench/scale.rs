@@ -12,7 +12,7 @@ use std::time::Instant;
 impl Bench<'_> {
     /// Measures fields of these sizes with the widest packets on all threads.
     pub(super) fn fields(&mut self, counts: &[u64]) -> Result<()> {
-        self.expect_runs(counts.len() * (1 + self.options.runs()));
+        self.expect_runs(counts.len() * (1 + self.options.runs));
         for count in counts {
             let field = self.field(*count)?;
             if self.is_cancelled() {

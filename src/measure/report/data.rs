@@ -25,16 +25,13 @@ impl Data {
 
     /// Replaces the references and discards everything measured against a different one: a scene may have changed under
     /// the same name.
-    pub fn take_references(&mut self, mut references: Vec<ReferenceUsed>) {
-        self.references.retain(|old| !references.contains(old));
-        let is_replaced = |scene: &str, old: &[ReferenceUsed]| {
-            old.iter().any(|old| old.scene == scene) && references.iter().any(|new| new.scene == scene)
-        };
-        self.runs.retain(|run| !is_replaced(&run.curve.scene, &self.references));
-        self.rounding.retain(|row| !is_replaced(&row.scene, &self.references));
-        self.references.retain(|old| references.iter().all(|new| new.scene != old.scene));
-        references.append(&mut self.references);
-        self.references = references;
+    pub fn take_references(&mut self, references: Vec<ReferenceUsed>) {
+        let Data { references: old, runs, rounding, .. } = self;
+        let is_stale = |scene: &str| references.iter().any(|new| new.scene == scene && !old.contains(new));
+        runs.retain(|run| !is_stale(&run.curve.scene));
+        rounding.retain(|row| !is_stale(&row.scene));
+        old.retain(|old| references.iter().all(|new| new.scene != old.scene));
+        old.splice(0..0, references);
     }
 }
 
@@ -55,7 +52,7 @@ pub struct Settings {
     pub estimate_error: bool,
     /// Samples per pixel of the references that the report renders.
     pub reference_samples: u64,
-    /// The backend that renders the references, or the file used instead.
+    /// The backend that renders the references.
     pub reference: String,
 }
 

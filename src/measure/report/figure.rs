@@ -2,7 +2,7 @@
 
 use super::data::Data;
 use super::summary::{CurvePoint, CurveSummary, distinct};
-use crate::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
+use crate::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Series};
 
 /// One chart per scene, with the times to `target` marked.
 pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
@@ -38,7 +38,7 @@ fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> Line
     let axis = |label: &str, limits: [f64; 2]| {
         // A chart without points has no limits.
         let limits = (limits[0] > 0.0 && limits[0] < limits[1]).then_some(limits);
-        Axis { limits, ..Axis::new(label, Scale::Log) }
+        Axis { limits, ..Axis::new(label) }
     };
     LineChart {
         title: scene.to_owned(),

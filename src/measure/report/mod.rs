@@ -78,18 +78,13 @@ impl<'a> Report<'a> {
     fn open(options: &'a ReportOptions) -> Result<Self> {
         let (scenes, reference) = (options.scenes()?, options.reference()?);
         let candidates = candidates(options)?;
-        if let ReferenceChoice::File(path) = &reference {
-            for recipe in &scenes {
-                reference::read(path, recipe, &options.samplers, options.seeds())?;
-            }
-        }
         let out = &options.out;
         make_directory(out)?;
         check_writable(&out.join("report.json"))?;
         let settings = settings(options, &reference);
         let data = resumed(&out.join("report.json"), &settings).unwrap_or_else(|| Data::new(settings));
         let per_scene: usize = candidates.iter().map(|c| samplers(c, options).len()).sum();
-        let per_scene = per_scene as f64 * options.time_limit() + 2.0 * EXPECTED_SECONDS;
+        let per_scene = per_scene as f64 * options.time_limit + 2.0 * EXPECTED_SECONDS;
         let progress = Progress::new(options.progress, scenes.len() as f64 * per_scene);
         let (machine, interrupt) = (Machine::look(), Interrupt::install()?);
         Ok(Report { options, scenes, reference, machine, data, candidates, interrupt, progress })
@@ -101,7 +96,7 @@ impl<'a> Report<'a> {
             scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_, _>>()?;
         self.data.take_references(references.iter().map(|reference| reference.used.clone()).collect());
         // Loop over seeds on the outside, so that load from other programs affects all curves alike.
-        for seed in 0..self.options.seeds() {
+        for seed in 0..self.options.seeds {
             for (recipe, reference) in scenes.iter().zip(&references) {
                 for candidate in 0..self.candidates.len() {
                     for sampler in samplers(&self.candidates[candidate], self.options) {
@@ -115,21 +110,15 @@ impl<'a> Report<'a> {
 
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
         let (interrupt, progress) = (&self.interrupt, &mut self.progress);
-        let reference = match &self.reference {
-            ReferenceChoice::File(path) => {
-                reference::read(path, recipe, &self.options.samplers, self.options.seeds())?
-            }
-            ReferenceChoice::Make { choice, samples, .. } => {
-                let path = self.options.reference_path(recipe);
-                let what = format!("reference of {}", recipe.name);
-                let mut renderer = backends::create(choice).map_err(anyhow::Error::from)?;
-                let made = reference::make(renderer.as_mut(), &path, recipe, *samples, |share| {
-                    progress.at(&what, share * EXPECTED_SECONDS);
-                    !interrupt.is_set()
-                });
-                made?.ok_or(Stop::Cancelled)?
-            }
-        };
+        let ReferenceChoice { choice, samples, .. } = &self.reference;
+        let path = self.options.reference_path(recipe);
+        let what = format!("reference of {}", recipe.name);
+        let mut renderer = backends::create(choice).map_err(anyhow::Error::from)?;
+        let made = reference::make(renderer.as_mut(), &path, recipe, *samples, |share| {
+            progress.at(&what, share * EXPECTED_SECONDS);
+            !interrupt.is_set()
+        });
+        let reference = made?.ok_or(Stop::Cancelled)?;
         self.progress.finished(EXPECTED_SECONDS);
         Ok(reference)
     }
@@ -145,11 +134,11 @@ impl<'a> Report<'a> {
         let candidate = &mut self.candidates[candidate];
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
-        let seconds = self.options.time_limit() / f64::from(self.options.seeds());
+        let seconds = self.options.time_limit / f64::from(self.options.seeds);
         self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler), 0.0);
         if !self.data.runs.iter().any(|run| run.curve == curve && run.seed == seed) {
-            let job = job(recipe, sampler, seed, self.options.estimates_error())?;
-            let limits = Limits { seconds, samples: self.options.max_samples() };
+            let job = job(recipe, sampler, seed, self.options.estimate_error)?;
+            let limits = Limits { seconds, samples: self.options.max_samples };
             let (about, prepare_seconds, points) =
                 measured(candidate, &job, reference, limits, self.interrupt.flag())?;
             self.data.runs.push(Run { curve, seed, about, prepare_seconds, points });
@@ -173,7 +162,7 @@ impl<'a> Report<'a> {
         }
         progress.at(&format!("rounding of {}", recipe.name), 0.0);
         let job = job(recipe, SamplerKind::Sobol, 0, true)?;
-        let samples = options.max_samples().min(ROUNDING_SAMPLES);
+        let samples = options.max_samples.min(ROUNDING_SAMPLES);
         let mut exact = Candidate::backend("reference", backends::BackendChoice::Reference { threads: None });
         let exact = exact.trace(&job, samples, interrupt.flag())?.film;
         for candidate in missing {
@@ -227,19 +216,15 @@ fn samplers(candidate: &Candidate, options: &ReportOptions) -> Vec<SamplerKind> 
 }
 
 fn settings(options: &ReportOptions, reference: &ReferenceChoice) -> Settings {
-    let (reference, reference_samples) = match reference {
-        ReferenceChoice::File(path) => (path.display().to_string(), 0),
-        ReferenceChoice::Make { name, samples, .. } => (name.clone(), *samples),
-    };
     Settings {
         software: SOFTWARE.to_owned(),
-        size: options.size(),
-        seeds: options.seeds(),
-        time_limit: options.time_limit(),
-        max_samples: options.max_samples(),
-        estimate_error: options.estimates_error(),
-        reference_samples,
-        reference,
+        size: options.size,
+        seeds: options.seeds,
+        time_limit: options.time_limit,
+        max_samples: options.max_samples,
+        estimate_error: options.estimate_error,
+        reference_samples: reference.samples,
+        reference: reference.name.clone(),
     }
 }
 

@@ -16,9 +16,6 @@ use std::time::{Duration, Instant};
 /// Seed of the references. No measured picture uses it, so none shares random numbers with its reference.
 const SEED: u32 = 0x5EED_0000;
 
-/// Seed to recommend for a reference film.
-const FREE_SEED: u32 = 900;
-
 /// Duration of a reference's pass, between updates of progress and checks for Ctrl-C.
 const PASS: Duration = Duration::from_millis(500);
 
@@ -110,38 +107,6 @@ fn recipe_of(recipe: &Recipe) -> Recipe {
     Recipe { settings, ..recipe.clone() }
 }
 
-/// Reads an existing film as the reference of a scene measured with these samplers and the seeds `0 .. seeds`.
-///
-/// Fails if the film shows a different picture or shares random numbers with a measured one.
-pub fn read(path: &Path, recipe: &Recipe, samplers: &[SamplerKind], seeds: u32) -> Result<ReferencePicture> {
-    let (theirs, read) = saved::open_film(path)?;
-    let RenderSettings { seed, sampler, estimate_error, .. } = *theirs.settings();
-    let mine = recipe_of(recipe).job()?;
-    // Everything but the random numbers must match.
-    let settings = RenderSettings { seed, sampler, estimate_error, ..*mine.settings() };
-    if mine.seen_by(*mine.camera(), settings)? != theirs {
-        bail!(
-            "{} is not a picture of {} at {}x{}; name its scene and its --size or leave out --reference",
-            path.display(),
-            recipe.name,
-            settings.width,
-            settings.height
-        );
-    }
-    if seed < seeds && samplers.contains(&sampler) {
-        bail!(
-            "{} has seed {seed} and sampler {}, as has a picture to measure (seeds 0 to {}), so their errors would \
-             cancel; render the reference with --seed {}, or leave out --reference",
-            path.display(),
-            sampler.name(),
-            seeds - 1,
-            seeds.max(FREE_SEED)
-        );
-    }
-    let about = read.backend.as_deref().unwrap_or("unknown");
-    ReferencePicture::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
-}
-
 /// Renders the reference, or continues the part of it in `path`. `go_on` receives the share done; if it returns false,
 /// the result is `None` and the film is kept.
 ///
@@ -207,8 +172,6 @@ mod tests {
     use super::*;
     use crate::backends::{self, BackendChoice};
     use crate::film::fixed_point;
-    use crate::stages::Diffuse;
-    use glam::DVec3;
     use std::path::PathBuf;
     use tempfile::TempDir;
 
@@ -221,55 +184,6 @@ mod tests {
     fn made(path: &Path, choice: &BackendChoice, samples: u64) -> Result<ReferencePicture> {
         let mut renderer = backends::create(choice).unwrap();
         make(renderer.as_mut(), path, &small(), samples, |_| true).map(Option::unwrap)
-    }
-
-    #[test]
-    fn reference_needs_same_paths() {
-        let (_directory, path) = place();
-        let recipe = small();
-        let made = made(&path, &cpu(None), 2).unwrap();
-        let read = |recipe: &Recipe| read(&path, recipe, &[SamplerKind::Sobol], 8);
-        assert_eq!(read(&recipe).unwrap().used, made.used);
-        assert_eq!((made.used.scene.as_str(), made.used.samples), ("metals", 2));
-        let changes: [fn(&mut Recipe); 6] = [
-            |recipe| recipe.camera.look_from += DVec3::new(0.25, 0.5, 1.0),
-            |recipe| recipe.scene = Recipe::find("three-spheres").unwrap().scene,
-            |recipe| recipe.settings.width += 1,
-            |recipe| recipe.settings.height += 1,
-            |recipe| recipe.settings.max_depth -= 1,
-            |recipe| recipe.rules.diffuse = Diffuse::Hemisphere,
-        ];
-        for (index, change) in changes.into_iter().enumerate() {
-            let mut other = recipe.clone();
-            change(&mut other);
-            let error = read(&other).err().map(|error| error.to_string()).unwrap_or_default();
-            assert!(error.contains("is not a picture of"), "{index}: {error}");
-        }
-    }
-
-    #[test]
-    fn reference_needs_independent_samples() {
-        use SamplerKind::{Independent, Sobol};
-        let (_directory, path) = place();
-        let recipe = small();
-        let refused = |seed, sampler, samplers: &[SamplerKind], seeds| {
-            let settings = RenderSettings { seed, sampler, estimate_error: true, ..recipe.settings };
-            let theirs = Recipe { settings, ..recipe.clone() };
-            let mut film = theirs.job().unwrap().new_film();
-            film.halves_mut()[0][0].add(fixed_point([0.5; 3]).unwrap());
-            film.record(0..2, 0).unwrap();
-            checkpoint::save(&path, &film, &Description::new(&file::to_picture_toml(&theirs))).unwrap();
-            read(&path, &recipe, samplers, seeds).err().map(|error| error.to_string())
-        };
-        assert_eq!(refused(8, Sobol, &[Sobol, Independent], 8), None);
-        assert_eq!(refused(0, Independent, &[Sobol], 8), None);
-        for (seed, sampler, seeds, remedy) in
-            [(0, Sobol, 1, "--seed 900"), (7, Independent, 8, "--seed 900"), (900, Sobol, 901, "--seed 901")]
-        {
-            let error = refused(seed, sampler, &[Sobol, Independent], seeds).unwrap();
-            assert!(error.contains(&format!("seed {seed} and sampler {}", sampler.name())), "{error}");
-            assert!(error.contains(remedy), "{error}");
-        }
     }
 
     /// The measured error combines those of reference and picture, which are independent.

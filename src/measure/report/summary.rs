@@ -39,12 +39,8 @@ impl<'a> Findings<'a> {
 pub struct CurvePoint {
     /// Samples per pixel.
     pub samples: u64,
-    /// Median tracing time.
-    pub trace_seconds: f64,
     /// Median time of tracing and adding to the film.
     pub wall_seconds: f64,
-    /// Median time on the device's own clock; `None` if it has none.
-    pub device_seconds: Option<f64>,
     /// Square root of the mean squared error over all pictures; 0 if they are better than the reference.
     pub rmse: f64,
     /// Smallest and largest RMSE of a single picture.
@@ -53,15 +49,11 @@ pub struct CurvePoint {
     pub rel_mse: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// Square root of the mean estimated squared error over the true one; `None` if either is missing.
-    pub estimate_ratio: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSummary {
     pub curve: Curve,
-    /// Full name of the backend.
-    pub about: String,
     /// By rising sample count.
     pub points: Vec<CurvePoint>,
     /// Exponent of time in the RMSE, and its standard error.
@@ -108,7 +100,6 @@ impl CurveSummary {
         let first = known().position(|p| p.samples >= FROM_SAMPLES).unwrap_or(0);
         CurveSummary {
             curve: curve.clone(),
-            about: runs.first().map_or_else(String::new, |run| run.about.clone()),
             slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
             efficiency: known().next_back().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
             times: targets.iter().map(|target| time_to(&errors, *target)).collect(),
@@ -126,21 +117,15 @@ impl CurveSummary {
 
 fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / points.len() as f64;
-    let median_of = |of: fn(&Measured) -> f64| median(points.iter().map(|p| of(p))).unwrap_or(f64::NAN);
     let mse = mean(|p| p.mse).max(0.0);
-    let device: Option<Vec<f64>> = points.iter().map(|p| p.device_seconds).collect();
     let roots = || points.iter().map(|p| p.mse.max(0.0).sqrt());
-    let has_estimate = mse > 0.0 && points.iter().all(|p| p.mse_estimate.is_some());
     CurvePoint {
         samples,
-        trace_seconds: median_of(|p| p.trace_seconds),
-        wall_seconds: median_of(|p| p.wall_seconds),
-        device_seconds: device.and_then(median),
+        wall_seconds: median(points.iter().map(|p| p.wall_seconds)).unwrap_or(f64::NAN),
         rmse: mse.sqrt(),
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
         flip: mean(|p| p.flip),
-        estimate_ratio: has_estimate.then(|| (mean(|p| p.mse_estimate.unwrap_or(0.0)) / mse).sqrt()),
     }
 }
 
@@ -273,8 +258,6 @@ mod tests {
         let last = found.points.last().unwrap();
         assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12, "{last:?}");
         assert!(last.range[0] < last.rmse && last.rmse < last.range[1]);
-        assert!((last.estimate_ratio.unwrap() - 1.1).abs() < 1e-9);
-        assert_eq!(found.points[0].estimate_ratio, None);
         assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9);
         let [first, second] = [0, 1].map(|target| found.times[target].unwrap());
         assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
@@ -289,7 +272,7 @@ mod tests {
         better.iter_mut().for_each(|run| run.points[8].mse = -1e-6);
         let found = one(better, &[0.01]);
         let last = found.points.last().unwrap();
-        assert_eq!((last.rmse, last.estimate_ratio), (0.0, None));
+        assert_eq!(last.rmse, 0.0);
         assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9, "{:?}", found.slope);
         assert!((found.times[0].unwrap().time - 4.0).abs() < 1e-6, "{:?}", found.times);
     }

@@ -2,7 +2,7 @@
 
 use super::super::table::{markdown_table, or_dash};
 use super::data::{Data, Measured};
-use super::summary::{Calibration, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
+use super::summary::{Calibration, CurvePoint, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
 use crate::numbers::statistics::fit::Crossing;
 
 /// Backends to compare others with, if measured.
@@ -30,7 +30,6 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
             );
         }
         text += &overview(&of_scene, targets);
-        of_scene.iter().for_each(|curve| text += &points(curve));
     }
     text + &samplers(sampler_ratios) + &calibration(calibrations) + &rounding(data, curves)
 }
@@ -40,23 +39,26 @@ const HOW_TO_READ: &str = "\
 radiance, where white is 1. At .05 a picture is grainy, at .01 nearly clean, and at .001 no screen shows the difference.
 *relMSE* gives more weight to errors in dark areas. *FLIP*, from 0 to 1, is how different the displayed pictures look to
 someone who flips between them. The *slope* is the exponent of the seconds in the RMSE: -.5 means that halving the error
-takes four times as long. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice the efficiency gives the same
-picture in half the time. Times with ~ are extrapolated. *Trace* seconds are those of the tracer, *wall* seconds
-include adding to the film, and *device* seconds are measured by the GPU's clock. Seconds are medians over the pictures,
-errors are means. An RMSE of 0 means that the pictures are better than the reference.
+takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency gives the same picture in half the
+time. These three are of the last point. Times with ~ are extrapolated. Seconds are medians over the pictures and include
+adding to the film; errors are means. `report.csv` has every picture at every number of samples.
 ";
 
 /// One row per curve of a scene.
 fn overview(curves: &[&CurveSummary], targets: &[f64]) -> String {
     let bases: Vec<&str> =
         BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
-    let mut heads = ["backend", "sampler", "slope", "efficiency"].map(str::to_owned).to_vec();
+    let mut heads =
+        ["backend", "sampler", "slope", "efficiency", "relMSE", "FLIP"].map(str::to_owned).to_vec();
     heads.extend(targets.iter().map(|target| format!("to RMSE {target}")));
     heads.extend(bases.iter().map(|base| format!("times {base}")));
     let rows = curves.iter().map(|curve| {
         let slope = or_dash(curve.slope, |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
         let names = [&curve.curve.backend, &curve.curve.sampler].map(Clone::clone);
-        let mut row = [&names[..], &[slope, number(curve.efficiency)]].concat();
+        let last = |of: fn(&CurvePoint) -> f64| or_dash(curve.points.last().map(of), number);
+        let figures =
+            [slope, number(curve.efficiency), last(|point| point.rel_mse), last(|point| point.flip)];
+        let mut row = [&names[..], &figures].concat();
         row.extend(curve.times.iter().map(|time| {
             or_dash(*time, |c| format!("{}{} s", if c.is_extrapolated { "~" } else { "" }, number(c.time)))
         }));
@@ -81,38 +83,6 @@ fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
         let mark = if base.is_extrapolated || mine.is_extrapolated { "~" } else { "" };
         format!("{mark}{:.2}", base.time / mine.time)
     })
-}
-
-/// One row per sample count of a curve.
-fn points(curve: &CurveSummary) -> String {
-    let heads = [
-        "samples",
-        "trace s",
-        "wall s",
-        "device s",
-        "RMSE",
-        "min to max",
-        "relMSE",
-        "FLIP",
-        "estimate / actual",
-    ];
-    let rows = curve.points.iter().map(|point| {
-        let [low, high] = point.range;
-        vec![
-            point.samples.to_string(),
-            format!("{:.4}", point.trace_seconds),
-            format!("{:.4}", point.wall_seconds),
-            or_dash(point.device_seconds, |seconds| format!("{seconds:.4}")),
-            format!("{:.2e}", point.rmse),
-            format!("{low:.2e} to {high:.2e}"),
-            format!("{:.2e}", point.rel_mse),
-            format!("{:.4}", point.flip),
-            or_dash(point.estimate_ratio, |ratio| format!("{ratio:.3}")),
-        ]
-    });
-    let CurveSummary { curve: key, about, .. } = curve;
-    let table = markdown_table(&heads, 0, rows);
-    format!("\n### {}: {}, {}\n\n{about}\n\n{table}", key.scene, key.backend, key.sampler)
 }
 
 fn samplers(ratios: &[SamplerRatio]) -> String {
@@ -237,25 +207,20 @@ pub fn csv(data: &Data) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::summary::CurvePoint;
     use super::super::tests::curve as key;
     use super::*;
 
     fn curve(backend: &str, sampler: &str, seconds: f64) -> CurveSummary {
         let point = |samples, rmse| CurvePoint {
             samples,
-            trace_seconds: 0.5,
             wall_seconds: 0.75,
-            device_seconds: None,
             rmse,
             range: [0.01, 0.03],
             rel_mse: 0.04,
             flip: 0.125,
-            estimate_ratio: Some(1.5),
         };
         CurveSummary {
             curve: key(backend, sampler),
-            about: "a machine".to_owned(),
             points: vec![point(16, 0.02), point(64, 0.01)],
             slope: Some([-0.5, 0.01]),
             efficiency: 2.0,
@@ -273,14 +238,17 @@ mod tests {
         ];
         let text = overview(&curves.each_ref(), &[0.01]);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0], "| backend | sampler | slope | efficiency | to RMSE 0.01 | times c89 |");
+        assert_eq!(
+            lines[0],
+            "| backend | sampler | slope | efficiency | relMSE | FLIP | to RMSE 0.01 | times c89 |"
+        );
         assert_eq!(
             lines[2..6],
             [
-                "| c89 | independent | -0.50 ± 0.01 | 2.00 | ~40.0 s | ~0.50 |",
-                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 20.0 s | 1.00 |",
-                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 5.00 s | 4.00 |",
-                "| cpu | independent | -0.50 ± 0.01 | 2.00 | ~50.0 s | ~0.40 |",
+                "| c89 | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | ~40.0 s | ~0.50 |",
+                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | 20.0 s | 1.00 |",
+                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | 5.00 s | 4.00 |",
+                "| cpu | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | ~50.0 s | ~0.40 |",
             ]
         );
     }

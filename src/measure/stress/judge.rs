@@ -1,6 +1,7 @@
 //! Measures films and judges them by the expected result.
 
-use crate::film::{Film, PixelSum};
+use crate::film::Film;
+use crate::pictures::compare::half_differences;
 use serde::Serialize;
 
 /// Standard errors by which noise may move a mean; one mean in sixteen thousand moves further.
@@ -69,13 +70,14 @@ impl Level {
     pub fn of(film: &Film) -> Self {
         let count = pixel_count(film);
         let mut sum = [0.0; 3];
-        let (mut variance_of_sum, mut squares) = (0.0, 0.0);
         for pixel in 0..count {
             let mean = film.mean(pixel);
             (0..3).for_each(|channel| sum[channel] += mean[channel]);
-            let half_difference = half_difference(film, pixel);
-            variance_of_sum += grey(half_difference).powi(2);
-            squares += grey(half_difference.map(|x| x * x));
+        }
+        let (mut variance_of_sum, mut squares) = (0.0, 0.0);
+        for difference in half_differences(film).unwrap_or_default() {
+            variance_of_sum += grey(difference).powi(2);
+            squares += grey(difference.map(|x| x * x));
         }
         let count = count as f64;
         Level {
@@ -93,16 +95,6 @@ impl Level {
 
 fn grey(channels: [f64; 3]) -> f64 {
     channels.iter().sum::<f64>() / 3.0
-}
-
-/// Half the difference of the halves' means; its square estimates the pixel's variance.
-fn half_difference(film: &Film, pixel: usize) -> [f64; 3] {
-    let [a, b] = film.halves() else { return [0.0; 3] };
-    let mean = |half: usize, sums: &[PixelSum]| {
-        sums[pixel].radiance().map(|sum| sum / film.half_sample_count(half).max(1) as f64)
-    };
-    let (a, b) = (mean(0, a), mean(1, b));
-    [0, 1, 2].map(|channel| 0.5 * (a[channel] - b[channel]))
 }
 
 fn pixel_count(film: &Film) -> usize {

@@ -7,7 +7,7 @@
 mod case;
 pub mod families;
 mod judge;
-mod pages;
+mod pictures;
 mod report;
 mod suite;
 
@@ -21,11 +21,12 @@ use super::machine::Machine;
 use super::progress::Progress;
 use super::{Candidate, make_directory, write_json};
 use crate::backends::BackendChoice;
+use crate::cli::StressOptions;
 use crate::cli::terminal;
-use crate::cli::{JsonTarget, StressOptions};
+use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::{check_page, check_writable};
+use crate::system::files::write_text;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
@@ -35,13 +36,9 @@ use std::time::Instant;
 /// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
 /// otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
-    if let Some(JsonTarget::File(path)) = &options.json() {
-        check_writable(path).map_err(Failure::input)?;
-    }
-    if let Some(directory) = &options.out {
-        make_directory(directory).map_err(Failure::Input)?;
-        check_page(&directory.join("index.html")).map_err(Failure::input)?;
-    }
+    let table = options.out.as_ref().map(|directory| directory.join("table.md"));
+    options.out.iter().try_for_each(|directory| make_directory(directory)).map_err(Failure::Input)?;
+    check_outputs(options.json.as_ref(), table.as_deref()).map_err(Failure::Input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
         let ids: Vec<&str> = families::families().map(|family| family.id).collect();
@@ -49,7 +46,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
-    let levels = options.levels().map_err(Failure::input)?;
+    let levels = options.levels();
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let painter = Candidate::backend("pictures", cpu(levels[0]));
@@ -97,7 +94,7 @@ fn suite(
         interrupted: false,
         cases: Vec::new(),
     };
-    let json = options.json();
+    let json = &options.json;
     // Write pictures and figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_ref(), &report::head());
     for case in chosen {
@@ -112,14 +109,14 @@ fn suite(
         progress.finished(1.0);
         report.cases.push(found);
         if let Some(directory) = &options.out {
-            pages::write_pictures(directory, case, &mut painter, interrupt)?;
+            pictures::write(directory, case, &mut painter, interrupt)?;
         }
     }
     progress.clear();
     report.seconds = begin.elapsed().as_secs_f64();
     printed = printed.and(terminal::print_beside(json.as_ref(), &report.summary()));
     if let Some(directory) = &options.out {
-        pages::write_pages(directory, &report)?;
+        write_text(&directory.join("table.md"), &report.markdown())?;
     }
     if let Some(target) = &json {
         write_json(target, &machine, &report)?;

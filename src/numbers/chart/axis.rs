@@ -1,21 +1,13 @@
-//! Axes: scales, ticks and their labels.
+//! Logarithmic axes: ticks and their labels.
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Equal differences have equal distances.
-    Linear,
-    /// Equal ratios have equal distances; values must be above 0.
-    Log,
-}
-
+/// A logarithmic axis; values must be above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    pub scale: Scale,
     /// Smallest and largest value; `None` fits the points.
     pub limits: Option<[f64; 2]>,
 }
@@ -26,30 +18,28 @@ const MARGIN: f64 = 0.04;
 /// Approximate number of ticks per axis.
 const TICKS: f64 = 6.0;
 
-/// A laid-out axis, which maps values to positions on a linear scale.
+/// A laid-out axis; a position is the logarithm of a value.
 #[derive(Clone)]
 pub(super) struct Ruler {
-    scale: Scale,
     /// Positions of the ends.
     pub range: Range<f64>,
     /// Positions of labelled ticks.
-    pub ticks: Vec<f64>,
+    ticks: Vec<f64>,
     /// Positions of the fine grid lines.
     fine_ticks: Vec<f64>,
 }
 
 impl Axis {
     /// An axis fitted to the points.
-    pub fn new(label: impl Into<String>, scale: Scale) -> Self {
-        Axis { label: label.into(), scale, limits: None }
+    pub fn new(label: impl Into<String>) -> Self {
+        Axis { label: label.into(), limits: None }
     }
 
     /// Lays the axis out for these values.
     pub(super) fn ruler(&self, values: impl Iterator<Item = f64>) -> Ruler {
-        let place = |value: f64| position(self.scale, value);
         let ends = match self.limits {
-            Some(limits) => limits.map(place).into_iter().flatten().collect(),
-            None => values.filter_map(place).collect::<Vec<f64>>(),
+            Some(limits) => limits.map(position).into_iter().flatten().collect(),
+            None => values.filter_map(position).collect::<Vec<f64>>(),
         };
         let low = ends.iter().copied().fold(f64::INFINITY, f64::min);
         let high = ends.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -59,26 +49,8 @@ impl Axis {
             _ if low.is_finite() => low - 0.5..low + 0.5,
             _ => 0.0..1.0,
         };
-        let (ticks, fine_ticks) = match self.scale {
-            Scale::Linear => (linear_ticks(&range), Vec::new()),
-            Scale::Log => log_ticks(&range),
-        };
-        Ruler { scale: self.scale, range, ticks, fine_ticks }
-    }
-}
-
-impl Ruler {
-    /// Position of a value; `None` if the axis cannot show it.
-    pub fn position(&self, value: f64) -> Option<f64> {
-        position(self.scale, value)
-    }
-
-    /// The label of a position.
-    pub fn text(&self, position: f64) -> String {
-        label(match self.scale {
-            Scale::Linear => position,
-            Scale::Log => 10_f64.powf(position),
-        })
+        let (ticks, fine_ticks) = log_ticks(&range);
+        Ruler { range, ticks, fine_ticks }
     }
 }
 
@@ -102,25 +74,13 @@ impl Ranged for Ruler {
 
 impl ValueFormatter<f64> for Ruler {
     fn format_ext(&self, position: &f64) -> String {
-        self.text(*position)
+        label(10_f64.powf(*position))
     }
 }
 
-fn position(scale: Scale, value: f64) -> Option<f64> {
-    let position = match scale {
-        Scale::Linear => value,
-        Scale::Log => value.log10(),
-    };
-    position.is_finite().then_some(position)
-}
-
-fn linear_ticks(range: &Range<f64>) -> Vec<f64> {
-    let rough = (range.end - range.start) / TICKS;
-    let unit = 10_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * unit).into_iter().find(|step| *step >= rough);
-    let step = step.unwrap_or(10.0 * unit);
-    let numbers = (range.start / step).ceil() as i64..=(range.end / step).floor() as i64;
-    numbers.map(|number| number as f64 * step).collect()
+/// Position of a value; `None` if the axis cannot show it.
+pub(super) fn position(value: f64) -> Option<f64> {
+    Some(value.log10()).filter(|position| position.is_finite())
 }
 
 /// Ticks at powers of ten and, if these are few, at 2 and 5 times them; fine ticks at every digit.
@@ -143,7 +103,7 @@ fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// At most seven digits, without trailing zeros.
-fn label(value: f64) -> String {
+pub(super) fn label(value: f64) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(value);
     if rounded == 0.0 || (1e-3..1e5).contains(&rounded.abs()) {
         rounded.to_string()
@@ -156,34 +116,29 @@ fn label(value: f64) -> String {
 mod tests {
     use super::*;
 
-    fn labels(scale: Scale, limits: [f64; 2]) -> Vec<String> {
-        let ruler = Axis { limits: Some(limits), ..Axis::new("", scale) }.ruler(std::iter::empty());
-        ruler.ticks.iter().map(|tick| ruler.text(*tick)).collect()
+    fn labels(limits: [f64; 2]) -> Vec<String> {
+        let ruler = Axis { limits: Some(limits), ..Axis::new("") }.ruler(std::iter::empty());
+        ruler.ticks.iter().map(|tick| ruler.format_ext(tick)).collect()
     }
 
     #[test]
     fn ticks_are_round_numbers_within_the_axis() {
-        assert_eq!(labels(Scale::Linear, [0.0, 137.0]), ["0", "50", "100"]);
-        assert_eq!(labels(Scale::Linear, [-0.1, 0.31]), ["-0.1", "0", "0.1", "0.2", "0.3"]);
-        assert_eq!(labels(Scale::Linear, [0.0, 2.9e5]), ["0", "50000", "1e5", "1.5e5", "2e5", "2.5e5"]);
-        assert_eq!(labels(Scale::Log, [1e3, 1e7]), ["1000", "10000", "1e5", "1e6", "1e7"]);
-        assert_eq!(labels(Scale::Log, [3.0, 60.0]), ["3", "5", "7", "10", "20", "30", "50"]);
-        assert_eq!(labels(Scale::Log, [1e-5, 0.1]), ["1e-5", "1e-4", "0.001", "0.01", "0.1"]);
-        assert_eq!(labels(Scale::Log, [1e5, 1e6]), ["1e5", "2e5", "5e5", "1e6"]);
-        assert_eq!(labels(Scale::Log, [1.0, 1e12]).len(), 7, "every second power");
+        assert_eq!(labels([1e3, 1e7]), ["1000", "10000", "1e5", "1e6", "1e7"]);
+        assert_eq!(labels([3.0, 60.0]), ["3", "5", "7", "10", "20", "30", "50"]);
+        assert_eq!(labels([1e-5, 0.1]), ["1e-5", "1e-4", "0.001", "0.01", "0.1"]);
+        assert_eq!(labels([1e5, 1e6]), ["1e5", "2e5", "5e5", "1e6"]);
+        assert_eq!(labels([1.0, 1e12]).len(), 7, "every second power");
     }
 
     #[test]
     fn axis_adds_margin_without_limits() {
-        for (scale, limits, values, expected) in [
-            (Scale::Linear, None, &[100.0, 0.0, f64::NAN, 50.0][..], [-4.0, 104.0]),
-            (Scale::Log, None, &[1e3, 10.0, -5.0], [1.0 - 0.08, 3.0 + 0.08]),
-            (Scale::Linear, None, &[3.0, 3.0], [2.5, 3.5]),
-            (Scale::Log, None, &[0.0], [0.0, 1.0]),
-            (Scale::Linear, Some([2.0, 8.0]), &[100.0], [2.0, 8.0]),
-            (Scale::Log, Some([10.0, 1e4]), &[], [1.0, 4.0]),
+        for (limits, values, expected) in [
+            (None, &[1e3, 10.0, -5.0, f64::NAN][..], [1.0 - 0.08, 3.0 + 0.08]),
+            (None, &[10.0, 10.0], [0.5, 1.5]),
+            (None, &[0.0], [0.0, 1.0]),
+            (Some([10.0, 1e4]), &[], [1.0, 4.0]),
         ] {
-            let ruler = Axis { limits, ..Axis::new("", scale) }.ruler(values.iter().copied());
+            let ruler = Axis { limits, ..Axis::new("") }.ruler(values.iter().copied());
             let [start, end] = expected;
             let is_so = (ruler.range.start - start).abs() < 1e-9 && (ruler.range.end - end).abs() < 1e-9;
             assert!(is_so, "{values:?}: {:?}", ruler.range);

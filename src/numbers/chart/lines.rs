@@ -1,18 +1,13 @@
 //! Lines over two axes.
 
-use super::axis::Ruler;
+use super::axis::position;
 use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
-use super::{LineChart, Look, Series};
+use super::{LineChart, Look, Point};
+use plotters::chart::SeriesAnno;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
-
-/// A point and its spread, as positions on both axes.
-struct Placed {
-    at: (f64, f64),
-    spread: Option<[f64; 2]>,
-}
 
 pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, units: Units) -> Drawn<B> {
     let points = || chart.series.iter().flat_map(|series| &series.points);
@@ -27,7 +22,7 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, units.px(17.0), &INK));
     }
-    let mut context = builder.build_cartesian_2d(x.clone(), y.clone())?;
+    let mut context = builder.build_cartesian_2d(x, y)?;
     context
         .configure_mesh()
         .bold_line_style(GRID.stroke_width(units.size(1.0)))
@@ -42,89 +37,53 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
 
     let mut colors = 0;
     for series in &chart.series {
-        let placed: Vec<Placed> = series
-            .points
-            .iter()
-            .filter_map(|point| {
-                let at = (x.position(point.x)?, y.position(point.y)?);
-                let ends = |[low, high]: [f64; 2]| Some([y.position(low)?, y.position(high)?]);
-                Some(Placed { at, spread: point.spread.and_then(ends) })
-            })
-            .collect();
+        let at = |point: &Point| Some((position(point.x)?, position(point.y)?));
+        let points: Vec<(f64, f64)> = series.points.iter().filter_map(at).collect();
         match series.look {
-            Look::Guide => guide(&mut context, series, &placed, units)?,
+            Look::Guide => {
+                let style = GUIDE.stroke_width(units.size(1.5));
+                let line = DashedLineSeries::new(points, units.px(7.0), units.px(5.0), style);
+                name(context.draw_series(line)?, &series.name, style, units);
+            }
             Look::Measured => {
-                measured(&mut context, series, &placed, colors, units)?;
+                let color = color(colors);
                 colors += 1;
+                let end = |end: usize| {
+                    let at = move |point: &Point| Some((position(point.x)?, position(point.spread?[end])?));
+                    series.points.iter().filter_map(at)
+                };
+                let band: Vec<(f64, f64)> =
+                    end(0).chain(end(1).collect::<Vec<_>>().into_iter().rev()).collect();
+                if band.len() > 2 {
+                    context.draw_series([Polygon::new(band, color.mix(0.22).filled())])?;
+                }
+                let style = color.filled().stroke_width(units.size(2.0));
+                let line = LineSeries::new(points, style).point_size(units.size(4.5));
+                name(context.draw_series(line)?, &series.name, style, units);
             }
         }
     }
-    legend(&mut context, chart, units)
-}
-
-type Context<'a, B> = ChartContext<'a, B, Cartesian2d<Ruler, Ruler>>;
-
-fn guide<'a, B: DrawingBackend + 'a>(
-    context: &mut Context<'a, B>,
-    series: &Series,
-    placed: &[Placed],
-    units: Units,
-) -> Drawn<B> {
-    let style = GUIDE.stroke_width(units.size(1.5));
-    let line =
-        DashedLineSeries::new(placed.iter().map(|point| point.at), units.px(7.0), units.px(5.0), style);
-    let drawn = context.draw_series(line)?;
-    if !series.name.is_empty() {
-        let length = units.px(26.0);
-        drawn.label(&series.name).legend(move |(x, y)| {
-            let dash = |from: i32, to: i32| (x + length * from / 5, x + length * to / 5);
-            let lines = [dash(0, 2), dash(3, 5)].map(|(from, to)| vec![(from, y), (to, y)]);
-            let [first, second] = lines.map(|line| PathElement::new(line, style));
-            EmptyElement::at((0, 0)) + first + second
-        });
-    }
-    Ok(())
-}
-
-fn measured<'a, B: DrawingBackend + 'a>(
-    context: &mut Context<'a, B>,
-    series: &Series,
-    placed: &[Placed],
-    index: usize,
-    units: Units,
-) -> Drawn<B> {
-    let style = color(index).stroke_width(units.size(2.0));
-    let band = |end: usize| placed.iter().filter_map(move |point| Some((point.at.0, point.spread?[end])));
-    let outline: Vec<(f64, f64)> = band(0).chain(band(1).collect::<Vec<_>>().into_iter().rev()).collect();
-    if outline.len() > 2 {
-        context.draw_series([Polygon::new(outline, color(index).mix(0.22).filled())])?;
-    }
-    let drawn = context.draw_series(LineSeries::new(placed.iter().map(|point| point.at), style))?;
-    if !series.name.is_empty() {
-        let (length, radius) = (units.px(26.0), units.px(4.5));
-        drawn.label(&series.name).legend(move |(x, y)| {
-            let line = PathElement::new(vec![(x, y), (x + length, y)], style);
-            EmptyElement::at((0, 0)) + line + Circle::new((x + length / 2, y), radius, color(index).filled())
-        });
-    }
-    let radius = units.px(4.5);
-    context.draw_series(placed.iter().map(|point| Circle::new(point.at, radius, color(index).filled())))?;
-    Ok(())
-}
-
-fn legend<'a, B: DrawingBackend + 'a>(
-    context: &mut Context<'a, B>,
-    chart: &LineChart,
-    units: Units,
-) -> Drawn<B> {
-    let Some(position) = chart.legend.clone() else { return Ok(()) };
+    let Some(corner) = chart.legend.clone() else { return Ok(()) };
     context
         .configure_series_labels()
-        .position(position)
+        .position(corner)
         .margin(units.px(12.0))
         .legend_area_size(units.px(34.0))
         .label_font((FONT, units.px(14.0), &INK))
         .background_style(WHITE.mix(0.9))
         .border_style(GRID.stroke_width(units.size(1.0)))
         .draw()
+}
+
+/// Adds a series to the legend if it has a name.
+fn name<'a, B: DrawingBackend + 'a>(
+    series: &mut SeriesAnno<'a, B>,
+    name: &str,
+    style: ShapeStyle,
+    units: Units,
+) {
+    if !name.is_empty() {
+        let length = units.px(26.0);
+        series.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + length, y)], style));
+    }
 }

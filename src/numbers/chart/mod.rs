@@ -1,4 +1,4 @@
-//! Charts as plain data, drawn to PNG or SVG files: lines with error bars on linear or logarithmic axes, and bars with
+//! Charts as plain data, drawn to PNG or SVG files: lines with bands on logarithmic axes, and bars with
 //! notes beside them.
 //!
 //! plotters draws them; no other room uses it. Text is set in the window's embedded font, so no system library is
@@ -11,7 +11,7 @@ mod lines;
 mod page;
 mod style;
 
-pub use axis::{Axis, Scale};
+pub use axis::Axis;
 pub use file::{ChartError, ChartFormat, save};
 pub use page::{UNTITLED_TOP, page_svg};
 pub use plotters::chart::SeriesLabelPosition as Corner;

@@ -40,7 +40,7 @@ fn quoted(RGBColor(r, g, b): RGBColor) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, LineChart, Look, Panel, Point, Scale, Series};
+    use super::super::{Axis, LineChart, Look, Panel, Point, Series};
     use super::*;
 
     #[test]
@@ -50,8 +50,8 @@ mod tests {
         let series = |name: &str, look| Series { name: name.to_owned(), points: points.clone(), look };
         let chart = LineChart {
             title: "t".to_owned(),
-            x: Axis::new("x", Scale::Log),
-            y: Axis::new("y", Scale::Log),
+            x: Axis::new("x"),
+            y: Axis::new("y"),
             series: vec![series("a", Look::Measured), series("b", Look::Guide)],
             legend: Some(super::super::Corner::UpperLeft),
         };

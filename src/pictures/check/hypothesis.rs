@@ -9,6 +9,7 @@ use crate::render_cpu::{CpuOptions, CpuRenderer};
 use crate::scene::{Camera, Material, Scene};
 use crate::stages::{Rules, Transfer};
 use anyhow::Result;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -272,6 +273,10 @@ pub struct Compared {
     pub misfit: f64,
     /// Whether the remaining difference is noise.
     pub is_noise: bool,
+    /// Share of the blocks that differ by more than noise.
+    pub differing: f64,
+    /// Column and row of the middle of the block that differs most.
+    pub worst: [u32; 2],
     pub expected: Vec<[f64; 3]>,
 }
 
@@ -295,10 +300,18 @@ pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> 
         tolerance: 1e-4,
         rare: 0.0,
     });
-    let is_noise =
-        test.largest_excess() <= EXCESS_LIMIT && test.largest <= LARGEST_FACTOR * test.largest_limit;
-    let misfit = misfit(&test, &values, &expected, width);
-    Compared { hypothesis, misfit, is_noise, expected }
+    let limit = LARGEST_FACTOR * test.largest_limit;
+    let is_noise = test.largest_excess() <= EXCESS_LIMIT && test.largest <= limit;
+    let differing = test.blocks.iter().filter(|block| block.largest() > limit).count() as f64;
+    let middle = |range: &Range<u32>| u32::midpoint(range.start, range.end);
+    Compared {
+        misfit: misfit(&test, &values, &expected, width),
+        is_noise,
+        differing: differing / test.blocks.len().max(1) as f64,
+        worst: test.worst(1).first().map_or([0; 2], |block| [middle(&block.x), middle(&block.y)]),
+        hypothesis,
+        expected,
+    }
 }
 
 /// Mean squared error beyond noise over blocks and channels, in display values.

@@ -5,7 +5,7 @@ use super::hypothesis::{Change, Compared, Hypothesis, Making, Mistake, Studio, c
 use super::mistakes::{MISTAKES, applying_to};
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 /// Samples per pixel of the right picture and of the final candidates.
 const FINE: u64 = 256;
@@ -69,6 +69,11 @@ impl Finding {
 /// Judges a picture, of `stage` if it is known.
 pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
     let stages = match stage {
+        Some(stage) if !stages().any(|known| known == stage) => bail!(
+            "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
+             check an earlier section, such as --stage defocus",
+            stage.id
+        ),
         Some(stage) => vec![stage],
         None => candidates(mine)?,
     };

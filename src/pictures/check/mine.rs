@@ -115,28 +115,8 @@ fn repaired(bytes: &[u8]) -> Result<Repaired<'_>, String> {
         bytes = Cow::Owned(rest.to_owned());
     }
     let (bytes, format) = match &*bytes {
-        [0x89, b'P', b'N', b'G', ..] => {
-            let transparent = transparent_pixels(&bytes);
-            if transparent > 0 {
-                damaged(
-                    format!(
-                        "{transparent} pixels are transparent, so viewers mix them with their background"
-                    ),
-                    "write RGB without alpha, or an alpha of 255",
-                );
-            }
-            (bytes, "PNG")
-        }
-        [b'P', b'6', ..] => {
-            let repaired = without_added_bytes(&bytes).filter(|file| decoded(file).is_ok());
-            if repaired.is_some() {
-                damaged(
-                    "the file was written as text: every byte 10 has become 13 and 10".to_owned(),
-                    "open the file in binary mode: std::ofstream(name, std::ios::binary), or fopen(name, \"wb\")",
-                );
-            }
-            (repaired.map_or(bytes, Cow::Owned), "P6")
-        }
+        [0x89, b'P', b'N', b'G', ..] => (bytes, "PNG"),
+        [b'P', b'6', ..] => (bytes, "P6"),
         _ => (Cow::Owned(repaired_text(&bytes, damaged)?), "P3"),
     };
     Ok((bytes, format, damages))
@@ -168,20 +148,7 @@ fn check_size(width: u64, height: u64) -> Result<(), String> {
     }
 }
 
-/// Number of pixels of a PNG that are not opaque; 0 if it cannot be read, which is reported when decoding fails.
-fn transparent_pixels(bytes: &[u8]) -> usize {
-    image::load_from_memory_with_format(bytes, image::ImageFormat::Png)
-        .map_or(0, |image| image.to_rgba8().pixels().filter(|pixel| pixel.0[3] < 255).count())
-}
-
 const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
-
-/// Undoes Windows text mode, which turned every byte 10 into 13 10; `None` if the header lines do not end so.
-fn without_added_bytes(bytes: &[u8]) -> Option<Vec<u8>> {
-    let is_added = |index: usize| bytes[index] == b'\r' && bytes.get(index + 1) == Some(&b'\n');
-    let kept = || (0..bytes.len()).filter(|index| !is_added(*index)).map(|index| bytes[index]);
-    bytes.starts_with(b"P6\r\n").then(|| kept().collect())
-}
 
 /// Converts P3 to P6, dropping anything that does not belong.
 fn repaired_text(bytes: &[u8], mut damaged: impl FnMut(String, &'static str)) -> Result<Vec<u8>, String> {

@@ -244,7 +244,7 @@ pub static MISTAKES: [Mistake; 34] = [
         id: "index-inverted",
         section: "11.2",
         title: "the refraction index is inverted",
-        remedy: "ri = rec.front_face ? (1.0 / refraction_index) : refraction_index",
+        remedy: "write ri = rec.front_face ? (1.0 / refraction_index) : refraction_index",
         applies: has_glass,
         change: Change::Materials(invert),
     },

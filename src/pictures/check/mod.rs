@@ -4,6 +4,7 @@
 //! otherwise with a plain tracer that follows the book. A picture is right if it differs from ours only by noise;
 //! otherwise the mistake with the closest picture is named.
 
+mod answer;
 mod bytes;
 mod hypothesis;
 mod judge;
@@ -11,6 +12,7 @@ mod mine;
 mod mistakes;
 mod tracer;
 
+pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Mistake};
 pub use judge::{Finding, judge, stages};
 pub use mine::{Damage, Mine};
@@ -19,10 +21,9 @@ pub use mistakes::MISTAKES;
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use crate::cli::CheckOptions;
 use crate::numbers::heat::HeatScale;
-use crate::stages::Shading;
 use crate::system::failure::Failure;
 use crate::system::files::replace_file;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;
 use std::fs;
@@ -36,15 +37,6 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
 }
 
 fn checked(options: &CheckOptions) -> Result<ExitCode> {
-    if let Some(stage) = options.stage
-        && !stages().any(|known| known == stage)
-    {
-        bail!(
-            "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
-             check an earlier section, such as --stage defocus",
-            stage.id
-        );
-    }
     if let Some(directory) = &options.out {
         fs::create_dir_all(directory).with_context(|| {
             format!("cannot create the directory {}; choose another with --out", directory.display())
@@ -61,14 +53,7 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
     }
     let text = text(&options.picture, &mine, &finding, &files);
     deliver(options.json.as_ref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
-    Ok(finding.verdict(&mine).exit_code())
-}
-
-impl Finding {
-    /// A right picture in a damaged file still counts as different, because other programs cannot read it.
-    pub fn verdict(&self, mine: &Mine) -> Verdict {
-        if self.is_right() && mine.damages.is_empty() { Verdict::Same } else { Verdict::Different }
-    }
+    Ok(finding.answer(&mine).verdict().exit_code())
 }
 
 /// The reader's picture, ours, and a heat map of the difference: 8-bit RGB, row by row from the top.
@@ -85,40 +70,19 @@ pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
 
 /// The report for people; `files` lists the pictures written.
 pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> String {
-    let stage = finding.stage;
-    let mut text = vec![
-        ("picture", format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height)),
-        ("stage", format!("{}, section {}, {}", stage.id, stage.section, stage.section_title)),
-    ];
-    for damage in &mine.damages {
-        text.push(("file", damage.title.clone()));
-        text.push(("change", damage.remedy.to_owned()));
+    let (stage, answer) = (finding.stage, finding.answer(mine));
+    let picture = format!("{}, {}, {}x{}", path.display(), mine.format, mine.width, mine.height);
+    let stage = format!("{}, section {}, {}", stage.id, stage.section, stage.section_title);
+    let mut text = vec![("picture", picture), ("stage", stage), ("verdict", answer.title)];
+    text.push(("", answer.explanation));
+    text.extend(answer.evidence.into_iter().map(|line| ("seen", line)));
+    text.extend(answer.remedy.map(|remedy| ("change", remedy)));
+    if answer.kind == AnswerKind::Unknown {
+        text.push(("note", "--stage names the section, and --out DIR shows where the two differ".to_owned()));
     }
-    if let (Some(found), Some(mistake)) = (&finding.mistake, finding.named()) {
-        let certainty = if found.is_noise { "a mistake" } else { "most likely a mistake" };
-        text.push(("verdict", format!("{certainty}: {} (section {})", mistake.title, mistake.section)));
-        text.extend(found.hypothesis.note.iter().map(|note| ("seen", note.clone())));
-        text.push(("change", mistake.remedy.to_owned()));
-        if !found.is_noise {
-            text.push((
-                "note",
-                "it does not explain everything, so there may be a second mistake".to_owned(),
-            ));
-        }
-    } else if finding.is_right() {
-        text.push(("verdict", "right: it differs from ours by noise only".to_owned()));
-        if mine.width == mine.height && stage.setup.rules.shading != Shading::ImageGradient {
-            let note = "the picture is square; if you wanted 16:9, divide 16.0 by 9.0, not 16 by 9";
-            text.push(("note", note.to_owned()));
-        }
-    } else {
-        let verdict = "not right, but none of the known mistakes explains it; name the stage with --stage if it is \
-                       another one, and see with --out DIR where it differs (the final picture of section 14.1 \
-                       cannot be checked: its small spheres are random)";
-        text.push(("verdict", verdict.to_owned()));
-    }
-    if !finding.is_right() {
-        text.push(("read", stage.url()));
+    text.extend(answer.section.map(|section| ("read", format!("{}, {}", section.number, section.url))));
+    for damage in answer.damages {
+        text.extend([("file", damage.title), ("change", damage.remedy.to_owned())]);
     }
     if !files.is_empty() {
         let files: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
@@ -146,7 +110,7 @@ fn figures(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> se
         "height": mine.height,
         "stage": finding.stage.id,
         "section": finding.stage.section,
-        "is_right": finding.verdict(mine) == Verdict::Same,
+        "is_right": finding.answer(mine).verdict() == Verdict::Same,
         "mistake": mistake,
         "damages": mine.damages,
         "files": files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),

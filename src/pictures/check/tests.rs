@@ -9,7 +9,7 @@ use super::*;
 use crate::job::recipe::Recipe;
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::scene::Material;
-use crate::stages::{Stage, SurfaceRule, Transfer};
+use crate::stages::{Shading, Stage, SurfaceRule, Transfer};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -256,47 +256,58 @@ fn planted_mistake_is_found_and_reported() {
         let json = figures(path, &mine, &finding, &[]);
         assert_eq!(json["mistake"]["id"], planted.id);
         assert_eq!((&json["is_right"], &json["mistake"]["explains_all"]), (&false.into(), &true.into()));
+        let answer = finding.answer(&mine);
+        assert_eq!((answer.kind, answer.stage), (AnswerKind::Mistake, Some(stage)));
+        let section = answer.section.unwrap();
+        assert_eq!(section.number, planted.section);
         let report = text(path, &mine, &finding, &[]);
-        for part in [planted.title, planted.remedy, planted.section, &stage.url()] {
-            assert!(report.contains(part), "{report} should say {part}");
-        }
+        assert!(report.contains(&section.url) && !report.contains(&stage.url()), "{report}");
+        assert!(
+            answer.evidence.iter().any(|line| line.ends_with("they differ in 0 %")),
+            "{:?}",
+            answer.evidence
+        );
     }
 }
 
 #[test]
-fn report_covers_damage_shape_and_mistake() {
+fn answer_covers_damage_shape_and_mistake() {
     let stage = Stage::find("metal").unwrap();
     let right = |is_noise| Compared {
         hypothesis: Hypothesis::right(&stage.recipe()),
         misfit: 0.0,
         is_noise,
+        differing: if is_noise { 0.0 } else { 0.25 },
+        worst: [3, 4],
         expected: Vec::new(),
     };
-    let said = |size, damages, finding: &Finding| {
-        let mine = Mine { damages, ..picture_of(Vec::new(), size) };
-        (text(Path::new("a.ppm"), &mine, finding, &[]), finding.verdict(&mine))
+    let answer = |size, damages: &[Damage], finding: &Finding| {
+        finding.answer(&Mine { damages: damages.to_vec(), ..picture_of(Vec::new(), size) })
     };
     let finding = Finding { stage, right: right(true), mistake: None };
     let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
-    let (report, verdict) = said([40, 20], vec![damage], &finding);
-    assert!(report.contains("\nfile     it is torn\nchange   mend it\n"), "{report}");
-    assert_eq!(verdict, Verdict::Different, "a damaged file is not right for other programs");
-    let (report, verdict) = said([40, 40], Vec::new(), &finding);
-    assert!(report.contains("noise only") && report.contains("the picture is square"), "{report}");
-    assert_eq!(verdict, Verdict::Same);
+    let torn = answer([40, 20], &[damage.clone(), damage.clone()], &finding);
+    assert_eq!((torn.kind, torn.title.as_str(), torn.damages.len()), (AnswerKind::Mistake, "It is torn", 1));
+    assert_eq!(torn.remedy.as_deref(), Some("Mend it"));
+    assert_eq!(torn.verdict(), Verdict::Different, "other programs cannot read a damaged file");
+    let square = answer([40, 40], &[], &finding);
+    assert_eq!((square.kind, square.verdict()), (AnswerKind::Right, Verdict::Same));
+    assert!(square.evidence[0].contains("square"));
     let hypothesis = mistake("swapped-channels").pictures(&stage.recipe()).remove(0);
-    let found = Compared { hypothesis, ..right(false) };
-    let (report, _) =
-        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: Some(found) });
-    for part in
-        ["most likely a mistake: ", "seen     the channels seem to be blue, green, red", "second mistake"]
-    {
-        assert!(report.contains(part), "{report}");
-    }
-    let (report, verdict) =
-        said([40, 20], Vec::new(), &Finding { stage, right: right(false), mistake: None });
-    assert!(report.contains("none of the known mistakes explains it"), "{report}");
-    assert_eq!(verdict, Verdict::Different);
+    let found = Compared { hypothesis, differing: 0.001, ..right(false) };
+    let likely = answer([40, 20], &[], &Finding { stage, right: right(false), mistake: Some(found) });
+    assert_eq!(likely.kind, AnswerKind::LikelyMistake);
+    assert!(likely.title.ends_with("swapped, most likely"), "{}", likely.title);
+    let [seen, ours, with] = likely.evidence.as_slice() else { panic!("{:?}", likely.evidence) };
+    assert!(seen.contains("blue, green, red") && ours.contains("25 %") && ours.contains("column 3, row 4"));
+    assert!(with.contains("less than 1 %"), "{with}");
+    let unknown = answer([40, 20], &[damage], &Finding { stage, right: right(false), mistake: None });
+    assert_eq!(
+        (unknown.kind, unknown.verdict(), unknown.damages.len()),
+        (AnswerKind::Unknown, Verdict::Different, 1)
+    );
+    let cannot = Answer::cannot_check(&anyhow::anyhow!("it is blank"));
+    assert_eq!((cannot.kind, cannot.explanation.as_str()), (AnswerKind::CannotCheck, "It is blank"));
 }
 
 #[test]

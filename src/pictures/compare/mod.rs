@@ -3,7 +3,7 @@
 mod heat_map;
 mod verdict;
 
-pub use verdict::{Comparison, NonFinite, ROUNDING_BIAS, compare};
+pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use super::picture::{Picture, about_film, check_memory};

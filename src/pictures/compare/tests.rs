@@ -1,6 +1,6 @@
 //! Noise, rounding, clipping, NaN, and rendering the counterpart of a file.
 
-use super::verdict::Relation;
+use super::verdict::{NonFinite, Relation};
 use super::*;
 use crate::film::{Description, FIXED_POINT_SCALE, PixelSum, checkpoint, fixed_point};
 use crate::job::output::Encoding;

@@ -224,8 +224,9 @@ impl HalvesNoise {
     }
 }
 
-/// Half the difference between the halves' pixel means; its square estimates the variance of the pixel's mean.
-fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
+/// Half the difference between the halves' pixel means; its square estimates the variance of the pixel's mean. `None`
+/// unless there are samples in two halves.
+pub fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
     let [first, second] = film.halves() else { return None };
     let [count_a, count_b] = [0, 1].map(|half| film.half_sample_count(half) as f64);
     let half = |(a, b): (&PixelSum, &PixelSum)| {

@@ -10,9 +10,6 @@ use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A ray that misses a sphere by less than this share of the radius grazes it.
-const GRAZING_SHARE: f64 = 0.01;
-
 /// A quantity of a ray or of the whole path, in order of computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -207,8 +204,7 @@ impl Pair<'_> {
             Quantity::Radiance => format!("the radiances {allowed}, although the rays agree"),
             Quantity::Object => {
                 let [meets_a, meets_b] = [ray_a, ray_b].map(|ray| self.object(ray));
-                let near_miss = self.near_miss(ray_a, ray_b).unwrap_or_default();
-                format!("ray {number}: the paths part: {a} meets {meets_a}, {b} {meets_b}{near_miss}")
+                format!("ray {number}: the paths part: {a} meets {meets_a}, {b} {meets_b}")
             }
             Quantity::Departure => {
                 let [word_a, word_b] = self.paths.map(|path| self.departure(path, index).unwrap_or("gone"));
@@ -244,19 +240,6 @@ impl Pair<'_> {
         let scene = self.job.scene();
         let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
         Some((printable(&named.name), named.material.kind()))
-    }
-
-    /// A note if one side barely misses the sphere that the other hits, so rounding decided.
-    fn near_miss(&self, a: Option<&RecordedRay>, b: Option<&RecordedRay>) -> Option<String> {
-        let (a, b) = (a?, b?);
-        [(a, b, self.names[1]), (b, a, self.names[0])].into_iter().find_map(|(hitting, missing, name)| {
-            let sphere = self.job.scene().spheres.get(hitting.hit?.sphere)?;
-            let to_center = sphere.center - DVec3::from(missing.origin);
-            let miss = to_center.cross(DVec3::from(missing.direction)).length() / sphere.radius.abs() - 1.0;
-            (0.0..GRAZING_SHARE)
-                .contains(&miss)
-                .then(|| format!("; {name} misses that sphere by {miss:.0e} of its radius"))
-        })
     }
 }
 

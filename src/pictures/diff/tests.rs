@@ -164,31 +164,6 @@ fn departure_follows_material_and_next_ray() {
 }
 
 #[test]
-fn near_miss_is_reported() {
-    let job = job();
-    let sphere = job.scene().spheres[1];
-    let path = |beside: f64, hit| {
-        let origin = sphere.center + sphere.radius * glam::DVec3::new(beside, 0.0, 9.0);
-        PathRecord { rays: vec![ray(origin.to_array(), [0.0, 0.0, -1.0], hit)], radiance: [0.0; 3] }
-    };
-    let hitting = path(0.999, Some(1));
-    let sentence = |beside: f64, is_swapped: bool| {
-        let missing = path(beside, None);
-        let paths = if is_swapped { [&missing, &hitting] } else { [&hitting, &missing] };
-        pair(&job, paths, 1e-3).sentence(&Difference {
-            ray: 0,
-            quantity: Quantity::Object,
-            amount: f64::INFINITY,
-        })
-    };
-    assert!(sentence(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
-    assert!(sentence(1.005, true).contains("cpu meets the sky, gpu sphere 1 (center); cpu misses"));
-    for beside in [0.5, 1.011, 3.0] {
-        assert!(!sentence(beside, false).contains("misses"), "{beside}");
-    }
-}
-
-#[test]
 fn unpaired_rays_are_shown() {
     let job = job();
     let path = |rays: &[RecordedRay]| PathRecord { rays: rays.to_vec(), radiance: [0.5; 3] };

@@ -34,8 +34,8 @@ fn lines_of(row: &Row, index: usize, pair: &Pair, comparison: &PathComparison) -
     let mark = if marked.is_some() { "▶" } else { " " };
     let [a, b] = row.values.each_ref().map(|value| cut(value.as_deref().unwrap_or_default(), COLUMN));
     let line = format!("{mark} {:width$}{a:COLUMN$} {sign} {b}", row.label, width = LABEL - 2);
-    let sentence = marked.map_or(Vec::new(), |difference| wrapped(&pair.sentence(&difference), WIDTH - 4));
-    std::iter::once(line).chain(sentence.into_iter().map(|part| format!("    {part}"))).collect()
+    let sentence = marked.map(|difference| format!("    {}", pair.sentence(&difference)));
+    std::iter::once(line).chain(sentence).collect()
 }
 
 fn closing(pair: &Pair, comparison: &PathComparison) -> Vec<String> {
@@ -47,15 +47,12 @@ fn closing(pair: &Pair, comparison: &PathComparison) -> Vec<String> {
         share if share < 1e-3 => format!("{share:.1e} of the larger"),
         share => format!("{:.1} % of the larger", 100.0 * share),
     };
-    let mut lines = vec![
+    vec![
         "─".repeat(WIDTH),
         format!("{:LABEL$}{:COLUMN$} {sign} {}", "radiance", vector(a), vector(b)),
         format!("{:LABEL$}{by:COLUMN$}   {share}", "difference"),
-    ];
-    for (index, part) in wrapped(&pair.verdict(comparison), WIDTH - LABEL).iter().enumerate() {
-        lines.push(format!("{:LABEL$}{part}", if index == 0 { "verdict" } else { "" }));
-    }
-    lines
+        format!("{:LABEL$}{}", "verdict", pair.verdict(comparison)),
+    ]
 }
 
 /// A mark for bit-identical, within tolerance, or different.
@@ -72,30 +69,4 @@ fn cut(text: &str, width: usize) -> String {
         return text.to_owned();
     }
     text.chars().take(width - 1).chain(['…']).collect()
-}
-
-/// Wraps at spaces to at most `width` characters.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(last) if last.chars().count() + 1 + word.chars().count() <= width => {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_break_between_words() {
-        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
-        assert_eq!(cut("sphere 7", 5), "sphe…");
-    }
 }

@@ -37,7 +37,7 @@ pub(super) const STAGES: &[Stage] = &[
             caption: "The shadow has no edge: the nearer to the ball, the less sky the ground sees.",
         },
         alt: "A dark grey matte ball on grey ground, with a soft, nearly black shadow where they touch.",
-        pair: None,
+        pair: Some("antialiased"),
         setup: Setup { rules: HEMISPHERE, ..PATHS },
     },
     Stage {
@@ -147,7 +147,7 @@ pub(super) const STAGES: &[Stage] = &[
         alt: "Five vertical strips from dark to light, over a ball and the ground up to the horizon. Each \
               strip is much darker in the upper half than in the lower half, and the first is almost black \
               there.",
-        pair: None,
+        pair: Some("lambertian-gamma"),
         setup: Setup {
             rules: Rules {
                 reflectance_strips: true,

@@ -158,7 +158,7 @@ pub(super) const STAGES: &[Stage] = &[
         section: "11.5",
         section_title: "Modeling a Hollow Glass Sphere",
         chapter_title: CHAPTER_11,
-        title: "The measured scene",
+        title: "Four spheres, for measuring",
         what_is_new: "The same scene, larger and with more samples: what the finished renderer shows \
                       unless it is asked for something else.",
         why: "It has every material and a path of every kind in four small balls and a ground, so it is \

@@ -100,7 +100,7 @@ pub(super) const STAGES: &[Stage] = &[
             caption: "Left, one red for every hit. Right, the next stage knows where each ray has hit.",
         },
         alt: "A flat red disk in front of the blue and white sky.",
-        pair: None,
+        pair: Some("normals"),
         setup: Setup {
             scene: one_sphere,
             rules: Rules { shading: Shading::FirstHitRed, ..ONE_RAY.rules },
@@ -125,7 +125,7 @@ pub(super) const STAGES: &[Stage] = &[
         },
         alt: "A ball in the colours of its normals: turquoise at the top, pink on the right, blue in the \
               middle, violet at the bottom.",
-        pair: None,
+        pair: Some("red-sphere"),
         setup: Setup { scene: one_sphere, rules: Rules { antialiasing: false, ..NORMAL_COLOURS }, ..ONE_RAY },
     },
     Stage {

@@ -8,13 +8,14 @@ mod panic;
 pub use panic::{watched, write_report};
 
 use crate::system::console;
+use anyhow::{Result, anyhow};
 use env_filter::Filter;
 use log::{Level, LevelFilter, Log, Metadata, Record};
 use std::collections::VecDeque;
 use std::env;
 use std::fs::File;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -29,18 +30,6 @@ const KEPT_LINES: usize = 256;
 
 static KEPT: Mutex<VecDeque<String>> = Mutex::new(VecDeque::new());
 
-/// Why the log cannot be started.
-#[derive(Debug, thiserror::Error)]
-pub enum JournalError {
-    #[error(
-        "{VARIABLE} is {value:?}, which is not a log filter ({reason}); write a level such as info, or a level for each \
-         module such as warn,weekender=debug; levels are error, warn, info, debug, trace and off"
-    )]
-    Filter { value: String, reason: String },
-    #[error("--log {}: {source}; choose a file in a directory that you can write to", path.display())]
-    File { path: PathBuf, source: io::Error },
-}
-
 struct Journal {
     filter: Filter,
     /// `None` for standard error.
@@ -51,14 +40,16 @@ struct Journal {
 /// Starts the log: to `file`, or to standard error if [`VARIABLE`] is set. A second call does nothing.
 ///
 /// # Errors
-/// [`JournalError`]; nothing is logged then.
-pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
+/// If the variable is not a filter or the file cannot be created; nothing is logged then.
+pub fn start(file: Option<&Path>) -> Result<()> {
     let value = env::var_os(VARIABLE).map(|value| value.to_string_lossy().trim().to_owned());
     let default = if file.is_some() { FILTER_OF_FILE } else { "off" };
     let filter = filter_of(value.as_deref().filter(|value| !value.is_empty()).unwrap_or(default))?;
-    let create = |path: &Path| match File::create(path) {
-        Ok(file) => Ok(Mutex::new(file)),
-        Err(source) => Err(JournalError::File { path: path.to_owned(), source }),
+    let create = |path: &Path| {
+        let file = File::create(path).map_err(|error| {
+            anyhow!("--log {}: {error}; choose a file in a directory that you can write to", path.display())
+        })?;
+        anyhow::Ok(Mutex::new(file))
     };
     let file = file.map(create).transpose()?;
     let most = filter.filter().max(LevelFilter::Info);
@@ -68,12 +59,15 @@ pub fn start(file: Option<&Path>) -> Result<(), JournalError> {
     Ok(())
 }
 
-fn filter_of(filter: &str) -> Result<Filter, JournalError> {
+fn filter_of(filter: &str) -> Result<Filter> {
     let mut builder = env_filter::Builder::new();
-    match builder.try_parse(filter) {
-        Ok(builder) => Ok(builder.build()),
-        Err(error) => Err(JournalError::Filter { value: filter.to_owned(), reason: error.to_string() }),
-    }
+    let parsed = builder.try_parse(filter).map_err(|reason| {
+        anyhow!(
+            "{VARIABLE} is {filter:?}, which is not a log filter ({reason}); write a level such as info, or a level for \
+             each module such as warn,weekender=debug; levels are error, warn, info, debug, trace and off"
+        )
+    })?;
+    Ok(parsed.build())
 }
 
 /// Whether to keep a line for a report: the program's own steps and the warnings of others.
@@ -91,7 +85,7 @@ fn keep(line: String) {
 }
 
 /// The kept lines, oldest first.
-fn kept_text() -> String {
+pub fn kept_text() -> String {
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     kept.iter().map(String::as_str).collect::<Vec<_>>().join("\n")
 }

@@ -5,6 +5,7 @@ use super::kept_text;
 use crate::system::console;
 use crate::system::failure::FAILED;
 use crate::system::files::{state_directory, write_text};
+use crate::system::shell;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::env;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -32,7 +33,12 @@ pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode 
 pub fn write_report() {
     let Some(message) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     let version = VERSION.get().map_or("unknown", String::as_str);
-    let text = report(version, &command_line(), &message, &kept_text());
+    let text = report(
+        version,
+        &shell::line(env::args_os().map(|word| word.to_string_lossy().into_owned())),
+        &message,
+        &kept_text(),
+    );
     let name = format!("weekender-report-{}.txt", std::process::id());
     let mut reasons = Vec::new();
     for place in places() {
@@ -65,12 +71,6 @@ fn report(version: &str, command: &str, message: &str, log: &str) -> String {
          what follows; remove what is private.\n\nversion    {version}\ncommand    {command}\ndirectory  \
          {directory}\n\n{message}\n\nLog (seconds since the start):\n{log}\n"
     )
-}
-
-/// The command line as a shell would read it.
-fn command_line() -> String {
-    let arguments: Vec<String> = env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
-    shlex::try_join(arguments.iter().map(String::as_str)).unwrap_or_else(|_| arguments.join(" "))
 }
 
 /// The panic hook. It cannot fail, even if standard error is closed.

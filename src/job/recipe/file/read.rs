@@ -64,11 +64,8 @@ impl FileError {
 pub fn load(path: &Path) -> Result<Recipe, FileError> {
     let label = path.shown();
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let good = String::from_utf8_lossy(&error.as_bytes()[..error.utf8_error().valid_up_to()]);
-        let reason =
-            "this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file";
-        FileError::at(&good, &label, good.len(), reason.to_owned())
+    let text = String::from_utf8(bytes).map_err(|_| {
+        InputError::unreadable(path, "it is not UTF-8 text; save it as UTF-8, or name a .toml file")
     })?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     Ok(Recipe { name: stem, ..parse(&text, &label)? })
@@ -116,7 +113,7 @@ struct RawFile {
     spheres: Option<Vec<Spanned<RawSphere>>>,
     camera: Spanned<RawCamera>,
     #[serde(default)]
-    keyframes: Vec<RawKeyframe>,
+    keyframes: Vec<Spanned<RawCamera>>,
     #[serde(default)]
     render: RawSettings,
     #[serde(default)]
@@ -124,7 +121,7 @@ struct RawFile {
 }
 
 /// Exactly three numbers; glam would ignore a fourth.
-#[derive(Clone, Copy, Deserialize)]
+#[derive(Deserialize)]
 #[serde(try_from = "Vec<f64>")]
 struct Triple(DVec3);
 
@@ -138,6 +135,22 @@ impl TryFrom<Vec<f64>> for Triple {
         }
     }
 }
+
+/// A whole number from `LOWEST` to `HIGHEST`.
+#[derive(Deserialize)]
+#[serde(try_from = "i64")]
+struct Whole<const LOWEST: i64, const HIGHEST: i64>(i64);
+
+impl<const LOWEST: i64, const HIGHEST: i64> TryFrom<i64> for Whole<LOWEST, HIGHEST> {
+    type Error = String;
+
+    fn try_from(number: i64) -> Result<Self, String> {
+        let is_within = (LOWEST..=HIGHEST).contains(&number);
+        is_within.then_some(Whole(number)).ok_or(format!("{number} is not within {LOWEST} and {HIGHEST}"))
+    }
+}
+
+type Size = Option<Whole<1, { SIZE_LIMIT as i64 }>>;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
@@ -155,23 +168,12 @@ struct RawSphere {
     material: toml::Value,
 }
 
+/// `[camera]`, or a keyframe, in which omitted keys are as in `[camera]`, except for the focus distance: without it, the
+/// focus is on `look_at`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawCamera {
-    look_from: Triple,
-    look_at: Triple,
-    vup: Option<Triple>,
-    vfov_degrees: f64,
-    #[serde(default)]
-    defocus_angle_degrees: f64,
-    focus_distance: Option<f64>,
-}
-
-/// Omitted keys are as in `[camera]`, except for the focus distance: without it, the focus is on `look_at`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a table")]
-struct RawKeyframe {
-    frame: Spanned<i64>,
+    frame: Option<Whole<0, { FRAME_LIMIT as i64 - 1 }>>,
     look_from: Option<Triple>,
     look_at: Option<Triple>,
     vup: Option<Triple>,
@@ -183,12 +185,12 @@ struct RawKeyframe {
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct RawSettings {
-    width: Option<Spanned<i64>>,
-    height: Option<Spanned<i64>>,
-    samples_per_pixel: Option<Spanned<i64>>,
-    max_depth: Option<Spanned<i64>>,
+    width: Size,
+    height: Size,
+    samples_per_pixel: Option<Whole<1, { SAMPLE_LIMIT as i64 }>>,
+    max_depth: Option<Whole<1, { DEPTH_LIMIT as i64 }>>,
     sampler: Option<SamplerKind>,
-    seed: Option<Spanned<i64>>,
+    seed: Option<Whole<0, { u32::MAX as i64 }>>,
     estimate_error: Option<bool>,
 }
 
@@ -204,7 +206,6 @@ fn refuse(place: Range<usize>, reason: impl Display) -> Refusal {
 
 /// Checks every value here, where its position in the text is known.
 fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
-    let (settings, samples_per_pixel) = settings_of(raw.render)?;
     let scene = match raw.scene {
         Some(scene) if raw.sky.is_some() || raw.materials.is_some() || raw.spheres.is_some() => {
             let reason = "sky, materials and spheres cannot be combined with scene, which has its own; remove one of them";
@@ -216,55 +217,26 @@ fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
             Arc::new(listed_scene(sky, raw.materials.unwrap_or_default(), raw.spheres.unwrap_or_default())?)
         }
     };
-    let camera = camera_of(&raw.camera)?;
+    let camera = camera_of(&raw.camera, None)?;
+    let (default, own) = (RenderSettings::default(), raw.render);
     Ok(Recipe {
         name: name.to_owned(),
         scene,
         camera,
         keyframes: keyframes_of(raw.keyframes, &camera)?,
-        settings,
+        settings: RenderSettings {
+            width: own.width.map_or(default.width, |Whole(pixels)| pixels as u32),
+            height: own.height.map_or(default.height, |Whole(pixels)| pixels as u32),
+            max_depth: own.max_depth.map_or(default.max_depth, |Whole(rays)| rays as u32),
+            sampler: own.sampler.unwrap_or(default.sampler),
+            seed: own.seed.map_or(default.seed, |Whole(seed)| seed as u32),
+            estimate_error: own.estimate_error.unwrap_or(default.estimate_error),
+        },
         rules: raw.rules,
-        samples_per_pixel,
+        samples_per_pixel: own
+            .samples_per_pixel
+            .map_or(DEFAULT_SAMPLES_PER_PIXEL, |Whole(samples)| samples as u64),
     })
-}
-
-/// A whole number within `lowest` and `highest`.
-fn whole<T: TryFrom<i64> + PartialOrd + Display>(
-    key: &str,
-    value: Option<Spanned<i64>>,
-    default: T,
-    [lowest, highest]: [T; 2],
-    remedy: &str,
-) -> Result<T, Refusal> {
-    let Some(value) = value else { return Ok(default) };
-    let number = T::try_from(*value.get_ref()).ok().filter(|number| lowest <= *number && *number <= highest);
-    number.ok_or_else(|| {
-        let reason =
-            format!("{key} is {}, but must be within {lowest} and {highest}; {remedy}", value.get_ref());
-        refuse(value.span(), reason)
-    })
-}
-
-fn settings_of(raw: RawSettings) -> Result<(RenderSettings, u64), Refusal> {
-    let default = RenderSettings::default();
-    let size = [1, SIZE_LIMIT];
-    let settings = RenderSettings {
-        width: whole("width", raw.width, default.width, size, "give pixels, such as 800")?,
-        height: whole("height", raw.height, default.height, size, "give pixels, such as 450")?,
-        max_depth: whole(
-            "max_depth",
-            raw.max_depth,
-            default.max_depth,
-            [1, DEPTH_LIMIT],
-            "the book uses 50 rays per path",
-        )?,
-        sampler: raw.sampler.unwrap_or(default.sampler),
-        seed: whole("seed", raw.seed, default.seed, [0, u32::MAX], "choose any number in this range")?,
-        estimate_error: raw.estimate_error.unwrap_or(default.estimate_error),
-    };
-    let (default, limits) = (DEFAULT_SAMPLES_PER_PIXEL, [1, SAMPLE_LIMIT]);
-    let samples = whole("samples_per_pixel", raw.samples_per_pixel, default, limits, "try 100")?;
-    Ok((settings, samples))
 }
 
 /// The built-in scene of this name. Refused if its mark differs from that in the file.
@@ -285,11 +257,12 @@ fn builtin_scene(name: &Spanned<String>, mark: Option<&Spanned<String>>) -> Resu
 
 fn sky_of(raw: Option<Spanned<RawSky>>) -> Result<Sky, Refusal> {
     let mut sky = Sky::default();
-    let Some(raw) = raw else { return Ok(sky) };
-    let RawSky { bottom, top } = raw.get_ref();
-    sky.bottom = bottom.map_or(sky.bottom, |Triple(colour)| colour);
-    sky.top = top.map_or(sky.top, |Triple(colour)| colour);
-    sky.validate().map_err(|error| refuse(raw.span(), error))?;
+    if let Some(raw) = raw {
+        let RawSky { bottom, top } = raw.get_ref();
+        sky.bottom = bottom.as_ref().map_or(sky.bottom, |Triple(colour)| *colour);
+        sky.top = top.as_ref().map_or(sky.top, |Triple(colour)| *colour);
+        sky.validate().map_err(|error| refuse(raw.span(), error))?;
+    }
     Ok(sky)
 }
 
@@ -354,47 +327,47 @@ fn material_of(
     }
 }
 
-fn camera_of(raw: &Spanned<RawCamera>) -> Result<Camera, Refusal> {
-    let place = raw.span();
-    let raw = raw.get_ref();
+/// The camera. `base` has the values of missing keys; without it, some must be there.
+fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, Refusal> {
+    let (place, raw) = (raw.span(), raw.get_ref());
+    let missing = |key: &str| refuse(place.clone(), format!("missing key `{key}`"));
+    let vector = |key, own: Option<&Triple>, base: Option<DVec3>| {
+        own.map(|Triple(vector)| *vector).or(base).ok_or_else(|| missing(key))
+    };
     let camera = Camera {
-        look_from: raw.look_from.0,
-        look_at: raw.look_at.0,
-        vup: raw.vup.map_or(Camera::BOOK.vup, |Triple(vup)| vup),
-        vfov_degrees: raw.vfov_degrees,
-        defocus_angle_degrees: raw.defocus_angle_degrees,
+        look_from: vector("look_from", raw.look_from.as_ref(), base.map(|base| base.look_from))?,
+        look_at: vector("look_at", raw.look_at.as_ref(), base.map(|base| base.look_at))?,
+        vup: vector("vup", raw.vup.as_ref(), Some(base.map_or(Camera::BOOK.vup, |base| base.vup)))?,
+        vfov_degrees: raw
+            .vfov_degrees
+            .or(base.map(|base| base.vfov_degrees))
+            .ok_or_else(|| missing("vfov_degrees"))?,
+        defocus_angle_degrees: raw
+            .defocus_angle_degrees
+            .unwrap_or(base.map_or(0.0, |base| base.defocus_angle_degrees)),
         focus_distance: raw.focus_distance,
     };
-    camera.validate().map_err(|error| refuse(place, error))?;
+    camera.validate().map_err(|error| refuse(place.clone(), error))?;
     Ok(camera)
 }
 
 /// The keyframes, completed from `camera`.
-fn keyframes_of(raw: Vec<RawKeyframe>, camera: &Camera) -> Result<Vec<Keyframe>, Refusal> {
+fn keyframes_of(raw: Vec<Spanned<RawCamera>>, camera: &Camera) -> Result<Vec<Keyframe>, Refusal> {
     let mut keyframes: Vec<Keyframe> = Vec::with_capacity(raw.len());
     for raw in raw {
-        let place = raw.frame.span();
-        let frame = whole("frame", Some(raw.frame), 0, [0, FRAME_LIMIT - 1], "count frames from 0")?;
-        if let Some(Keyframe { frame: before, .. }) = keyframes.last()
-            && *before >= frame
-        {
-            let reason = format!(
-                "frame is {frame}, but the keyframe before it has {before}; list keyframes by rising frame number, each \
-                 number once"
-            );
-            return Err(refuse(place, reason));
-        }
-        let vector = |raw: Option<Triple>, default| raw.map_or(default, |Triple(vector)| vector);
-        let camera = Camera {
-            look_from: vector(raw.look_from, camera.look_from),
-            look_at: vector(raw.look_at, camera.look_at),
-            vup: vector(raw.vup, camera.vup),
-            vfov_degrees: raw.vfov_degrees.unwrap_or(camera.vfov_degrees),
-            defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(camera.defocus_angle_degrees),
-            focus_distance: raw.focus_distance,
+        let Some(Whole(frame)) = raw.get_ref().frame else {
+            return Err(refuse(raw.span(), "missing key `frame`"));
         };
-        camera.validate().map_err(|error| refuse(place, error))?;
-        keyframes.push(Keyframe { frame, camera });
+        let (frame, before) = (frame as u32, keyframes.last().map(|before| before.frame));
+        if before.is_some_and(|before| before >= frame) {
+            let reason = format!(
+                "frame is {frame}, but the keyframe before it has {}; list keyframes by rising frame number, each number \
+                 once",
+                before.unwrap_or_default()
+            );
+            return Err(refuse(raw.span(), reason));
+        }
+        keyframes.push(Keyframe { frame, camera: camera_of(&raw, Some(camera))? });
     }
     Ok(keyframes)
 }

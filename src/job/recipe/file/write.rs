@@ -2,7 +2,7 @@
 
 use super::named::{mark, name_of};
 use crate::job::recipe::Recipe;
-use crate::job::render::{RenderSettings, SettingValue};
+use crate::job::render::RenderSettings;
 use crate::scene::animation::Keyframe;
 use crate::scene::{Camera, NamedMaterial, Parameter, Scene, Sphere, toml_key, toml_string};
 use crate::stages::Rules;
@@ -62,14 +62,10 @@ fn settings(recipe: &Recipe) -> String {
     let samples = recipe.samples_per_pixel;
     text +=
         &format!("\n[render]\nwidth = {width} # pixels\nheight = {height}\nsamples_per_pixel = {samples}\n");
+    let values = toml::Table::try_from(recipe.settings).unwrap_or_default();
     for named in RenderSettings::NAMED {
-        let value = match (named.value)(&recipe.settings) {
-            SettingValue::Number(number) => number.to_string(),
-            SettingValue::Name(name) => toml_string(name),
-            SettingValue::Switch(is_on) => is_on.to_string(),
-        };
         let comment = if named.comment.is_empty() { String::new() } else { format!(" # {}", named.comment) };
-        text += &format!("{} = {value}{comment}\n", named.key);
+        text += &format!("{} = {}{comment}\n", named.key, values[named.key]);
     }
     text + &rules(&recipe.rules)
 }

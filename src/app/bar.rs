@@ -1,0 +1,200 @@
+//! The bar at the top: menus, stage, device, pause and save. In a narrow window it has two rows.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::menu::menus;
+use super::model::device::{Device, adapter};
+use super::model::document::Document;
+use super::model::origin::Source;
+use super::stage_list;
+use super::theme;
+use super::widgets::{About, Sign, named, paint_sign, switch, tip};
+use eframe::egui::{
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, Response, RichText, Ui, UiBuilder,
+    ViewportCommand, pos2, vec2,
+};
+
+const HEIGHT: f32 = 48.0;
+
+/// Narrower windows have a second row, points.
+const ONE_ROW: f32 = 780.0;
+
+/// Narrower windows show only the section of the stage, points.
+const WITH_TITLE: f32 = 1000.0;
+
+const STAGE: f32 = 288.0;
+const DEVICE: f32 = 45.0;
+/// For "Resume", "Go on" and "Pause" alike, so that nothing moves.
+const PAUSE: f32 = 72.0;
+const SAVE: f32 = 61.0;
+
+/// Width of what stands at the right, points.
+const RIGHT: f32 = 3.0 * DEVICE + 24.0 + PAUSE + 8.0 + SAVE;
+
+/// Draws the bar.
+pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    let has_one_row = ui.available_width() >= ONE_ROW;
+    let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
+    let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
+    panel.show(ui, |ui| {
+        let room = ui.max_rect().with_max_x(ui.max_rect().right() - 8.0);
+        let row = |rect: Rect| UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center));
+        let first = Rect::from_min_size(room.min, vec2(room.width(), 24.0));
+        let menus = ui.scope_builder(row(first), |ui| {
+            egui::containers::menu::menu_style(ui.style_mut());
+            ui.spacing_mut().item_spacing.x = 0.0;
+            ui.spacing_mut().button_padding = vec2(8.0, 4.0);
+            menus(ui, facts, commands);
+        });
+        let (row_rect, after_menus) = match has_one_row {
+            true => (first, menus.response.rect.right() + 16.0),
+            false => (first.translate(vec2(0.0, 32.0)), room.left() + 8.0),
+        };
+        let right = room.right() - RIGHT;
+        let most = right - 16.0 - after_menus;
+        let wanted = if ui.ctx().content_rect().width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
+        let width = wanted.min(most).max(96.0);
+        let middle = ui.ctx().content_rect().center().x - 0.5 * width;
+        let left = middle.min(right - 16.0 - width).max(after_menus);
+        let place = Rect::from_min_size(pos2(left, row_rect.top()), vec2(width, 24.0));
+        ui.scope_builder(row(place), |ui| stage(ui, facts, commands));
+        let place = Rect::from_min_max(pos2(right, row_rect.top()), pos2(room.right(), row_rect.bottom()));
+        ui.scope_builder(row(place), |ui| {
+            device(ui, facts, commands);
+            ui.add_space(16.0);
+            pause(ui, facts, commands);
+            let response = ui.add(Button::new("Save…").min_size(vec2(SAVE, 0.0)));
+            send_if_clicked(ui, response, Command::Save, None, commands);
+        });
+    });
+}
+
+/// Names the window after its picture.
+pub fn name_window(context: &egui::Context, document: &Document) {
+    let changed = if document.is_changed() { ", changed" } else { "" };
+    let title = format!("{}{changed} – Weekender", title_of(document).replace("  ", " "));
+    let place = egui::Id::unique("title of the window");
+    if context.data(|data| data.get_temp::<String>(place)).as_ref() != Some(&title) {
+        context.data_mut(|data| data.insert_temp(place, title.clone()));
+        context.send_viewport_cmd(ViewportCommand::Title(title));
+    }
+}
+
+/// The name of the picture without a word about changes.
+fn title_of(document: &Document) -> String {
+    match &document.origin.source {
+        Source::Stage(stage) => format!("{}  {}", stage.section, stage.title),
+        Source::Extreme(case) => case.title().to_owned(),
+        Source::File(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
+        _ => document.origin.recipe.name.clone(),
+    }
+}
+
+/// A command's help with its keys.
+fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
+    match command.keys(ui.ctx()) {
+        Some(keys) => format!("{help} ({keys})"),
+        None => help.to_owned(),
+    }
+}
+
+fn send_if_clicked(
+    ui: &Ui,
+    response: Response,
+    command: Command,
+    reason: Option<&str>,
+    commands: &mut Vec<Command>,
+) {
+    if tip(ui, response, &with_keys(ui, command.help(), command), reason).clicked() {
+        commands.push(command);
+    }
+}
+
+/// The stage between the arrows to its neighbours.
+fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    let width = ui.available_width() - 56.0;
+    step(ui, facts, commands, Command::PreviousStage, Sign::Previous);
+    let document = facts.document();
+    let title = match document.stage() {
+        Some(stage) if width < 140.0 => stage.section.to_owned(),
+        _ => title_of(document),
+    };
+    let changed = if document.is_changed() && width >= 140.0 { " · changed" } else { "" };
+    // The title is cut before "changed" is.
+    let room_for_triangle = Atom::custom(egui::IdSalt::new("triangle"), vec2(12.0, 8.0));
+    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), room_for_triangle);
+    let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
+    let sized = ui.scope(|ui| {
+        ui.set_max_width(width);
+        ui.add(button)
+    });
+    let response = sized.inner;
+    let corner = response.rect.right_center() - vec2(14.0, 0.0);
+    let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
+    egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
+    named(&response, "Choose a stage");
+    if let Some(is_at_end) = stage_list::take_open(ui) {
+        stage_list::begin(ui.ctx(), facts, is_at_end);
+        egui::Popup::open_id(ui.ctx(), egui::Popup::default_response_id(&response));
+        ui.ctx().request_repaint();
+    } else if response.clicked() {
+        stage_list::begin(ui.ctx(), facts, false);
+    }
+    egui::Popup::from_toggle_button_response(&response)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .width(stage_list::WIDTH)
+        .align(egui::RectAlign::BOTTOM)
+        .gap(4.0)
+        .show(|ui| stage_list::ui(ui, commands));
+    let help = "All pictures of the book, to choose from; type to search";
+    tip(ui, response, &with_keys(ui, help, Command::Stages), None);
+    step(ui, facts, commands, Command::NextStage, Sign::Next);
+}
+
+fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, sign: Sign) {
+    let reason = facts.disabled_reason(command);
+    let response = ui.add_enabled(reason.is_none(), Button::new("").min_size(vec2(24.0, 24.0)));
+    let fade = if reason.is_some() { ui.visuals().disabled_alpha } else { 1.0 };
+    let color = ui.style().interact(&response).text_color().gamma_multiply(fade);
+    paint_sign(ui.painter(), response.rect, sign, color);
+    named(&response, &command.name());
+    send_if_clicked(ui, response, command, reason.as_deref(), commands);
+}
+
+fn device(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    const DEVICES: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Both];
+    let described = DEVICES.map(|device| (device.unavailable(), device_help(device)));
+    let mut options = Vec::new();
+    for (device, (reason, help)) in DEVICES.into_iter().zip(&described) {
+        options.push((device, About::new(device.label(), help).disabled_if(reason.as_deref())));
+    }
+    if let Some(device) = switch(ui, DEVICE, facts.model.remembered.device, &options) {
+        commands.push(Command::Device(device));
+    }
+}
+
+fn device_help(device: Device) -> String {
+    match (device, adapter()) {
+        (Device::Gpu, Ok(adapter)) if adapter.is_software => format!(
+            "{} is no graphics card but a program on the processor, so it is slower than CPU",
+            adapter.name.split(" (").next().unwrap_or_default()
+        ),
+        _ => device.help().to_owned(),
+    }
+}
+
+fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    let (label, help) = if facts.further().is_some() {
+        ("Go on", "Go on to half the error, which takes about four times as long")
+    } else if facts.model.is_paused {
+        ("Resume", "Go on where it stopped")
+    } else {
+        ("Pause", "Stop for now; no sample is lost")
+    };
+    let reason = facts.disabled_reason(Command::Pause);
+    let response = ui.add_enabled(reason.is_none(), Button::new(label).min_size(vec2(PAUSE, 0.0)));
+    if tip(ui, response, &with_keys(ui, help, Command::Pause), reason.as_deref()).clicked() {
+        commands.push(Command::Pause);
+    }
+}

@@ -1,0 +1,32 @@
+//! The dialog for the colours of the sky.
+
+use super::outcome::Outcome;
+use crate::app::facts::Facts;
+use crate::app::model::edit::Edit;
+use crate::app::widgets::{About, Header, colour, group, hint};
+use eframe::egui::Ui;
+
+const HELP: &str = "The sky is the only lamp of the book: what it sends is what lights the scene.";
+
+/// Draws the dialog. The picture shows a change at once.
+pub(super) fn ui(ui: &mut Ui, facts: &Facts, edits: &mut Vec<Edit>) -> Outcome {
+    let (mut sky, own) = (facts.document().scene().sky, facts.document().origin.recipe.scene.sky);
+    let reset = (sky != own).then_some("Reset sky");
+    let header = Header { title: "Sky colours", reset, ..Header::default() };
+    let is_reset = group(ui, header, |ui| {
+        colour(ui, About::new("Overhead", "The light from straight above"), &mut sky.top);
+        colour(
+            ui,
+            About::new("At the horizon", "The light from straight below, which fades upwards"),
+            &mut sky.bottom,
+        );
+    });
+    if is_reset {
+        sky = own;
+    }
+    if sky != facts.document().scene().sky {
+        edits.push(Edit::Sky(sky));
+    }
+    hint(ui, HELP);
+    if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
+}

@@ -1,0 +1,366 @@
+//! The dock under the picture: a path, the kept pictures, the lanes, and the error over time.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::kept::KeptActions;
+use super::model::Model;
+use super::model::kept::{Kept, KeptList};
+use super::model::remembered::Dock;
+use super::model::view::{ViewState, With};
+use super::places::Place;
+use super::tools::Tools;
+use super::widgets::{Sign, choice, hint, sign_button, tip};
+use super::{plot, theme};
+use crate::system::memory::words;
+use eframe::egui::{
+    self, Align, Align2, Button, Color32, ColorImage, CornerRadius, Frame, Key, Label, Layout, Margin, Rect,
+    Response, RichText, Role, ScrollArea, Sense, Shape, Sides, Stroke, StrokeKind, TextEdit, TextStyle,
+    TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
+};
+
+/// Height at first, at least, and in low windows, points.
+const HEIGHT: f32 = 276.0;
+const LEAST: f32 = 160.0;
+const LOW: f32 = 200.0;
+
+/// Height of the tabs.
+const TABS: f32 = 40.0;
+
+/// A card: its picture, and its height with the name.
+const PICTURE: Vec2 = vec2(132.0, 74.0);
+const CARD: f32 = 94.0;
+
+/// The small pictures of the cards, and what is done with them.
+#[derive(Default)]
+pub struct Cards {
+    /// By [`Kept::number`].
+    textures: Vec<(u64, TextureHandle)>,
+    /// The picture whose name is being typed, and the name.
+    renamed: Option<(u64, String)>,
+}
+
+impl Cards {
+    fn texture(&mut self, ui: &Ui, kept: &Kept) -> &TextureHandle {
+        let place = self.textures.iter().position(|(number, _)| *number == kept.number());
+        let place = place.unwrap_or_else(|| {
+            let small = &kept.thumbnail;
+            let image = ColorImage::from_rgb(small.size.map(|length| length as usize), &small.rgb8);
+            let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
+            self.textures.push((kept.number(), texture));
+            self.textures.len() - 1
+        });
+        &self.textures[place].1
+    }
+
+    fn rename(&mut self, kept: &KeptList, place: usize) {
+        self.renamed = kept.get(place).map(|named| (named.kept.number(), named.name.clone()));
+    }
+}
+
+/// Draws the dock. Returns whether the points of the error's curves are to be saved.
+pub fn ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    tools: &mut Tools,
+    kept: &mut KeptActions,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let Some(dock) = model.remembered.dock else { return false };
+    let height = ui.ctx().content_rect().height();
+    let usual = if height < 700.0 { LOW } else { HEIGHT };
+    egui::Panel::bottom("dock")
+        .frame(theme::panel(Margin::ZERO))
+        .resizable(true)
+        .default_size(usual)
+        .size_range(LEAST..=(0.5 * height).max(LEAST))
+        .show(ui, |ui| {
+            Place::Dock.begin(ui);
+            ui.spacing_mut().item_spacing.y = 0.0;
+            let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
+            row.show(ui, |ui| tabs(ui, dock, model, facts, commands));
+            super::widgets::panel_line(ui);
+            Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 8.0;
+                let mut is_saved = false;
+                match dock {
+                    Dock::Path => tools.paths.ui(ui),
+                    Dock::Kept => kept_ui(ui, model, kept, facts, commands),
+                    Dock::Lanes => tools.lanes.ui(ui, facts),
+                    Dock::Error => is_saved = plot::ui(ui, &mut model.document.stop.noise, facts),
+                }
+                ui.take_available_space();
+                is_saved
+            })
+        })
+        .inner
+        .inner
+}
+
+fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mut Vec<Command>) {
+    let shown = &mut model.remembered.dock;
+    let left = |ui: &mut Ui| {
+        ui.spacing_mut().item_spacing.x = 16.0;
+        for (tab, name, help) in [
+            (Dock::Path, "Path", "The path that is drawn over the picture, point by point"),
+            (Dock::Kept, "Kept pictures", Command::Dock(Dock::Kept).help()),
+            (Dock::Lanes, "Lanes", Command::Dock(Dock::Lanes).help()),
+            (Dock::Error, "Error", Command::Dock(Dock::Error).help()),
+        ] {
+            let is_there = tab != Dock::Path || dock == tab || facts.has_paths;
+            if is_there {
+                let response = tab_ui(ui, dock == tab, name);
+                if tip(ui, response, help, None).clicked() {
+                    *shown = Some(tab);
+                }
+            }
+        }
+    };
+    let right = |ui: &mut Ui| {
+        let close = sign_button(ui, Sign::Close, 24.0, "Close dock");
+        if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
+            commands.push(match dock {
+                Dock::Path if facts.has_paths => Command::ClearPaths,
+                _ => Command::Dock(dock),
+            });
+        }
+        if dock == Dock::Kept {
+            actions(ui, facts, commands);
+        }
+    };
+    Sides::new().height(TABS).shrink_left().show(ui, left, right);
+}
+
+fn tab_ui(ui: &mut Ui, is_on: bool, name: &str) -> Response {
+    let colours = theme::colours(ui);
+    let text = RichText::new(name).color(if is_on { colours.strong } else { colours.weak });
+    let response = ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = 0.0;
+        ui.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)))
+    });
+    let response = response.inner;
+    response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, name));
+    if is_on {
+        let line = response.rect.x_range().expand(8.0);
+        ui.painter().hline(line, response.rect.bottom() - 1.0, Stroke::new(2.0, colours.accent));
+    }
+    response
+}
+
+/// What can be done with the chosen kept picture: name, command and tooltip.
+const ACTIONS: [(&str, Command, &str); 5] = [
+    ("Look", Command::Flip, "Show it instead of the picture (Alt and its number)"),
+    ("Wipe", Command::KeptWipe, "Drag a divider between it and the picture (Shift+C)"),
+    ("Difference", Command::KeptDifference, "Subtract it from the picture (Shift+X)"),
+    ("Only noise?", Command::OnlyNoise, "Tests whether the two differ by more than chance (Shift+N)"),
+    ("Keep", Command::Keep, "Keep a copy of this picture with all its samples (M)"),
+];
+
+/// Buttons of the actions, from right to left. The first three are a switch.
+fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    for (place, (name, command, help)) in ACTIONS.iter().enumerate().rev() {
+        let reason = facts.disabled_reason(*command);
+        let is_on = match command {
+            Command::Flip => facts.model.view.kept.looked().is_some(),
+            _ => facts.is_on(*command),
+        };
+        let (left, right) = (u8::from(place != 1 && place != 2) * 4, u8::from(place > 1) * 4);
+        ui.spacing_mut().item_spacing.x = if matches!(place, 1 | 2) { 0.0 } else { 8.0 };
+        let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
+        let response = ui.add_enabled(reason.is_none(), choice(ui, is_on, *name).corner_radius(corners));
+        if tip(ui, response, help, reason.as_deref()).clicked() {
+            commands.push(*command);
+        }
+    }
+}
+
+fn kept_ui(
+    ui: &mut Ui,
+    model: &mut Model,
+    kept: &mut KeptActions,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
+    if model.view.kept.get(0).is_none() {
+        hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
+        return;
+    }
+    ui.horizontal_wrapped(|ui| sentence(ui, model, kept, facts));
+    let (pictures, chosen) = (model.view.kept.clone(), model.view.kept.chosen());
+    let is_f2 = ui.input(|input| input.key_pressed(Key::F2)) && kept.cards.renamed.is_none();
+    if let Some(place) = chosen.filter(|_| is_f2) {
+        kept.cards.rename(&pictures, place);
+    }
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
+            for place in 0..pictures.iter().count() {
+                card(ui, place, &mut model.view, &mut kept.cards, facts, commands);
+            }
+            if facts.disabled_reason(Command::Keep).is_none() && empty_place(ui).clicked() {
+                commands.push(Command::Keep);
+            }
+        });
+    });
+    kept.cards.textures.retain(|(number, _)| pictures.iter().any(|named| named.kept.number() == *number));
+}
+
+/// The answer to "Only noise?", that sizes differ, or what all kept pictures take.
+fn sentence(ui: &mut Ui, model: &mut Model, kept: &KeptActions, facts: &Facts) {
+    let list = &model.view.kept;
+    let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else { return };
+    let (theirs, mine) = (chosen.kept.size(), model.document.size());
+    if kept.verdict.ui(ui, chosen.kept.number(), facts.status.run) {
+        return;
+    }
+    if theirs != mine {
+        let ([a, b], [x, y]) = (theirs, mine);
+        ui.label(RichText::new(format!("The kept picture is {a} × {b} and this one {x} × {y}.")).small());
+        let help = "Begins the picture anew at that size, so that the two can be subtracted";
+        let link = ui.link(RichText::new("Render at its size").small());
+        if tip(ui, link, help, None).clicked() {
+            model.document.give_size(theirs);
+        }
+        return;
+    }
+    let memory = words(list.bytes());
+    let text = format!("Kept pictures take {memory}. They are gone when the window closes.");
+    ui.label(RichText::new(text).small().color(ui.visuals().weak_text_color()));
+}
+
+fn card(
+    ui: &mut Ui,
+    place: usize,
+    view: &mut ViewState,
+    cards: &mut Cards,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
+    let Some(named) = view.kept.get(place).cloned() else { return };
+    let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
+    let (picture, below) = rect.split_top_bottom_at_y(rect.top() + PICTURE.y);
+    let is_chosen = view.kept.chosen() == Some(place);
+    let title = view.kept.title(place);
+    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
+    paint_card(ui, picture, place, cards.texture(ui, &named.kept), is_chosen);
+
+    let name = below.with_min_y(below.bottom() - 16.0);
+    let number = named.kept.number();
+    let layout = Layout::left_to_right(Align::Center);
+    let mut within = ui.new_child(UiBuilder::new().max_rect(name).layout(layout));
+    match &mut cards.renamed {
+        Some((renamed, text)) if *renamed == number => {
+            let edit = TextEdit::singleline(text).font(TextStyle::Small).margin(Margin::ZERO);
+            let edit = within.add(edit);
+            if edit.lost_focus() {
+                let is_given_up = ui.input(|input| input.key_pressed(Key::Escape)) || text.trim().is_empty();
+                if let Some(name) = view.kept.name_mut(place).filter(|_| !is_given_up) {
+                    text.trim().clone_into(name);
+                }
+                cards.renamed = None;
+            } else if !edit.has_focus() {
+                edit.request_focus();
+            }
+        }
+        _ => _ = within.add(Label::new(RichText::new(&named.name).small()).truncate()),
+    }
+
+    let is_at_name = response.interact_pointer_pos().is_some_and(|at| at.y > picture.bottom());
+    if response.double_clicked() {
+        if is_at_name {
+            cards.rename(&view.kept, place);
+        } else {
+            view.look(Some(place));
+        }
+    } else if response.clicked() {
+        choose(view, place);
+    } else if response.secondary_clicked() {
+        view.kept.choose(place);
+    }
+    response.context_menu(|ui| {
+        let more = [Command::GoOnFromKept, Command::Save, Command::DeleteKept];
+        let more = more.map(|command| (command.name(), command, command.help()));
+        let of_row = ACTIONS[..4].iter().map(|(name, command, help)| ((*name).to_owned(), *command, *help));
+        for (name, command, help) in of_row.chain(more) {
+            let reason = facts.disabled_reason(command);
+            let button = Button::selectable(false, (name, egui::Atom::grow()));
+            let entry = ui.add_enabled(reason.is_none(), button.min_size(vec2(160.0, 0.0)));
+            if tip(ui, entry, help, reason.as_deref()).clicked() {
+                if command == Command::Save {
+                    // What is on the screen is saved.
+                    view.look(Some(place));
+                }
+                commands.push(command);
+                ui.close();
+            }
+        }
+    });
+    let kept = &named.kept;
+    let ([width, height], samples) = (kept.size(), kept.samples());
+    let memory = words(kept.bytes());
+    let help =
+        format!("{}, {samples} samples per pixel, {width} × {height}, {memory}", kept.document.title());
+    tip(ui, response, &help, None);
+}
+
+/// Chooses a picture. If another one is shown or compared with, this one takes its place.
+fn choose(view: &mut ViewState, place: usize) {
+    let looked = view.kept.looked();
+    view.kept.choose(place);
+    match (view.compared_kept(), view.mode()) {
+        (Some(compared), Some(mode)) if compared != place => view.toggle(mode, With::Kept(place)),
+        (None, _) if looked.is_some() => view.look(Some(place)),
+        _ => {}
+    }
+}
+
+fn paint_card(ui: &Ui, rect: Rect, place: usize, texture: &TextureHandle, is_chosen: bool) {
+    let colours = theme::colours(ui);
+    let painter = ui.painter();
+    let size = texture.size_vec2();
+    let scale = (rect.size() / size).min_elem();
+    painter.rect_filled(rect, 4, colours.surround);
+    let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
+    painter.image(texture.id(), Rect::from_center_size(rect.center(), size * scale), whole, Color32::WHITE);
+    if is_chosen {
+        painter.rect_stroke(rect, 4, Stroke::new(2.0, colours.accent), StrokeKind::Outside);
+    }
+    let badge = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(18.0, 16.0));
+    painter.rect_filled(badge, 4, colours.panel.gamma_multiply(0.9));
+    let font = TextStyle::Small.resolve(ui.style());
+    painter.text(badge.center(), Align2::CENTER_CENTER, (place + 1).to_string(), font, colours.strong);
+}
+
+fn empty_place(ui: &mut Ui) -> Response {
+    let colours = theme::colours(ui);
+    let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
+    let text = "M keeps this one";
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text));
+    let rect = rect.with_max_y(rect.top() + PICTURE.y).shrink(0.5);
+    let corners =
+        [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
+    ui.painter().extend(Shape::dashed_line(&corners, Stroke::new(1.0, colours.edge), 3.0, 3.0));
+    let font = TextStyle::Small.resolve(ui.style());
+    let colour = if response.hovered() { colours.strong } else { colours.weak };
+    ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
+    response
+}
+
+/// Colours that tell data apart: from the camera or CPU, matte or GPU, metal or expected, glass or both, waits.
+pub fn data_colours(ui: &Ui) -> [Color32; 5] {
+    let colours: [[u8; 3]; 5] = match ui.visuals().dark_mode {
+        true => [[92, 150, 255], [235, 148, 56], [180, 180, 190], [70, 195, 150], [46, 50, 56]],
+        false => [[47, 111, 224], [217, 121, 26], [140, 140, 152], [31, 154, 107], [220, 221, 221]],
+    };
+    colours.map(|[red, green, blue]| Color32::from_rgb(red, green, blue))
+}
+
+/// An entry of a legend.
+pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().weak_text_color());
+    let (rect, response) = ui.allocate_exact_size(text.size() + vec2(16.0, 0.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
+    ui.painter().rect_filled(Align2::LEFT_CENTER.align_size_within_rect(vec2(10.0, 10.0), rect), 2, colour);
+    ui.painter().galley(rect.min + vec2(16.0, 0.0), text, colour);
+}

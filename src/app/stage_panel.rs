@@ -1,0 +1,216 @@
+//! The text about the stage: what it adds, what to look for, and what to compare it with.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::model::document::Document;
+use super::model::view::{With, partner};
+use super::widgets::{About, choice, hint, primary, switch, tip};
+use crate::measure::stress::Case;
+use crate::stages::Stage;
+use eframe::egui::{Button, Label, RichText, Ui};
+
+pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    let document = facts.document();
+    match (document.stage(), document.case()) {
+        (Some(stage), _) => stage_ui(ui, stage, facts, commands),
+        (None, Some(case)) => case_ui(ui, case, facts, commands),
+        (None, None) => recipe_ui(ui, document),
+    }
+    compare_ui(ui, facts, commands);
+    // At the end, so that it moves nothing.
+    if document.is_changed() {
+        ui.add_space(8.0);
+        let what = if document.stage().is_some() { "stage" } else { "picture" };
+        hint(ui, &format!("You changed this {what}."));
+        let reset = ui.button("Reset all");
+        if tip(ui, reset, Command::ResetAll.help(), None).clicked() {
+            commands.push(Command::ResetAll);
+        }
+    }
+}
+
+/// A title, with what it belongs to above.
+pub fn title(ui: &mut Ui, over: &str, title: &str) {
+    small(ui, over);
+    ui.add_space(-4.0);
+    ui.add(Label::new(RichText::new(title).heading().strong()).wrap());
+}
+
+fn small(ui: &mut Ui, text: &str) {
+    let color = ui.visuals().weak_text_color();
+    ui.add(Label::new(RichText::new(text).small().color(color)).wrap());
+}
+
+/// A paragraph under a small heading.
+pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
+    ui.add_space(4.0);
+    small(ui, heading);
+    ui.add_space(-4.0);
+    ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
+}
+
+fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+    title(ui, &format!("{} {}", stage.chapter(), stage.chapter_title), stage.title);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 16.0;
+        let book = format!("{} in the book", stage.section);
+        for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
+            let link = ui.link(name);
+            if tip(ui, link, command.help(), None).clicked() {
+                commands.push(command);
+            }
+        }
+    });
+    for (heading, text) in
+        [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
+    {
+        paragraph(ui, heading, text);
+    }
+    show_me(ui, stage, facts, commands);
+}
+
+/// A button that shows what to look for, and then says what is seen.
+fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+    let command = Command::ShowMe;
+    let reason = facts.disabled_reason(command);
+    ui.add_space(4.0);
+    let response = match () {
+        () if facts.has_sight => ui.button("Return"),
+        // The card of the first steps has the one button to press next.
+        () if facts.model.has_first_steps || reason.is_some() => {
+            ui.add_enabled(reason.is_none(), Button::new("Show me"))
+        }
+        () => primary(ui, "Show me"),
+    };
+    let help = match facts.has_sight {
+        true => "Goes back to how it was before Show me (Escape)",
+        false => "Shows you where to look: sets zoom, view or wipe; again returns (H)",
+    };
+    if tip(ui, response, help, reason.as_deref()).clicked() {
+        commands.push(command);
+    }
+    if facts.has_sight {
+        let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));
+        ui.add(Label::new(text).wrap());
+    }
+}
+
+/// The picture to compare with and how, if there is one that teaches something.
+fn compare_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    let is_book = facts.model.view.with() == With::Book;
+    let other = match facts.document().stage().and_then(partner) {
+        _ if is_book => "The book\u{2019}s arithmetic".to_owned(),
+        Some(other) => format!("{} {}", other.section, other.title),
+        None => return,
+    };
+    ui.add_space(4.0);
+    small(ui, "Compare with");
+    ui.add_space(-4.0);
+    ui.add(Label::new(other).wrap());
+    let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
+    let commanded = [wipe, Command::Difference].map(|command| (command, facts.disabled_reason(command)));
+    let [(_, no_wipe), (_, no_difference)] = &commanded;
+    let about = [
+        About::new("Wipe", "Drag a divider between the two (C)").disabled_if(no_wipe.as_deref()),
+        About::new("Difference", "Where the two differ, and by how much (X)")
+            .disabled_if(no_difference.as_deref()),
+    ];
+    let chosen = [wipe, Command::Difference].into_iter().find(|command| facts.is_on(*command));
+    let options = [(Some(wipe), about[0]), (Some(Command::Difference), about[1])];
+    commands.extend(switch(ui, 0.0, chosen, &options).flatten());
+}
+
+/// Text about a scene that is not a stage.
+fn recipe_ui(ui: &mut Ui, document: &Document) {
+    let scene = document.scene();
+    let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
+    title(ui, &format!("{spheres} spheres, {materials} materials"), &document.origin.recipe.name);
+    if let Some((frames, command)) = document.animation() {
+        let text =
+            format!("{frames} frames along the scene file's keyframes. This command makes an animated PNG:");
+        paragraph(ui, "Animation", &text);
+        ui.add(Label::new(RichText::new(command).monospace()).wrap());
+    }
+}
+
+/// Text about an extreme scene: what makes it difficult and what to watch.
+fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>) {
+    title(ui, case.family.title, case.title());
+    let watch = case.watch.map_or("", |watch| watch.look_for);
+    for (heading, text) in [
+        ("Watch", watch),
+        ("What is difficult", case.stiff.as_str()),
+        ("What it teaches", case.family.lesson),
+    ] {
+        paragraph(ui, heading, text);
+    }
+    ui.add_space(4.0);
+    let command = Command::BookArithmetic;
+    let response = ui.add(choice(ui, facts.is_on(command), command.name()));
+    if tip(ui, response, command.help(), None).clicked() {
+        commands.push(command);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::checked::CheckedScene;
+    use crate::app::model::origin::{Origin, Source};
+    use crate::scene::animation::Keyframe;
+
+    use crate::app::tests::{dressed, facts_of};
+    use crate::job::recipe::Recipe;
+
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+    use std::sync::Arc;
+
+    struct Panel {
+        facts: Facts,
+        commands: Vec<Command>,
+    }
+
+    fn panel(words: &str) -> Harness<'static, Panel> {
+        let panel = Panel { facts: facts_of(words), commands: Vec::new() };
+        let draw = |ui: &mut Ui, Panel { facts, commands }: &mut Panel| super::ui(ui, facts, commands);
+        dressed([270.0, 900.0]).build_ui_state(draw, panel)
+    }
+
+    #[test]
+    fn spheres_and_materials_are_counted_as_edited() {
+        let mut harness = panel("--scene field:20 --size 32x18");
+        let told = |harness: &Harness<'_, Panel>| {
+            let scene = harness.state().facts.document().scene();
+            let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
+            assert!(harness.query_by_label(&words).is_some(), "{words}");
+            words
+        };
+        let before = told(&harness);
+        let document = &mut harness.state_mut().facts.model.document;
+        let mut scene = document.scene().clone();
+        let material = scene.materials[0].clone();
+        scene.materials.extend([material.clone(), material]);
+        scene.spheres.truncate(4);
+        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+        harness.run_steps(3);
+        assert_ne!(told(&harness), before);
+    }
+
+    #[test]
+    fn a_scene_with_keyframes_tells_how_its_animation_is_made() {
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        let source = Source::File("/of/mine.toml".into());
+        let mut harness = panel("--stage sky --size 32x18");
+        for (frames, is_told) in [(Vec::new(), false), (vec![0, 20], true)] {
+            recipe.keyframes =
+                frames.iter().map(|frame| Keyframe { frame: *frame, camera: recipe.camera }).collect();
+            let document = Document::new(Origin::new(recipe.clone(), source.clone()));
+            harness.state_mut().facts.model.document = document;
+            harness.run_steps(3);
+            for words in ["Animation", "21 frames along", "--frames=0..21"] {
+                assert_eq!(harness.query_by_label_contains(words).is_some(), is_told, "{words}");
+            }
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! The bar at the bottom: one sentence about the render, a line for its progress, and details on request.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::model::sizing::Sizing;
+use super::prediction::prediction;
+use super::spheres;
+use super::theme;
+use super::widgets::{compact, tip};
+use super::wording::grouped;
+use crate::film::Film;
+use crate::job::render::BackendInfo;
+use crate::progressive::{EndReason, Phase, Status};
+use eframe::egui::{
+    self, Align, Button, Grid, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText,
+    Stroke, Ui, accesskit::Live, vec2,
+};
+
+const HEIGHT: f32 = 32.0;
+
+/// Assistive technology reads the sentence at most once in so many seconds.
+const READ_SECONDS: f64 = 5.0;
+
+const ERROR_HELP: &str = "How far a pixel usually is from the finished picture, in per cent of white; estimated from \
+                          the two halves of the samples";
+
+const TERMS: &str = "A path is one random way of light, followed back from the camera ray by ray. A lane is one of the \
+                     places in a processor core that trace paths side by side. Error is the usual distance from the \
+                     finished picture, in per cent of white.";
+
+/// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
+pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut Vec<Command>) {
+    let panel =
+        egui::Panel::bottom("status").exact_size(HEIGHT).frame(theme::panel(Margin::symmetric(16, 4)));
+    let shown = panel.show(ui, |ui| {
+        ui.horizontal_centered(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                details(ui, facts);
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let sentence = sentence(facts);
+                    let is_fault = facts.invalid.is_some() || matches!(facts.status.phase, Phase::Failed(_));
+                    let color = if is_fault { theme::colours(ui).bad } else { ui.visuals().text_color() };
+                    let response = ui.add(Label::new(RichText::new(&sentence).color(color)).truncate());
+                    announce(&response, &sentence);
+                    let doubt =
+                        facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
+                    tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
+                    left_out(ui, facts.status.rejected_samples);
+                    if spheres::inside(facts.document()) && facts.document().case().is_none() {
+                        ui.label("The camera is inside a sphere.");
+                        if ui.button("Home").on_hover_text(Command::Home.help()).clicked() {
+                            commands.push(Command::Home);
+                        }
+                    } else if let Some([width, height]) = offered {
+                        ui.label("This picture is scaled.");
+                        let command = Command::Size(Sizing::Viewport);
+                        let response = ui.button(format!("Render at {width} × {height}"));
+                        if tip(ui, response, command.help(), None).clicked() {
+                            commands.push(command);
+                        }
+                    }
+                });
+            });
+        });
+    });
+    if let Some(share) = share(facts) {
+        let rect = shown.response.rect;
+        let colours = theme::colours(ui);
+        let color = if facts.model.is_paused { colours.weak } else { colours.accent };
+        let end = rect.left() + rect.width() * share as f32;
+        ui.painter().hline(rect.left()..=end, rect.top() + 1.0, Stroke::new(2.0, color));
+    }
+}
+
+/// Tells assistive technology the sentence, but not at each change.
+fn announce(response: &Response, sentence: &str) {
+    let (place, now) = (Id::unique("status announced"), response.ctx.input(|input| input.time));
+    let last: Option<(String, f64)> = response.ctx.data(|data| data.get_temp(place));
+    let told = match last {
+        Some((told, at)) if now < at + READ_SECONDS => told,
+        _ => {
+            response.ctx.data_mut(|data| data.insert_temp(place, (sentence.to_owned(), now)));
+            sentence.to_owned()
+        }
+    };
+    response.ctx.accesskit_node_builder(response.id, |node| {
+        node.set_value(told);
+        node.set_live(Live::Polite);
+    });
+}
+
+fn left_out(ui: &mut Ui, count: u64) {
+    if count > 0 {
+        let words = format!("{} samples were left out", grouped(count));
+        let response = ui.label(RichText::new(words).color(theme::colours(ui).warn));
+        tip(ui, response, "They were not numbers, so they would spoil their pixels", None);
+    }
+}
+
+/// What the tracer is doing.
+pub fn sentence(facts: &Facts) -> String {
+    let (status, stop) = (&*facts.status, facts.document().stop);
+    if let Some(reason) = &facts.invalid {
+        return format!("Not rendered: {reason}");
+    }
+    let kept = &facts.model.view.kept;
+    if let Some((place, named)) = kept.looked().and_then(|place| Some((place, kept.get(place)?))) {
+        let samples = grouped(named.kept.samples());
+        let name = &named.name;
+        return format!(
+            "Kept {}: {name}, {samples} samples per pixel. Escape returns to the picture",
+            place + 1
+        );
+    }
+    let count = status.samples_per_pixel;
+    let error = status.error.map_or_else(String::new, |error| format!(", error {}", percent(error.rmse)));
+    let samples = format!("{} samples per pixel", grouped(count));
+    match &status.phase {
+        Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
+        _ if facts.model.is_paused => format!("Paused at {samples}{error}"),
+        Phase::Done(_) if facts.document().further(status).is_none() && !is_random(facts) => {
+            "Done: nothing in this picture depends on chance".to_owned()
+        }
+        Phase::Done(reason) => {
+            let seconds = facts.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
+            let taken = facts.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
+            let word = if *reason == EndReason::Stopped { "Stopped" } else { "Done" };
+            format!("{word}: {samples}{taken}{error}")
+        }
+        _ if count == 0 => "Starting".to_owned(),
+        _ => match stop.samples {
+            Some(end) => {
+                let per_sample = status.trace.as_secs_f64() / count as f64;
+                let left = time(per_sample * end.saturating_sub(count) as f64);
+                let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
+                format!("{samples}{error}; done in about {left}")
+            }
+            None => format!("{samples}{error}{}", ending(facts)),
+        },
+    }
+}
+
+/// When a render without a number of samples will end.
+fn ending(facts: &Facts) -> String {
+    let (status, stop) = (&*facts.status, facts.document().stop);
+    if let Some((target, found)) = stop.noise.zip(prediction(status, stop.noise)) {
+        format!("; {} in about {}", percent(target), time(found.time))
+    } else if let Some(end) = stop.seconds {
+        format!("; done in {}", time(end - status.elapsed.as_secs_f64()))
+    } else {
+        String::new()
+    }
+}
+
+fn is_random(facts: &Facts) -> bool {
+    let rules = facts.document().rules();
+    rules.antialiasing || rules.shading == crate::stages::Shading::Path
+}
+
+/// How much of the work is done, `0..=1`; none without an end.
+fn share(facts: &Facts) -> Option<f64> {
+    let (status, stop) = (&*facts.status, facts.document().stop);
+    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.model.view.kept.looked().is_some() {
+        return None;
+    }
+    let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
+    let of_time = stop.seconds.map(|end| status.elapsed.as_secs_f64() / end);
+    // The error falls with the root of the samples.
+    let of_error = stop.noise.zip(status.error).map(|(end, error)| (end / error.rmse).powi(2));
+    [of_samples, of_time, of_error].into_iter().flatten().reduce(f64::max).map(|share| share.clamp(0.0, 1.0))
+}
+
+fn details(ui: &mut Ui, facts: &Facts) {
+    let response = ui.add(Button::new("Details"));
+    egui::Popup::from_toggle_button_response(&response)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .align(RectAlign::TOP_END)
+        .gap(8.0)
+        .show(|ui| {
+            ui.set_width(304.0);
+            egui::Frame::new().inner_margin(12).show(ui, |ui| {
+                ui.label(RichText::new("Details").strong());
+                Grid::new("details").num_columns(2).spacing(vec2(16.0, 4.0)).min_row_height(0.0).show(
+                    ui,
+                    |ui| {
+                        for (name, value) in figures(facts) {
+                            ui.label(RichText::new(name).small().color(theme::colours(ui).weak));
+                            let room = ui.available_size_before_wrap();
+                            ui.allocate_ui_with_layout(
+                                vec2(room.x, 0.0),
+                                Layout::top_down(Align::Max),
+                                |ui| {
+                                    ui.add(Label::new(RichText::new(value).small()).wrap());
+                                },
+                            );
+                            ui.end_row();
+                        }
+                    },
+                );
+                ui.add(Label::new(RichText::new(TERMS).small().color(theme::colours(ui).weak)).wrap());
+            });
+        });
+    tip(ui, response, "Speed, lanes, memory, and what these mean", None);
+}
+
+fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
+    let status = &*facts.status;
+    let unknown = || "–".to_owned();
+    let speed = facts.speed.unwrap_or_else(|| status.paths_per_second()) / 1e6;
+    // A film that was opened does not say how its samples were traced.
+    let has_paths = status.stats.paths > 0;
+    let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;
+    let on_cpu = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
+    let lanes = status.lane_occupancy().zip(on_cpu);
+    let lanes = lanes.map(|(share, part)| format!("{}, {:.0} % at work", part.backend.lanes, 100.0 * share));
+    let settings = facts.document().settings;
+    let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
+    vec![
+        ("Speed", if has_paths { format!("{speed:.1} million paths per second") } else { unknown() }),
+        ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
+        ("Processor", processors(status).unwrap_or_else(unknown)),
+        ("Lanes", lanes.unwrap_or_else(unknown)),
+        (
+            "Samples left out",
+            match status.rejected_samples {
+                0 => "none".to_owned(),
+                count => grouped(count),
+            },
+        ),
+        ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
+    ]
+}
+
+/// Which processors traced the picture, with the share of each if there are several.
+fn processors(status: &Status) -> Option<String> {
+    let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    let parts = status.contributions.iter().map(|part| {
+        let share = 100.0 * part.samples_per_pixel as f64 / total.max(1) as f64;
+        let share = if status.contributions.len() > 1 { format!("{share:.0} %: ") } else { String::new() };
+        format!("{share}{}", processor(&part.backend))
+    });
+    let parts: Vec<String> = parts.collect();
+    if parts.is_empty() { status.backend.as_ref().map(processor) } else { Some(parts.join("\n")) }
+}
+
+fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String {
+    // Without the adapter's driver.
+    let device = device.split(" (").next().unwrap_or_default();
+    match *name {
+        "gpu" => format!("GPU, {device}"),
+        "cpu" => format!("CPU, {threads} threads, {device}"),
+        name => format!("{name}, {threads} threads, {device}"),
+    }
+}
+
+/// An error in per cent of white, with two digits below one.
+fn percent(error: f64) -> String {
+    let percent = 100.0 * error;
+    let places = if percent > 0.0 { (-percent.log10()).ceil().clamp(1.0, 6.0) as usize } else { 0 };
+    format!("{} %", compact(format!("{percent:.places$}").parse().unwrap_or(percent)))
+}
+
+/// Seconds in words.
+pub fn time(seconds: f64) -> String {
+    let whole = seconds.max(0.0).round() as u64;
+    match whole {
+        0 if seconds > 0.0 => "1 s".to_owned(),
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        3600..86_400 => format!("{} h {} min", whole / 3600, whole % 3600 / 60),
+        _ => "more than a day".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::facts_of;
+    use crate::film::ErrorEstimate;
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    #[test]
+    fn the_sentence_tells_how_far_the_render_is() {
+        let mut facts = facts_of("--stage metal --size 32x18");
+        let status = Status {
+            samples_per_pixel: 100,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            ..Status::default()
+        };
+        facts.status = Arc::new(status.clone());
+        facts.model.document.stop.noise = Some(0.002);
+        assert!(sentence(&facts).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&facts));
+        assert_eq!(share(&facts), Some(0.25));
+        facts.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
+        assert!(sentence(&facts).starts_with("Done: 100 samples per pixel in 10 s"), "{}", sentence(&facts));
+        assert_eq!(share(&facts), None);
+        assert_eq!([4.2, 72.0, 7500.0, 1e6].map(time), ["4 s", "1 min 12 s", "2 h 5 min", "more than a day"]);
+    }
+}

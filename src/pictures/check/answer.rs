@@ -1,0 +1,201 @@
+//! The answer of a check, from which the text and the window's view are made.
+
+use super::{Damage, Finding, Mine};
+use crate::pictures::answer::Verdict;
+use crate::stages::{Shading, Stage, book_url};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AnswerKind {
+    Right,
+    /// A mistake that explains all differences.
+    Mistake,
+    /// A mistake that explains most of them.
+    LikelyMistake,
+    /// None of the known mistakes.
+    Unknown,
+    CannotCheck,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    pub kind: AnswerKind,
+    /// The mistake, or what the check came to. Neither this nor the other texts end with a full stop.
+    pub title: String,
+    /// One sentence.
+    pub explanation: String,
+    /// What to change.
+    pub remedy: Option<String>,
+    /// Where the book explains what went wrong.
+    pub section: Option<Section>,
+    /// The stage that the picture shows.
+    pub stage: Option<&'static Stage>,
+    /// Figures and observations, one a line.
+    pub evidence: Vec<String>,
+    /// Further faults, of the file rather than the picture.
+    pub damages: Vec<Damage>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// Such as "9.5".
+    pub number: &'static str,
+    pub url: String,
+    /// The stage of this section, or the last one before it.
+    pub stage: &'static Stage,
+}
+
+impl Section {
+    /// The section with this number, if a stage or a mistake has it.
+    fn find(number: &'static str) -> Option<Section> {
+        // Most sections are those of a stage; three of the mistakes belong to sections without a picture.
+        let (stage, heading) = match number {
+            "3.1" => ("ppm-gradient", Some("Color Utility Functions")),
+            "6.2" => ("normals", Some("Simplifying the Ray-Sphere Intersection Code")),
+            "6.4" => ("normals-world", Some("Front Faces Versus Back Faces")),
+            "8.2" => ("antialiased", None),
+            _ => (Stage::ALL.iter().find(|stage| stage.section == number)?.id, None),
+        };
+        let stage = Stage::find(stage).ok()?;
+        let chapter = if number == "3.1" { "The vec3 Class" } else { stage.chapter_title };
+        let url = book_url(chapter, Some(heading.unwrap_or(stage.section_title)));
+        Some(Section { number, url, stage })
+    }
+}
+
+impl Answer {
+    /// The answer for a picture that cannot be read or compared.
+    pub fn cannot_check(reason: &anyhow::Error) -> Answer {
+        Answer {
+            kind: AnswerKind::CannotCheck,
+            title: "This picture cannot be checked".to_owned(),
+            explanation: capitalised(&format!("{reason:#}")),
+            remedy: None,
+            section: None,
+            stage: None,
+            evidence: Vec::new(),
+            damages: Vec::new(),
+        }
+    }
+
+    /// A right picture in a damaged file counts as different, because other programs cannot read it.
+    pub fn verdict(&self) -> Verdict {
+        if self.kind == AnswerKind::Right { Verdict::Same } else { Verdict::Different }
+    }
+}
+
+impl Finding {
+    pub fn answer(&self, mine: &Mine) -> Answer {
+        let mut damages = mine.damages.clone();
+        let (kind, title, explanation, remedy, section);
+        if let (Some(found), Some(mistake)) = (&self.mistake, self.named()) {
+            let name = capitalised(mistake.title);
+            (kind, title, explanation) = match found.is_noise {
+                true => (AnswerKind::Mistake, name, "It is the only mistake; all else matches"),
+                false => (
+                    AnswerKind::LikelyMistake,
+                    format!("{name}, most likely"),
+                    "It does not explain everything, so there may be a second mistake",
+                ),
+            };
+            remedy = Some(mistake.remedy);
+            section = Section::find(mistake.section);
+        } else if !self.is_right() {
+            kind = AnswerKind::Unknown;
+            title = "Something differs, and none of the known mistakes explains it".to_owned();
+            explanation = "It may be a picture of another section";
+            remedy = Some(
+                "choose the section that your picture belongs to, and look where it differs; the final picture of section \
+                 14.1 cannot be checked: its small spheres are at random places",
+            );
+            section = None;
+        } else if !damages.is_empty() {
+            let damage = damages.remove(0);
+            kind = AnswerKind::Mistake;
+            title = capitalised(&damage.title);
+            explanation = "The picture itself is right: it differs from ours by noise only";
+            remedy = Some(damage.remedy);
+            section = Section::find("2.2");
+        } else {
+            kind = AnswerKind::Right;
+            title = "It is right".to_owned();
+            explanation = "It differs from ours by noise only";
+            (remedy, section) = (None, None);
+        }
+        Answer {
+            kind,
+            title,
+            explanation: explanation.to_owned(),
+            remedy: remedy.map(capitalised),
+            section,
+            stage: Some(self.stage),
+            evidence: self.evidence(mine),
+            damages,
+        }
+    }
+
+    fn evidence(&self, mine: &Mine) -> Vec<String> {
+        let percent = |share: f64| match 100.0 * share {
+            percent if percent > 0.0 && percent < 1.0 => "less than 1 %".to_owned(),
+            percent => format!("{percent:.0} %"),
+        };
+        let mut evidence = Vec::new();
+        if let Some(note) = self.mistake.as_ref().and_then(|found| found.hypothesis.note.as_deref()) {
+            evidence.push(capitalised(note));
+        }
+        if self.right.differing > 0.0 {
+            let [column, row] = self.right.worst;
+            evidence.push(format!(
+                "They differ in {} of the blocks of 8 x 8 pixels, most around column {column}, row {row}",
+                percent(self.right.differing)
+            ));
+        }
+        match &self.mistake {
+            Some(found) if self.right.differing == 0.0 => {
+                let shown = if found.hypothesis.mistake.is_some_and(super::Mistake::is_at_edges) {
+                    "at edges, pixel by pixel"
+                } else {
+                    "in the values of the pixels"
+                };
+                evidence.push(format!("The means of blocks hardly differ; the mistake shows {shown}"));
+            }
+            Some(found) if found.differing < self.right.differing => evidence.push(format!(
+                "With the mistake built into ours, they differ in {}",
+                percent(found.differing)
+            )),
+            _ => {}
+        }
+        let is_gradient = self.stage.setup.rules.shading == Shading::ImageGradient;
+        if self.is_right() && mine.width == mine.height && !is_gradient {
+            let square = "The picture is square; if you wanted 16:9, divide 16.0 by 9.0, not 16 by 9";
+            evidence.push(square.to_owned());
+        }
+        evidence
+    }
+}
+
+fn capitalised(text: &str) -> String {
+    let mut rest = text.chars();
+    rest.next().map_or_else(String::new, |first| first.to_uppercase().chain(rest).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pictures::check::MISTAKES;
+
+    #[test]
+    fn mistakes_link_to_their_own_sections() {
+        for mistake in &MISTAKES {
+            let section = Section::find(mistake.section).unwrap();
+            assert_eq!(section.number, mistake.section);
+            assert!(
+                section.stage.section <= mistake.section || section.stage.section.len() < 4,
+                "{section:?}"
+            );
+        }
+        let section = |number| Section::find(number).unwrap();
+        let gamma = Stage::find("lambertian-gamma").unwrap();
+        assert_eq!(section("9.5"), Section { number: "9.5", url: gamma.url(), stage: gamma });
+        assert!(section("3.1").url.ends_with("#thevec3class/colorutilityfunctions"));
+    }
+}

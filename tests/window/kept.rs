@@ -1,0 +1,219 @@
+//! Pictures that are kept.
+
+use crate::common::{SMALL, control, has_samples, open, send, until};
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, Show, Window};
+use weekender::film::to_byte;
+use weekender::numbers::heat::HeatScale;
+use weekender::progressive::{Phase, Stop, luminance};
+use weekender::stages::Transfer;
+
+/// A pixel in the sky above the left ball.
+const AT: [u32; 2] = [9, 2];
+
+pub fn is_done(window: &Window) -> bool {
+    matches!(window.status().phase, Phase::Done(_)) && has_samples(1)(window)
+}
+
+/// A window with a finished picture of this many samples.
+pub fn finished(samples: u64) -> Harness<'static, Window> {
+    let mut harness = open(&format!("{SMALL} --samples {samples}"));
+    until(&mut harness, "the end", is_done);
+    harness
+}
+
+pub fn keep(harness: &mut Harness<'_, Window>) {
+    let count = harness.state().kept().len();
+    send(harness, Command::Keep);
+    until(harness, "a kept picture", |window| window.kept().len() > count);
+    harness.run_steps(2);
+}
+
+/// Renders the picture with another field of view, in which the pixel shows something else.
+fn change(harness: &mut Harness<'_, Window>) {
+    harness.state_mut().document_mut().camera.vfov_degrees = 25.0;
+    harness.run_steps(2);
+    until(harness, "the changed picture", is_done);
+}
+
+/// The mean of the pixel on the screen, which the pointer asks for.
+fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
+    let rect = harness.state().picture_rect();
+    let size = harness.state().shown_document().size();
+    let share = |axis: usize| (AT[axis] as f32 + 0.5) / size[axis] as f32;
+    harness.hover_at(rect.lerp_inside(vec2(share(0), share(1))));
+    until(harness, "the pixel's value", |window| window.inspected().is_some_and(|(at, _)| at == AT));
+    for _ in 0..20 {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.step();
+    }
+    harness.state().inspected().unwrap().1
+}
+
+fn in_8_bits(mean: [f64; 3], stops: f64) -> [u8; 3] {
+    mean.map(|x| to_byte(x * stops.exp2(), Transfer::Gamma2, AT[1] as usize, 18))
+}
+
+#[test]
+fn a_kept_picture_stays_as_it_was() {
+    let mut harness = finished(8);
+    let kept = mean(&mut harness);
+    keep(&mut harness);
+    assert_eq!(harness.state().kept()[0].1, 8);
+    change(&mut harness);
+    let live = mean(&mut harness);
+    assert_ne!(in_8_bits(kept, 0.0), in_8_bits(live, 0.0));
+
+    harness.key_press_modifiers(Modifiers::ALT, Key::Num1);
+    until(&mut harness, "it", |window| window.shown_pixel(AT) == Some(in_8_bits(kept, 0.0)));
+    assert_eq!(harness.state().looked(), Some(0));
+    assert_eq!(mean(&mut harness), kept, "the inspector reads it");
+    send(&mut harness, Command::Brighter);
+    until(&mut harness, "exposure", |window| window.shown_pixel(AT) == Some(in_8_bits(kept, 0.5)));
+    send(&mut harness, Command::NoExposure);
+    send(&mut harness, Command::Show(Show::Luminance));
+    let colour = HeatScale::luminance([-8.0, 4.0]).colour(luminance(kept));
+    until(&mut harness, "false colours", |window| window.shown_pixel(AT) == Some(colour));
+
+    for expected in [(Show::Picture, Some(0)), (Show::Picture, None)] {
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+        assert_eq!((harness.state().show(), harness.state().looked()), expected);
+    }
+    until(&mut harness, "the live picture", |window| window.shown_pixel(AT) == Some(in_8_bits(live, 0.0)));
+}
+
+#[test]
+fn one_key_flips_and_a_change_returns_to_the_live_picture() {
+    let mut harness = finished(4);
+    assert!(harness.state().disabled_reason(Command::Flip).is_some());
+    keep(&mut harness);
+    let mut seen = Vec::new();
+    for _ in 0..3 {
+        harness.key_press(Key::J);
+        harness.run_steps(2);
+        seen.push(harness.state().looked());
+    }
+    assert_eq!(seen, [Some(0), None, Some(0)]);
+    // A drag moves the picture, not the camera, which belongs to the live one.
+    let camera = harness.state().shown_document().camera;
+    crate::common::drag(&mut harness, eframe::egui::PointerButton::Primary, Modifiers::NONE);
+    assert_eq!((harness.state().shown_document().camera, harness.state().looked()), (camera, Some(0)));
+    harness.state_mut().document_mut().camera.vfov_degrees = 50.0;
+    harness.run_steps(2);
+    assert_eq!(harness.state().looked(), None);
+}
+
+#[test]
+fn a_kept_picture_is_wiped_and_subtracted() {
+    let mut harness = finished(8);
+    let kept = mean(&mut harness);
+    keep(&mut harness);
+    control(&harness, "Difference").click();
+    let none = HeatScale::DIFFERENCE.colour(0.0);
+    until(&mut harness, "no difference", |window| window.shown_pixel(AT) == Some(none));
+    change(&mut harness);
+    let live = mean(&mut harness);
+    let squares: f64 = (0..3).map(|i| (live[i] - kept[i]).powi(2)).sum();
+    let colour = HeatScale::DIFFERENCE.colour((squares / 3.0).sqrt());
+    until(&mut harness, "the difference", |window| window.shown_pixel(AT) == Some(colour));
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::C);
+    until(&mut harness, "a wipe", |window| window.is_comparing() && window.has_other_picture());
+    // Another card takes the place of the one that is compared with.
+    keep(&mut harness);
+    control(&harness, &title(&harness, 1)).click();
+    harness.run_steps(3);
+    assert!(harness.state().is_comparing());
+    send(&mut harness, Command::KeptWipe);
+    assert!(!harness.state().is_comparing(), "it was this wipe");
+}
+
+/// The name of a card.
+fn title(harness: &Harness<'_, Window>, place: usize) -> String {
+    format!("{}: {}", place + 1, harness.state().kept()[place].0)
+}
+
+#[test]
+fn a_picture_of_another_size_is_not_subtracted_before_it_is_rendered_at_that_size() {
+    let mut harness = finished(2);
+    keep(&mut harness);
+    harness.state_mut().document_mut().set_size([64, 36]);
+    harness.run_steps(2);
+    assert!(harness.state().disabled_reason(Command::KeptDifference).is_some());
+    harness.get_by_label("Render at its size").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().shown_document().size(), [32, 18]);
+    assert!(harness.state().disabled_reason(Command::KeptDifference).is_none());
+}
+
+#[test]
+fn later_pictures_move_up_when_one_is_deleted_and_names_stay() {
+    let mut harness = finished(2);
+    for _ in 0..3 {
+        keep(&mut harness);
+    }
+    control(&harness, &title(&harness, 1)).click();
+    harness.run_steps(2);
+    harness.key_press(Key::F2);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(eframe::egui::Event::Text("mine".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(harness.state().kept()[1].0, "mine");
+    control(&harness, &title(&harness, 0)).click();
+    harness.run_steps(2);
+    send(&mut harness, Command::DeleteKept);
+    let names: Vec<_> = harness.state().kept().iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert!(names.len() == 2 && names[0] == "mine", "{names:?}");
+}
+
+/// The first sentence of the answer, once it is there.
+fn only_noise(harness: &mut Harness<'_, Window>) -> String {
+    send(harness, Command::OnlyNoise);
+    until(harness, "an answer", |window| window.only_noise().is_some());
+    let (headline, _) = harness.state().only_noise().unwrap().unwrap();
+    headline.to_owned()
+}
+
+#[test]
+fn noise_is_told_from_a_difference() {
+    let mut harness = open("--stage glass-schlick --size 96x54 --samples 16");
+    until(&mut harness, "the end", is_done);
+    keep(&mut harness);
+    assert_eq!(only_noise(&mut harness), "Identical to the bit.");
+    for (angle, expected) in [(90.0, "Only noise."), (80.0, "More than noise.")] {
+        let document = harness.state_mut().document_mut();
+        (document.settings.seed, document.camera.vfov_degrees) = (5, angle);
+        harness.run_steps(2);
+        until(&mut harness, "the changed picture", is_done);
+        assert_eq!(only_noise(&mut harness), expected);
+        harness.run_steps(2);
+        assert!(harness.query_by_label(expected).is_some(), "the dock says it");
+    }
+}
+
+#[test]
+fn a_render_goes_on_from_a_kept_picture_with_all_its_samples() {
+    let mut harness = finished(8);
+    let before = harness.state().shown_document().clone();
+    keep(&mut harness);
+    change(&mut harness);
+    let changed = harness.state().shown_document().camera;
+    send(&mut harness, Command::GoOnFromKept);
+    until(&mut harness, "the kept picture", |window| *window.shown_document() == before);
+    until(&mut harness, "its samples", is_done);
+    // All samples are there, and none was traced again.
+    assert_eq!(harness.state().status().samples_per_pixel, 8);
+    assert!(harness.state().status().contributions.is_empty(), "{:?}", harness.state().status());
+    assert_eq!(only_noise(&mut harness), "Identical to the bit.");
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().shown_document().camera, changed);
+    send(&mut harness, Command::Redo);
+    assert_eq!(*harness.state().shown_document(), before);
+    harness.state_mut().document_mut().stop = Stop::at_samples(12);
+    until(&mut harness, "more samples", has_samples(12));
+}
