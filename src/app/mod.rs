@@ -185,17 +185,6 @@ mod tests {
         Window::new(options(words)).unwrap()
     }
 
-    /// Makes a name that the system refuses to open, under another name as well: it links to a link to itself, in the
-    /// directory that is returned.
-    #[cfg(unix)]
-    pub(super) fn unreadable(path: &std::path::Path) -> tempfile::TempDir {
-        let elsewhere = tempfile::tempdir().unwrap();
-        let link = elsewhere.path().join("link");
-        std::os::unix::fs::symlink(&link, &link).unwrap();
-        std::os::unix::fs::symlink(link, path).unwrap();
-        elsewhere
-    }
-
     fn options(words: &str) -> WindowOptions {
         match parse(words.split_whitespace().map(Into::into)).unwrap() {
             Request::Window(options) => *options,
@@ -222,12 +211,6 @@ mod tests {
     pub(super) fn rest_at<State>(harness: &mut Harness<'_, State>, at: Pos2) {
         harness.event(Event::PointerMoved(at));
         harness.run_steps(6);
-    }
-
-    /// Takes the pointer away.
-    pub(super) fn leave<State>(harness: &mut Harness<'_, State>) {
-        harness.event(Event::PointerGone);
-        harness.run_steps(3);
     }
 
     fn input() -> egui::RawInput {

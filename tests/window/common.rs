@@ -75,18 +75,6 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
-/// Whether this text is drawn over the picture.
-pub fn painted(harness: &Harness<'_, Window>, text: &str) -> bool {
-    harness.output().shapes.iter().any(|clipped| {
-        matches!(&clipped.shape, egui::Shape::Text(painted) if painted.galley.text().contains(text))
-    })
-}
-
-/// Draws frames until this text is drawn over the picture.
-pub fn until_painted(harness: &mut Harness<'_, Window>, text: &str) {
-    until_drawn(harness, text, |harness| painted(harness, text));
-}
-
 /// Draws frames until the condition holds for what is drawn.
 pub fn until_drawn<'h>(
     harness: &mut Harness<'h, Window>,
@@ -114,18 +102,6 @@ pub fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<e
         harness.step();
     }
     None
-}
-
-/// The command that "Copy as command" puts into the clipboard.
-pub fn copied_command(harness: &mut Harness<'_, Window>) -> String {
-    harness.state_mut().send(Command::CopyCommand);
-    harness.step();
-    let mut commands = harness.output().platform_output.commands.iter();
-    let copied = commands.find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    copied.unwrap()
 }
 
 /// Whether the screen shows the document's picture at full size with at least this many samples per pixel. After a change

@@ -240,11 +240,6 @@ pub fn partner(stage: &Stage) -> Option<&'static Stage> {
     Stage::find(stage.pair?).ok()
 }
 
-/// Whether `stage` and its partner differ in their cameras, so that each keeps its own.
-pub fn is_of_cameras(stage: &Stage) -> bool {
-    partner(stage).is_some_and(|other| differ_in_camera(&stage.recipe(), &other.recipe()))
-}
-
 /// Whether the recipes differ only in their cameras.
 pub fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
     a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
