@@ -199,7 +199,7 @@ fn a_person_can_use_the_window() {
 
     // Switch the device and back: both trace into the same film.
     display.key("g");
-    log.wait_for_command("Switch between CPU and GPU", 1);
+    log.wait_for_command("Switch CPU and GPU", 1);
     match Device::Gpu.unavailable() {
         Some(reason) => eprintln!("the device was not switched: {reason}"),
         None => {
@@ -234,7 +234,7 @@ fn a_person_can_use_the_window() {
 
     // During a pause, saving and copying use the same film.
     display.key("space");
-    log.wait_for_command("Pause or go on", 1);
+    log.wait_for_command("Pause, Go on", 1);
     std::thread::sleep(Duration::from_millis(500));
     let saved = home.path().join("saved.png");
     save(&display, &saved);
@@ -298,16 +298,16 @@ fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
         all => panic!("{ending}: {all:?}: {said}"),
     };
     // Where the next window looks for it.
-    let film = one(&kept(home.path()), "exr");
+    let film = autosave(home.path());
     assert!(checkpoint::load(&film).unwrap().film.sample_count() >= 16);
     assert!(said.contains(&format!("continue with --resume {}", film.display())), "{said}");
     let report = std::fs::read_to_string(one(home.path(), "txt")).unwrap();
     assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
 }
 
-/// Where windows keep their films.
-fn kept(home: &Path) -> PathBuf {
-    home.join("state/weekender/windows")
+/// Where a window saves its film by itself.
+fn autosave(home: &Path) -> PathBuf {
+    home.join("state/weekender/autosave.exr")
 }
 
 /// The files of this ending in a directory, if that exists.
@@ -328,41 +328,42 @@ fn wait_for(what: &str, is_so: impl Fn() -> bool) {
 fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     let Some(display) = Display::start() else { return };
     let home = tempfile::tempdir().unwrap();
-    let state = kept(home.path());
+    let film = autosave(home.path());
+    let samples_in = |path: &Path| checkpoint::load(path).unwrap().film.sample_count();
     let stage = ["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000"];
     let often = ["--device", "cpu", "--autosave-every", "0.5s"];
     let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
-    wait_for("an autosave", || !files(&state, "exr").is_empty() && !files(&state, "json").is_empty());
+    wait_for_file(&film);
     first.kill().unwrap();
     first.wait().unwrap();
-    let [film] = files(&state, "exr").try_into().unwrap();
-    let samples = checkpoint::load(&film).unwrap().film.sample_count();
+    let samples = samples_in(&film);
 
-    // The next window offers it, and opens it when asked: F6 goes to the first control of the card.
+    // The next window offers it, and opens it only when asked.
     let mut second = display.weekender(home.path()).args(often).spawn().unwrap();
-    let id = display.wait_for_window(&mut second);
-    display.xdotool(&["windowfocus", "--sync", &id]);
+    display.wait_for_window(&mut second);
+    let left = film.with_file_name("recovered.exr");
+    wait_for_file(&left);
     std::thread::sleep(Duration::from_secs(2));
-    assert!(film.exists(), "it was opened unasked");
-    display.key("F6");
-    display.key("space");
-    wait_for("the film to be opened", || !film.exists());
-    std::thread::sleep(Duration::from_secs(2));
-    assert!(Command::new("kill").arg(second.id().to_string()).status().unwrap().success());
-    assert_eq!(wait_for_end(&mut second).code(), Some(143));
+    assert_eq!(samples_in(&left), samples);
+    second.kill().unwrap();
+    second.wait().unwrap();
 
-    // The third one goes on without being asked.
-    let session = state.join("session.exr");
-    let before = checkpoint::load(&session).unwrap().film.sample_count();
-    assert!(before > samples, "{before} after {samples}");
-    let mut third = display.weekender(home.path()).args(often).spawn().unwrap();
-    display.wait_for_window(&mut third);
-    wait_for("the session to be taken", || !session.exists());
-    std::thread::sleep(Duration::from_secs(3));
-    assert!(Command::new("kill").arg(third.id().to_string()).status().unwrap().success());
-    assert_eq!(wait_for_end(&mut third).code(), Some(143));
-    let film = checkpoint::load(&session).unwrap().film;
-    assert!(film.sample_count() > before, "{} after {before}", film.sample_count());
+    // A window that is terminated saves its film, and the next one goes on with that.
+    let resume = home.path().join("resumed.exr");
+    std::fs::copy(&left, &resume).unwrap();
+    let goes_on = ["--resume", resume.to_str().unwrap(), "--samples", "4000000000"];
+    let mut before = samples;
+    for flags in [&goes_on[..], &[]] {
+        let mut next = display.weekender(home.path()).args(flags).args(often).spawn().unwrap();
+        display.wait_for_window(&mut next);
+        std::thread::sleep(Duration::from_secs(4));
+        assert!(Command::new("kill").arg(next.id().to_string()).status().unwrap().success());
+        assert_eq!(wait_for_end(&mut next).code(), Some(143));
+        let after = samples_in(&film);
+        assert!(after > before, "{after} after {before}");
+        before = after;
+    }
+    let film = checkpoint::load(&film).unwrap().film;
 
     // It has the bits of an uninterrupted render.
     let count = film.sample_count().to_string();

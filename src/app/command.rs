@@ -236,6 +236,8 @@ pub const DIGITS: [Key; 9] =
 /// All commands but places, menu by menu in the order of the menus.
 pub static ROWS: LazyLock<Vec<Row>> = LazyLock::new(rows);
 
+// A row of the table takes a few lines; rustfmt would give each argument one.
+#[rustfmt::skip]
 fn rows() -> Vec<Row> {
     use Command as C;
     let mut rows = Vec::new();
@@ -260,292 +262,301 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::File);
     row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", |w, c| w.ask_open(c),
-    keys(CTRL, Key::O), also("load import resume")}
+        keys(CTRL, Key::O), also("load import resume")}
     row! {C::CheckPicture, "Check my picture…",
-    "Finds the mistake in a picture that your own program has rendered", |w, c| w.ask_check(c),
-    also("wrong mistake homework verify compare")}
+        "Finds the mistake in a picture that your own program has rendered", |w, c| w.ask_check(c),
+        also("wrong mistake homework verify compare")}
     row! {C::Reload, "Reload the scene", "Reads the scene file again, after another program has changed it",
-    |w, c| w.reload(c), keys(CTRL, Key::R),
-    needs(
-        |f| matches!(f.document().origin.source, Source::File(_)),
-        "This picture is not from a scene file"
-    )}
+        |w, c| w.reload(c), keys(CTRL, Key::R),
+        needs(
+            |f| matches!(f.document().origin.source, Source::File(_)),
+            "This picture is not from a scene file"
+        )}
     row! {C::Save, "Save…", "Saves the picture, the film or the scene",
-    |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
-    also("export png ppm exr toml download film scene")}
+        |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
+        also("export png ppm exr toml download film scene")}
     row! {C::ShowInFolder, "Show in folder", "Opens the folder of the file that was saved or opened last",
-    |w, c| w.show_in_folder(c),
-    needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
-    also("directory explorer finder")}
+        |w, c| w.show_in_folder(c),
+        needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
+        also("directory explorer finder")}
     row! {C::CopyPicture, "Copy picture", "Copies the picture at full size",
-    |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), also("clipboard")}
+        |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), also("clipboard")}
     row! {C::CopyCommand, "Copy as command", "Copies the command line that renders this picture",
-    |w, c| w.copy_command(c), keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard")}
+        |w, c| w.copy_command(c), keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard")}
     row! {C::Fresh, "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns",
-    |w, _| w.start_fresh(), line()}
+        |w, _| w.start_fresh(), line()}
     row! {C::Quit, "Quit", "Closes the window; the next one begins where this one ends",
-    |_, c| c.send_viewport_cmd(ViewportCommand::Close), keys(CTRL, Key::Q), also("close exit")}
+        |_, c| c.send_viewport_cmd(ViewportCommand::Close), keys(CTRL, Key::Q), also("close exit")}
 
     menu = Some(Menu::Edit);
     row! {C::Undo, "Undo", "Takes back the last change", |w, _| w.undo(), keys(CTRL, Key::Z),
-    needs(|f| f.can_undo, "Nothing has been changed yet"), also("back lost")}
+        needs(|f| f.can_undo, "Nothing has been changed yet"), also("back lost")}
     row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
-    needs(|f| f.can_redo, "Nothing has been undone")}
+        needs(|f| f.can_redo, "Nothing has been undone")}
     row! {C::ResetAll, "Reset everything",
-    "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
-    needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
-    also("original lost back")}
+        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
+        needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
+        also("original lost back")}
     row! {C::AddSphere, "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
-    key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball")}
+        key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball")}
     row! {C::DuplicateSphere, "Duplicate the sphere", "Puts a copy beside the selected sphere",
-    |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball")}
+        |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball")}
     row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.delete_sphere(),
-    key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball")}
+        key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball")}
     row! {C::SkyColours, "Sky colours…", "Changes the two colours that the sky fades between",
-    |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
-    also("background light gradient")}
+        |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
+        also("background light gradient")}
     row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.home(),
-    key(Key::Home), line(),
-    needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
-    also("home lost back original")}
+        key(Key::Home), line(),
+        needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
+        also("home lost back original")}
     row! {C::FocusOnLookAt, "Keep Look at in focus",
-    "Sets the focus distance to the point that the camera looks at", |w, _| w.toggle_focus_on_look_at(),
-    off(|f| f.no_rays().map(str::to_owned)), on(|f| f.document().camera.focus_distance.is_none())}
+        "Sets the focus distance to the point that the camera looks at", |w, _| w.toggle_focus_on_look_at(),
+        off(|f| f.no_rays().map(str::to_owned)), on(|f| f.document().camera.focus_distance.is_none())}
 
     menu = Some(Menu::Show);
     for (place, show) in Show::ALL.into_iter().enumerate() {
         row! {C::Show(show), show.name(), show.help(), move |w, c| w.show_as(c, show),
-        keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
-        on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
-        also(show.synonyms())}
+            keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
+            on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
+            also(show.synonyms())}
     }
     menu = Some(Menu::View);
     row! {C::Fit, "Fit in the window", "Shows the whole picture as large as possible",
-    |w, _| w.display.viewport.placement.fit(), key(Key::F), line()}
+        |w, _| w.display.viewport.placement.fit(), key(Key::F), line()}
     row! {C::ActualSize, "Actual size", "One pixel of the picture per pixel of the screen",
-    |w, _| w.display.viewport.placement.actual_size(), key(Key::Num1), also("100 % zoom")}
+        |w, _| w.display.viewport.placement.actual_size(), key(Key::Num1), also("100 % zoom")}
     menu = Some(Menu::Bookmarks);
     row! {C::AddBookmark, "Bookmark this camera", "Keeps this camera and lens to jump back to",
-    |w, _| w.add_bookmark(), keys(CTRL, Key::B), off(|f| f.no_rays().map(str::to_owned)),
-    also("view position")}
+        |w, _| w.add_bookmark(), keys(CTRL, Key::B), off(|f| f.no_rays().map(str::to_owned)),
+        also("view position")}
     menu = Some(Menu::View);
     row! {C::Controls, "Controls", "Shows or hides camera, lens and sphere at the left",
-    |w, _| w.toggle(|r| &mut r.has_controls), key(Key::L), line(), off(no_presentation),
-    on(|f| f.model.remembered.has_controls), also("left panel camera lens")}
+        |w, _| w.toggle(|r| &mut r.has_controls), key(Key::L), line(), off(no_presentation),
+        on(|f| f.model.remembered.has_controls), also("left panel camera lens")}
     row! {C::Info, "Stage and pixel", "Shows or hides the text and the numbers at the right",
-    |w, _| w.toggle(|r| &mut r.has_info), key(Key::I), off(no_presentation),
-    on(|f| f.model.remembered.has_info), also("right panel text")}
+        |w, _| w.toggle(|r| &mut r.has_info), key(Key::I), off(no_presentation),
+        on(|f| f.model.remembered.has_info), also("right panel text")}
     row! {C::Dock(Dock::Kept), "Kept pictures", "Opens the dock with the pictures that you have kept",
-    |w, _| w.toggle_dock(Dock::Kept), keys(SHIFT, Key::M), off(no_presentation),
-    on(|f| f.model.remembered.dock == Some(Dock::Kept)), also("slot snapshot compare")}
+        |w, _| w.toggle_dock(Dock::Kept), keys(SHIFT, Key::M), off(no_presentation),
+        on(|f| f.model.remembered.dock == Some(Dock::Kept)), also("slot snapshot compare")}
     row! {C::Dock(Dock::Lanes), "Lanes", "Opens the dock with what each lane does, step by step",
-    |w, _| w.toggle_dock(Dock::Lanes), key(Key::N), off(no_presentation),
-    on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet")}
+        |w, _| w.toggle_dock(Dock::Lanes), key(Key::N), off(no_presentation),
+        on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet")}
     row! {C::Dock(Dock::Error), "Error", "Opens the dock with the error over time",
-    |w, _| w.toggle_dock(Dock::Error), key(Key::P), off(no_presentation),
-    on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality")}
+        |w, _| w.toggle_dock(Dock::Error), key(Key::P), off(no_presentation),
+        on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality")}
     row! {C::Panels, "Only the picture", "Hides all panels; again shows them", |w, _| w.toggle_panels(),
-    key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels")}
+        key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels")}
     row! {C::Axes, "Axes in the corner", "Shows the axes; a click on an end looks from that side",
-    |w, _| w.toggle(|r| &mut r.has_axes), on(|f| f.model.remembered.has_axes), also("gizmo")}
+        |w, _| w.toggle(|r| &mut r.has_axes), on(|f| f.model.remembered.has_axes), also("gizmo")}
     row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
-    |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
-    also("lecture slides projector beamer")}
+        |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
+        also("lecture slides projector beamer")}
     row! {C::FullScreen, "Full screen", "Fills the screen with the window", |w, c| w.toggle_full_screen(c),
-    key(Key::F11), on(|f| f.model.is_full_screen)}
+        key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
     for theme in Theme::ALL {
         row! {C::Theme(theme), theme.name(), theme.help(), move |w, c| w.choose_theme(c, theme),
-        on(move |f| f.model.remembered.theme == theme), also(theme.synonyms())}
+            on(move |f| f.model.remembered.theme == theme), also(theme.synonyms())}
     }
     menu = Some(Menu::View);
     row! {C::Larger, "Larger", "Makes text and controls larger",
-    |_, c| c.set_zoom_factor((c.zoom_factor() + 0.1).min(3.0)), keys(CTRL, Key::Plus),
-    also("scale font")}
+        |_, c| c.set_zoom_factor((c.zoom_factor() + 0.1).min(3.0)), keys(CTRL, Key::Plus),
+        also("scale font")}
     row! {C::Smaller, "Smaller", "Makes text and controls smaller; Ctrl+0 returns",
-    |_, c| c.set_zoom_factor((c.zoom_factor() - 0.1).max(0.5)), keys(CTRL, Key::Minus),
-    also("scale font")}
+        |_, c| c.set_zoom_factor((c.zoom_factor() - 0.1).max(0.5)), keys(CTRL, Key::Minus),
+        also("scale font")}
 
     menu = Some(Menu::Render);
     row! {C::Pause, "Pause, Go on",
-    "Stops and continues; when done, goes on to half the error. No sample is lost",
-    |w, c| w.pause_or_go_on(c), key(Key::Space),
-    needs(|f| f.is_working() || f.model.is_paused || f.further().is_some(), "More samples would change nothing"),
-    on(|f| f.model.is_paused), also("stop resume continue")}
+        "Stops and continues; when done, goes on to half the error. No sample is lost",
+        |w, c| w.pause_or_go_on(c), key(Key::Space),
+        needs(
+            |f| f.is_working() || f.model.is_paused || f.further().is_some(),
+            "More samples would change nothing"
+        ),
+        on(|f| f.model.is_paused), also("stop resume continue")}
     row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| w.restart(),
-    key(Key::R)}
+        key(Key::R)}
     row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-    |w, _| w.switch_device(), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
+        |w, _| w.switch_device(), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
     row! {C::Device(Device::Reference), "Reference (f64)",
-    "Traces with twice the digits, slowly, to show rounding errors", |w, _| w.toggle_reference(),
-    on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
+        "Traces with twice the digits, slowly, to show rounding errors", |w, _| w.toggle_reference(),
+        on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
     row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
-    |w, _| w.keep(), key(Key::M), line(),
-    needs(|f| f.model.view.kept.looked().is_none(), "This picture is kept already; Escape returns to the one that is traced"),
-    also("slot snapshot compare")}
+        |w, _| w.keep(), key(Key::M), line(),
+        needs(
+            |f| f.model.view.kept.looked().is_none(),
+            "This picture is kept already; Escape returns to the one that is traced"
+        ),
+        also("slot snapshot compare")}
 
     menu = Some(Menu::Stage);
     row! {C::Stages, "All stages…", "Every picture of the book, with a small image; type to search",
-    |w, c| w.open_stage_list(c, false), key(Key::O), off(no_presentation), also("list section chapter")}
+        |w, c| w.open_stage_list(c, false), key(Key::O), off(no_presentation), also("list section chapter")}
     row! {C::PreviousStage, "Previous stage", "One step back in the book", |w, _| w.step_stage(false),
-    key(Key::PageUp), needs(|f| f.neighbour(false).is_some(), "This is the first stage")}
+        key(Key::PageUp), needs(|f| f.neighbour(false).is_some(), "This is the first stage")}
     row! {C::NextStage, "Next stage", "One step forward in the book", |w, _| w.step_stage(true),
-    key(Key::PageDown), needs(|f| f.neighbour(true).is_some(), "This is the last stage")}
+        key(Key::PageDown), needs(|f| f.neighbour(true).is_some(), "This is the last stage")}
     row! {C::ShowMe, "Show me", "Sets zoom, view or wipe so that you see what to look for; again returns",
-    |w, _| w.toggle_sight(), key(Key::H), line(),
-    off(|f| match f.document().stage() {
-        Some(stage) => f.useless_show(Show::of_means(stage.sight.means)),
-        None => Some("Only stages of the book name something to look for".to_owned()),
-    }),
-    on(|f| f.has_sight)}
+        |w, _| w.toggle_sight(), key(Key::H), line(),
+        off(|f| match f.document().stage() {
+            Some(stage) => f.useless_show(Show::of_means(stage.sight.means)),
+            None => Some("Only stages of the book name something to look for".to_owned()),
+        }),
+        on(|f| f.has_sight)}
     row! {C::Wipe, "Wipe", "Drag a divider between this stage and the one that it is compared with",
-    |w, _| w.compare(Mode::Wipe), key(Key::C), off(Facts::nothing_to_compare),
-    on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.with() == With::Stage),
-    also("slot snapshot compare")}
+        |w, _| w.compare(Mode::Wipe), key(Key::C), off(Facts::nothing_to_compare),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.with() == With::Stage),
+        also("slot snapshot compare")}
     row! {C::Difference, "Difference", "Shows where the two differ, and by how much",
-    |w, _| w.compare(Mode::Difference), key(Key::X), off(Facts::nothing_to_compare),
-    on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
-    also("slot snapshot compare subtract")}
+        |w, _| w.compare(Mode::Difference), key(Key::X), off(Facts::nothing_to_compare),
+        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
+        also("slot snapshot compare subtract")}
     row! {C::BookArithmetic, "The book’s arithmetic",
-    "Wipes against the same picture with the book’s own formulas",
-    |w, _| w.model.view.toggle(Mode::Wipe, With::Book),
-    needs(|f| f.document().origin.is_other_by_the_book(), "This picture already has the book’s arithmetic, or traces no rays"),
-    on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
-    also("rounding f64 precision")}
+        "Wipes against the same picture with the book’s own formulas",
+        |w, _| w.model.view.toggle(Mode::Wipe, With::Book),
+        needs(
+            |f| f.document().origin.is_other_by_the_book(),
+            "This picture already has the book’s arithmetic, or traces no rays"
+        ),
+        on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
+        also("rounding f64 precision")}
     row! {C::ListPaths, "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
-    |w, c| w.list_paths(c), key(Key::T), line(),
-    off(|f| match f.no_rays() {
-        Some(reason) => Some(reason.to_owned()),
-        None if f.model.view.kept.looked().is_some() =>
-            Some("A kept picture is shown; Escape returns to the one that is traced".to_owned()),
-        None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
-    }),
-    also("rays bounce trace")}
+        |w, c| w.list_paths(c), key(Key::T), line(),
+        off(|f| match f.no_rays() {
+            Some(reason) => Some(reason.to_owned()),
+            None if f.model.view.kept.looked().is_some() =>
+                Some("A kept picture is shown; Escape returns to the one that is traced".to_owned()),
+            None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
+        }),
+        also("rays bounce trace")}
     row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
-    |w, _| w.toggle_code(), key(Key::K),
-    off(|f| no_presentation(f).or_else(|| f .document() .stage() .is_none() .then(|| "This picture is no stage of the book".to_owned()))),
-    on(Facts::shows_code), also("source rust wgsl program")}
+        |w, _| w.toggle_code(), key(Key::K),
+        off(|f| no_presentation(f).or_else(|| no_stage(f))),
+        on(Facts::shows_code), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| w.open_book(c),
-    also("web section")}
+        also("web section")}
     row! {C::Companion, "Read in the companion",
-    "Opens the companion at this stage; writes it first, which takes 3 seconds",
-    |w, c| w.open_companion(c), also("web page explain")}
+        "Opens the companion at this stage; writes it first, which takes 3 seconds",
+        |w, c| w.open_companion(c), also("web page explain")}
     row! {C::ExtremeScenes, "Extreme scenes…",
-    "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
-    |w, c| w.open_stage_list(c, true), line(), off(no_presentation), also("stress stiff numerical")}
+        "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
+        |w, c| w.open_stage_list(c, true), line(), off(no_presentation), also("stress stiff numerical")}
 
     menu = Some(Menu::Help);
     row! {C::FirstSteps, "First steps", "Brings back the card with three things to try",
-    |w, _| w.toggle_first_steps(), off(no_presentation), on(|f| f.model.has_first_steps),
-    also("tutorial introduction")}
+        |w, _| w.toggle_first_steps(), off(no_presentation), on(|f| f.model.has_first_steps),
+        also("tutorial introduction")}
     row! {C::Help, "Keys and mouse", "All keys, and what the mouse does",
-    |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
-    also("shortcuts keyboard help")}
+        |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
+        also("shortcuts keyboard help")}
     row! {C::Palette, "Find a command…", "Type what you want to do",
-    |w, c| w.shell.dialogs.open(Dialog::Palette(Palette::typed(c))), keys(CTRL, Key::P),
-    also("palette search")}
+        |w, c| w.shell.dialogs.open(Dialog::Palette(Palette::typed(c))), keys(CTRL, Key::P),
+        also("palette search")}
     row! {C::About, "About Weekender", "Version, licences, folder of the log, and how to report a fault",
-    |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug")}
+        |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug")}
 
     menu = None;
     row! {C::Brighter, "Brighter",
-    "Shows the picture with half a stop more light; files are saved without it",
-    |w, _| w.model.view.tone.expose(Tone::STEP), key(Key::Plus), off(Facts::no_exposure),
-    also("exposure bright dim")}
+        "Shows the picture with half a stop more light; files are saved without it",
+        |w, _| w.model.view.tone.expose(Tone::STEP), key(Key::Plus), off(Facts::no_exposure),
+        also("exposure bright dim")}
     row! {C::Darker, "Darker", "Shows the picture with half a stop less light; files are saved without it",
-    |w, _| w.model.view.tone.expose(-Tone::STEP), key(Key::Minus), off(Facts::no_exposure),
-    also("exposure dim")}
+        |w, _| w.model.view.tone.expose(-Tone::STEP), key(Key::Minus), off(Facts::no_exposure),
+        also("exposure dim")}
     row! {C::NoExposure, "As bright as it is saved", "Shows the picture without exposure",
-    |w, _| w.model.view.tone.exposure = 0.0, key(Key::Num0), off(Facts::no_exposure),
-    also("exposure bright dim reset")}
+        |w, _| w.model.view.tone.exposure = 0.0, key(Key::Num0), off(Facts::no_exposure),
+        also("exposure bright dim reset")}
     row! {C::ZoomIn, "Zoom in", "Ctrl and the wheel zoom at the pointer",
-    |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket)}
+        |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket)}
     row! {C::ZoomOut, "Zoom out", "Ctrl and the wheel zoom at the pointer",
-    |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket)}
+        |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket)}
     for channel in Channel::ALL {
         row! {C::Channel(channel), channel.name(), "Shows one channel alone, as grey; again shows all",
-        move |w, _| w.model.view.tone.toggle(channel), keys(SHIFT, channel.key()),
-        off(Facts::no_exposure), on(move |f| f.model.view.tone.channel == Some(channel)),
-        also("channel rgb")}
+            move |w, _| w.model.view.tone.toggle(channel), keys(SHIFT, channel.key()),
+            off(Facts::no_exposure), on(move |f| f.model.view.tone.channel == Some(channel)),
+            also("channel rgb")}
     }
     for side in Viewpoint::ALL {
         row! {C::ViewFrom(side), side.name(), "Looks at the same point from that side",
-        move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
+            move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
     }
     row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", |w, _| w.step_sphere(true),
-    key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
+        key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
-    |w, _| w.step_sphere(false), key(Key::Comma),
-    needs(has_spheres, "There is no sphere in this scene"), also("select")}
+        |w, _| w.step_sphere(false), key(Key::Comma),
+        needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::LookAtSphere, "Look at the sphere",
-    "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
-    needs(has_selection, NO_SPHERE), also("centre")}
+        "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
+        needs(has_selection, NO_SPHERE), also("centre")}
     row! {C::FocusSphere, "Focus on the sphere",
-    "Sets the focus distance to the nearest point of the selected sphere", |w, _| w.focus_sphere(),
-    needs(has_selection, NO_SPHERE), also("sharp depth of field")}
+        "Sets the focus distance to the nearest point of the selected sphere", |w, _| w.focus_sphere(),
+        needs(has_selection, NO_SPHERE), also("sharp depth of field")}
     row! {C::Flip, "Flip between the two", "Shows the traced picture and the kept one in turn",
-    |w, _| w.model.view.flip(), key(Key::J), needs(has_kept, NOTHING_KEPT),
-    also("kept slot compare blink")}
+        |w, _| w.model.view.flip(), key(Key::J), needs(has_kept, NOTHING_KEPT),
+        also("kept slot compare blink")}
     row! {C::KeptWipe, "Wipe with the kept picture", "Drag a divider between it and the picture",
-    |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
-    on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some()),
-    also("slot compare")}
+        |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some()),
+        also("slot compare")}
     row! {C::KeptDifference, "Difference from the kept picture", "Subtracts it from the picture",
-    |w, _| w.compare_kept(Mode::Difference), keys(SHIFT, Key::X), off(Facts::not_subtractable),
-    on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
-    also("slot compare subtract")}
+        |w, _| w.compare_kept(Mode::Difference), keys(SHIFT, Key::X), off(Facts::not_subtractable),
+        on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
+        also("slot compare subtract")}
     row! {C::OnlyNoise, "Is it only noise?", "Tests whether the two differ by more than chance",
-    |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
-    also("kept slot compare same")}
+        |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
+        also("kept slot compare same")}
     for device in [Device::Cpu, Device::Gpu, Device::Both] {
         row! {C::Device(device), device.long_label(), device.help(),
-        move |w, _| w.model.remembered.device = device, off(move |_| device.unavailable()),
-        on(move |f| f.model.remembered.device == device), also("device trace")}
+            move |w, _| w.model.remembered.device = device, off(move |_| device.unavailable()),
+            on(move |f| f.model.remembered.device == device), also("device trace")}
     }
 
     row! {C::SaveAs(OutputFormat::P6), "Save as PPM…", "", |w, _| w.ask_save(OutputFormat::P6),
-    keys(CTRL_SHIFT, Key::S), unlisted()}
+        keys(CTRL_SHIFT, Key::S), unlisted()}
     row! {C::SaveAs(OutputFormat::Exr), "Save film…", "", |w, _| w.ask_save(OutputFormat::Exr),
-    keys(CTRL, Key::E), unlisted()}
+        keys(CTRL, Key::E), unlisted()}
     row! {C::ViewSaved, "Open", "Opens it outside of Weekender", |w, c| w.view_saved(c), unlisted()}
     row! {C::StopSaving, "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted()}
     row! {C::Recover, "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted()}
     row! {C::NotNow, "Not now", "Leaves it until the window closes",
-    |w, _| w.shell.toasts.withdraw(Command::NotNow), unlisted()}
+        |w, _| w.shell.toasts.withdraw(Command::NotNow), unlisted()}
     row! {C::WholeCompanion, "Write the full one",
-    "Renders its pictures at full size and without noise, which takes some minutes",
-    |w, c| w.write_companion(c, false), unlisted()}
+        "Renders its pictures at full size and without noise, which takes some minutes",
+        |w, c| w.write_companion(c, false), unlisted()}
     row! {C::StopCompanion, "Stop", "Leaves out the pictures that are missing",
-    |w, _| w.files.stop_companion(), unlisted()}
+        |w, _| w.files.stop_companion(), unlisted()}
     row! {C::Deselect, "Deselect the sphere", "", |w, _| w.model.selected = None, unlisted()}
     row! {C::GoOnFromKept, "Go on from it",
-    "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
-    |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
+        "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
+        |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.delete_kept(),
-    needs(has_kept, NOTHING_KEPT), unlisted()}
+        needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::LookLive, "Return to the picture", "Leaves the kept picture", |w, _| w.model.view.look(None),
-    keys(Modifiers::ALT, Key::Num0), unlisted()}
+        keys(Modifiers::ALT, Key::Num0), unlisted()}
     row! {C::NextRay, "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
-    needs(|f| f.has_paths, NO_PATHS), unlisted()}
+        needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::PreviousRay, "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
-    needs(|f| f.has_paths, NO_PATHS), unlisted()}
+        needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::ClearPaths, "Close the paths", "", |w, _| w.clear_paths(), needs(|f| f.has_paths, NO_PATHS),
-    unlisted()}
+        unlisted()}
     row! {C::NextPanel, "Next panel", "", |w, c| w.next_panel(c), key(Key::F6), off(no_presentation),
-    unlisted()}
+        unlisted()}
     row! {C::Blank, "Blank the screen", "", |w, _| w.toggle_blank(), key(Key::B),
-    needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
-    unlisted()}
+        needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
+        unlisted()}
     for sizing in Sizing::ALL {
         row! {C::Size(sizing), "Render at this size",
-        "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
-        move |w, _| w.take_size(sizing), unlisted()}
+            "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
+            move |w, _| w.take_size(sizing), unlisted()}
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row! {C::Kept(place), "", "Shows it instead of the picture",
-        move |w, _| w.model.view.look(Some(place)), keys(Modifiers::ALT, digit),
-        off(move |f| f .model .view .kept .get(place) .is_none() .then(|| format!("Fewer than {} pictures are kept; M keeps this one", place + 1))),
-        unlisted()}
+            move |w, _| w.model.view.look(Some(place)), keys(Modifiers::ALT, digit),
+            off(move |f| not_kept(f, place)),
+            unlisted()}
     }
     rows
 }
@@ -564,6 +575,15 @@ fn has_spheres(facts: &Facts) -> bool {
 
 fn has_kept(facts: &Facts) -> bool {
     facts.model.view.kept.chosen().is_some()
+}
+
+fn no_stage(facts: &Facts) -> Option<String> {
+    facts.document().stage().is_none().then(|| "This picture is no stage of the book".to_owned())
+}
+
+fn not_kept(facts: &Facts, place: usize) -> Option<String> {
+    let is_kept = facts.model.view.kept.get(place).is_some();
+    (!is_kept).then(|| format!("Fewer than {} pictures are kept; M keeps this one", place + 1))
 }
 
 fn no_presentation(facts: &Facts) -> Option<String> {

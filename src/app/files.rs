@@ -262,10 +262,14 @@ impl Files {
     pub fn open(&self, context: &Context, path: PathBuf) {
         let opened = path.clone();
         let work = move || {
-            saved::open(&path).map_err(|error| NotOpened {
-                is_picture: matches!(error, OpenError::Picture(_)) && is_named_picture(&path),
-                reason: error.to_string(),
-                path,
+            saved::open(&path).map_err(|error| {
+                let is_picture = matches!(error, OpenError::Picture(_)) && path.exists();
+                let reason = if is_picture && !is_named_picture(&path) {
+                    format!("{} is no picture, film or scene (PNG, PPM, EXR, TOML)", path.display())
+                } else {
+                    error.to_string()
+                };
+                NotOpened { is_picture: is_picture && is_named_picture(&path), reason, path }
             })
         };
         let substitute = move |reason: String| {

@@ -121,10 +121,7 @@ impl Inspector {
         // The header and four rows, so that what is above stays where it is.
         ui.set_min_height(24.0 + 4.0 * ROW);
         let Some(pixel) = &self.pixel else {
-            ui.add_sized(
-                [ui.available_width(), 24.0],
-                egui::Label::new(RichText::new("Pixel").strong()).halign(egui::Align::LEFT),
-            );
+            ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
             return;
         };

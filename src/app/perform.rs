@@ -92,7 +92,7 @@ impl Window {
             document.stop = stop;
         }
         let before = self.document();
-        if before.is_changed() && !before.is_from_file {
+        if before.is_edited() && !before.is_from_file {
             let place = before.stage().map_or_else(|| before.title(), |stage| stage.section.to_owned());
             let words = format!("Your changes to {place} are kept in Undo");
             self.shell.toasts.good_with(words, &[Command::Undo]);
@@ -169,6 +169,7 @@ impl Window {
 
     pub(super) fn home(&mut self) {
         self.model.document.camera = self.document().origin.recipe.camera;
+        self.shell.toasts.withdraw(Command::Home);
     }
 
     /// Lets the focus follow the point looked at, or keeps it where it is now.
@@ -398,7 +399,6 @@ impl Window {
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
                 self.model.view.look(None);
-                self.display.viewport.placement.fit();
                 self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }

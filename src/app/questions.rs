@@ -26,6 +26,11 @@ impl Window {
         &mut self.model.remembered
     }
 
+    /// Writes the companion to this folder.
+    pub fn write_companion_to(&mut self, folder: &std::path::Path) {
+        self.files.companion = Some(folder.to_owned());
+    }
+
     /// The messages on the screen, oldest first.
     pub fn messages(&self) -> Vec<String> {
         self.shell.toasts.texts().map(str::to_owned).collect()

@@ -37,7 +37,7 @@ impl Window {
             match outcome {
                 Ok(opened) => self.show_opened(opened),
                 // A picture of another program is the user's own, to be checked.
-                Err(NotOpened { path, is_picture: true, .. }) if path.exists() => {
+                Err(NotOpened { path, is_picture: true, .. }) => {
                     self.tools.check.begin(context, &path, None);
                 }
                 Err(NotOpened { reason, .. }) => self.shell.toasts.bad(format!("Not opened: {reason}")),

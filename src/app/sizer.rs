@@ -58,7 +58,7 @@ impl Sizer {
         self.is_asked = true;
     }
 
-    /// The size that fits, if the picture was kept at another one.
+    /// The size at which the picture could be rendered anew, if it is only scaled.
     pub fn offer(&self) -> Option<[u32; 2]> {
         self.offer
     }
@@ -164,16 +164,16 @@ mod tests {
             assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{size:?} has fitted");
             assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
             assert_eq!(sizer.changes.len(), usize::from(expected == [320, 180]));
-            assert_eq!(sizer.offer(), None);
+            assert_eq!(sizer.offer, None);
         }
         let mut sizer = settled([320, 180]);
         sizer.offer = Some([1, 1]);
         let old = Present { seconds: 99.0, ..YOUNG };
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90]);
-        assert_eq!((sizer.offer(), sizer.changes.len()), (Some([320, 180]), 0));
+        assert_eq!((sizer.offer, sizer.changes.len()), (Some([320, 180]), 0));
         sizer.ask();
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
-        assert_eq!((sizer.offer(), sizer.changes.len()), (None, 0));
+        assert_eq!((sizer.offer, sizer.changes.len()), (None, 0));
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
     }
 

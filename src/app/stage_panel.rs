@@ -18,7 +18,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     }
     compare_ui(ui, facts, commands);
     // At the end, so that it moves nothing.
-    if document.is_changed() {
+    if document.has_changed_scene() || document.camera != document.origin.recipe.camera {
         ui.add_space(8.0);
         let what = if document.stage().is_some() { "stage" } else { "picture" };
         hint(ui, &format!("You changed this {what}."));

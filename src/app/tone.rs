@@ -108,7 +108,6 @@ fn brightness_ui(ui: &mut Ui, tone: &mut Tone, reason: Option<&str>) {
     let help = "Show one channel alone, as grey (Shift+R, G, B)";
     row(ui, About::new("Channels", help).disabled_if(reason), |ui| {
         let [red, green, blue] = Channel::ALL.map(Some);
-        // The row begins at the right.
         let options = [(None, "RGB"), (red, "R"), (green, "G"), (blue, "B")]
             .map(|(channel, name)| (channel, About::new(name, help).disabled_if(reason)));
         tone.channel = switch(ui, 0.0, tone.channel, &options).unwrap_or(tone.channel);

@@ -147,7 +147,12 @@ pub fn switch<T: PartialEq + Copy>(
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
         let mut clicked = None;
-        for (index, (value, about)) in options.iter().enumerate() {
+        let mut order: Vec<_> = options.iter().enumerate().collect();
+        // At the right of a row, what is drawn first is the last one.
+        if ui.layout().prefer_right_to_left() {
+            order.reverse();
+        }
+        for (index, (value, about)) in order {
             let (left, right) = (u8::from(index == 0) * 4, u8::from(index + 1 == options.len()) * 4);
             let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
             let is_on = *value == chosen;
@@ -320,7 +325,7 @@ impl<'a> Number<'a> {
                 typed.union(tip(ui, slid, self.about.help, self.about.disabled_reason))
             })
             .inner;
-        ui.add_space(4.0 - ui.spacing().item_spacing.y);
+        ui.add_space(4.0);
         response
     }
 
@@ -405,7 +410,9 @@ fn explain_refusal(ui: &Ui, response: &Response, is_typing: bool) {
     let bad = theme::colours(ui).bad;
     ui.painter().rect_stroke(response.rect, 4, Stroke::new(1.0, bad), StrokeKind::Inside);
     show_tip(ui, response, RichText::new(reason).color(bad));
-    ui.ctx().request_repaint_after_secs(left.max(0.0) as f32);
+    if left > 0.0 {
+        ui.ctx().request_repaint_after_secs(left as f32);
+    }
 }
 
 /// Three coordinates under their name, each within `limits`. `check` says why a vector can't be taken, if so.

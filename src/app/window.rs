@@ -218,8 +218,10 @@ impl Window {
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         self.ask_about_size();
-        if !self.document().is_from_file {
-            self.model.own_stop = self.document().own_stop();
+        let document = &self.model.document;
+        // A picture without noise ends at its own number of samples, whatever the user prefers.
+        if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
+            self.model.own_stop = document.own_stop();
         }
         let room = self.display.viewport.room_pixels();
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());

@@ -146,21 +146,23 @@ pub fn hold(harness: &mut Harness<'_, Window>, pos: Pos2, pressed: bool) {
     harness.step();
 }
 
-/// Gives a command that asks for a file, and names the file in the path box.
+/// Gives a command that asks for a file, and types its path.
 pub fn name_file(harness: &mut Harness<'_, Window>, command: Command, path: &Path) {
     send(harness, command);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
-    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    let is_saving = matches!(command, Command::Save | Command::SaveAs(_));
+    let field = if is_saving { "Name" } else { "File name" };
+    control(harness, field).type_text(path.to_str().unwrap());
     harness.run_steps(2);
     harness.key_press(Key::Enter);
 }
 
-/// Saves through the path box and waits for the file.
+/// Saves with the dialog and waits for the file. The ending of its name chooses what is saved.
 pub fn save(harness: &mut Harness<'_, Window>, command: Command, path: &Path) {
     name_file(harness, command, path);
-    let saved = format!("Saved {}", path.display());
+    let saved = format!("Saved {}", path.file_name().unwrap().display());
     until(harness, &saved, |window| window.messages().contains(&saved));
 }
 

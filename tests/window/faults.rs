@@ -16,7 +16,7 @@ fn film_of(flags: &str, message: Option<&str>) -> Film {
         until(&mut harness, message, |window| window.messages().iter().any(|said| said.contains(message)));
     }
     until(&mut harness, "the end", |window| has_samples(40)(window) && window.status().phase.is_over());
-    save(&mut harness, Command::Save(OutputFormat::Exr), &path);
+    save(&mut harness, Command::SaveAs(OutputFormat::Exr), &path);
     checkpoint::load(&path).unwrap().film
 }
 

@@ -1,15 +1,32 @@
-//! Saving, opening, dropping and copying.
+//! Saving, opening, dropping, and the companion.
 
-use crate::common::{SMALL, copied_command, has_samples, open, save, send, until};
+use crate::common::{SMALL, control, has_samples, name_file, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use weekender::app::Command;
+use weekender::app::{Command, Window};
 use weekender::job::output::{OutputFormat, read_description};
 use weekender::job::recipe::file;
-use weekender::progressive::{Plan, Progressive, RenderRequest};
+use weekender::progressive::{Plan, Progressive, RenderRequest, Stop};
 use weekender::stages::Stage;
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn says(words: &str) -> impl Fn(&Window) -> bool {
+    move |window| window.messages().iter().any(|message| message.contains(words))
+}
 
 /// The pixels that the recipe in a file gives with the number of samples that the file states.
 fn rendered_again(path: &Path) -> Vec<u8> {
@@ -25,25 +42,29 @@ fn rendered_again(path: &Path) -> Vec<u8> {
 }
 
 #[test]
-fn what_is_saved_is_the_film_and_can_be_opened_again() {
+fn what_is_saved_can_be_opened_again_and_other_stages_stay_as_the_user_has_them() {
     let directory = tempfile::tempdir().unwrap();
     let mut harness = open("--stage defocus --size 48x27 --samples 40");
     harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
     harness.run_steps(2);
     until(&mut harness, "the end", has_samples(40));
-    let shown = harness.state().document().clone();
+    let shown = harness.state().shown_document().clone();
     for format in OutputFormat::ALL {
         let path = directory.path().join(format!("saved{}", format.ending()));
-        save(&mut harness, Command::Save(format), &path);
+        save(&mut harness, Command::SaveAs(format), &path);
         if format != OutputFormat::Exr {
             let pixels = image::open(&path).unwrap().to_rgb8().into_raw();
             assert!(pixels == rendered_again(&path), "{format:?} differs from a render of its recipe");
         }
-        send(&mut harness, Command::Stage(&Stage::ALL[0]));
+        // The user's own stop is taken over by the next stages, that of a file is not.
+        send(&mut harness, Command::Stage(Stage::find("metal").unwrap()));
+        let own = Stop { noise: Some(0.05), ..Stop::default() };
+        harness.state_mut().document_mut().stop = own;
+        harness.run_steps(2);
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
-        let opened = format!("Opened {}", path.display());
-        until(&mut harness, &opened, |window| window.messages().contains(&opened));
-        let document = harness.state().document();
+        let opened = format!("Opened saved{}", format.ending());
+        until(&mut harness, &opened, says(&opened));
+        let document = harness.state().shown_document();
         assert_eq!(document.stage(), shown.stage());
         assert_eq!((document.camera, document.settings), (shown.camera, shown.settings));
         until(&mut harness, "forty samples", |window| {
@@ -54,29 +75,24 @@ fn what_is_saved_is_the_film_and_can_be_opened_again() {
         let status = harness.state().status();
         let traced: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
         assert_eq!(status.samples_per_pixel - traced, held, "{format:?}");
-    }
-}
-
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
+        send(&mut harness, Command::PreviousStage);
+        let document = harness.state().shown_document();
+        assert_eq!(document.stop, own, "{format:?}");
+        assert!(!document.has_own_size, "{format:?}");
+        send(&mut harness, Command::Stage(Stage::find("defocus").unwrap()));
+        harness.state_mut().document_mut().clone_from(&shown);
+        until(&mut harness, "the end", has_samples(40));
     }
 }
 
 #[test]
-fn failures_are_told_in_words() {
+fn failures_are_told_and_what_is_shown_stays() {
     let directory = tempfile::tempdir().unwrap();
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
     for (name, content, told) in [
-        ("missing.png", None, "cannot read"),
+        ("missing.png", None, "Not opened: "),
+        ("notes.txt", Some("nothing of the kind"), "notes.txt is no picture"),
         ("broken.png", Some("nothing of the kind"), "Not checked: "),
         ("broken.toml", Some("[camera"), "broken.toml"),
         ("broken.exr", Some("nothing"), "broken.exr"),
@@ -86,26 +102,15 @@ fn failures_are_told_in_words() {
             std::fs::write(&path, content).unwrap();
         }
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
-        until(&mut harness, told, |window| window.messages().iter().any(|text| text.contains(told)));
+        until(&mut harness, told, says(told));
     }
-    let document = harness.state().document();
-    assert_eq!(document.stage().unwrap().id, "glass-schlick", "what was shown stays");
-
-    send(&mut harness, Command::Save(OutputFormat::Png));
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.get_by_label("File name").type_text(directory.path().join("no/such/place.png").to_str().unwrap());
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
+    assert_eq!(harness.state().shown_document().stage().unwrap().id, "glass-schlick");
+    name_file(&mut harness, Command::Save, &directory.path().join("no/such/place.png"));
     harness.run_steps(3);
     assert!(harness.state().has_dialog(), "the name can be corrected");
-    assert!(harness.query_by_label_contains("such does not exist: create it").is_some());
     assert_eq!(harness.state_mut().remembered_mut().directory, None, "the next dialog does not start there");
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
 }
 
-/// A file that would be lost is a warning, and the button says so.
 #[test]
 fn a_file_is_replaced_only_with_a_warning() {
     let directory = tempfile::tempdir().unwrap();
@@ -113,59 +118,74 @@ fn a_file_is_replaced_only_with_a_warning() {
     std::fs::write(&path, "mine").unwrap();
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
-    send(&mut harness, Command::Save(OutputFormat::Png));
-    harness.run_steps(2);
+    send(&mut harness, Command::Save);
     assert!(harness.query_by_label("Replace").is_none());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
-    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    control(&harness, "Name").type_text(path.to_str().unwrap());
     harness.run_steps(3);
-    assert!(harness.query_by_label_contains("exists and will be replaced").is_some());
     harness.get_by_label("Replace").click();
-    let saved = format!("Saved {}", path.display());
-    until(&mut harness, &saved, |window| window.messages().contains(&saved));
+    until(&mut harness, "the file", says("Saved mine.png"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
     assert_eq!(harness.state_mut().remembered_mut().directory.as_deref(), Some(directory.path()));
 }
 
-/// A picture that says nothing about how it was made is checked as a reader's own.
 #[test]
-fn a_picture_of_another_program_is_checked() {
+fn a_picture_of_another_size_is_rendered_beside_the_one_that_is_shown() {
     let directory = tempfile::tempdir().unwrap();
-    let mut recipe = Stage::find("normals").unwrap().recipe();
-    (recipe.settings.width, recipe.settings.height) = (160, 90);
-    let mut progressive = Progressive::spawn().unwrap();
-    let backend = weekender::backends::BackendChoice::Cpu(weekender::render_cpu::CpuOptions::default());
-    progressive.start(RenderRequest::new(recipe.job().unwrap(), backend, Plan::samples(1)));
-    progressive.wait_until_over();
-    let mut rgb8 = progressive.finish().unwrap().to_rgb8(recipe.rules.transfer);
-    for pixel in rgb8.chunks_exact_mut(3) {
-        pixel.swap(0, 2);
-    }
-    let mut picture = b"P6\n160 90\n255\n".to_vec();
-    picture.extend(rgb8);
-    let path = directory.path().join("mine.ppm");
-    std::fs::write(&path, picture).unwrap();
-    let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
-    until(&mut harness, "the finding", |window| window.finding().is_some());
-    let words = harness.state().finding().unwrap().to_owned();
-    assert!(words.contains("normals, section 6.1") && words.contains("a mistake: "), "{words}");
-    harness.run_steps(3);
-    assert!(harness.query_by_label_contains("difference").is_some());
-    harness.get_by_label("Close window").click();
-    harness.run_steps(3);
-    assert!(harness.state().finding().is_none());
+    let path = directory.path().join("large.png");
+    let mut harness = open("--stage defocus --size 48x27 --samples 6");
+    until(&mut harness, "the end", has_samples(6));
+    let run = harness.state().status().run;
+    send(&mut harness, Command::Save);
+    control(&harness, "Twice as large").click();
+    harness.step();
+    control(&harness, "Name").focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    control(&harness, "Name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    control(&harness, "Save").click();
+    until(&mut harness, "the file", |_| path.exists());
+    let read = image::open(&path).unwrap();
+    assert_eq!([read.width(), read.height()], [96, 54]);
+    assert_eq!(read_description(&path).unwrap().get("Samples"), Some("6"));
+    assert_eq!(harness.state().status().run, run, "the picture on the screen goes on");
 }
 
 #[test]
-fn the_command_is_copied() {
+fn changes_of_a_stage_that_is_left_come_back_by_undo() {
+    let mut harness = open("--stage metal --size 32x18");
+    harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
+    harness.run_steps(3);
+    harness.key_press(Key::PageDown);
+    harness.run_steps(3);
+    assert!(says("kept in Undo")(harness.state()), "{:?}", harness.state().messages());
+    assert_ne!(harness.state().shown_document().stage().unwrap().id, "metal");
+    send(&mut harness, Command::Undo);
+    let document = harness.state().shown_document();
+    assert_eq!((document.stage().unwrap().id, document.camera.vfov_degrees), ("metal", 31.0));
+}
+
+#[test]
+fn the_companion_is_written_and_opened_at_the_stage() {
+    let directory = tempfile::tempdir().unwrap();
     let mut harness = open(SMALL);
-    until(&mut harness, "a picture", has_samples(1));
-    let copied = copied_command(&mut harness);
-    assert!(
-        copied.starts_with("weekender --batch --stage=glass-schlick --size=32x18 --samples="),
-        "{copied}"
-    );
+    harness.state_mut().write_companion_to(directory.path());
+    send(&mut harness, Command::Companion);
+    let mut opened = None;
+    let begin = std::time::Instant::now();
+    while opened.is_none() {
+        assert!(begin.elapsed().as_secs() < 180, "{:?}", harness.state().messages());
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.step();
+        let commands = &harness.output().platform_output.commands;
+        opened = commands.iter().find_map(|command| match command {
+            egui::OutputCommand::OpenUrl(page) => Some(page.url.clone()),
+            _ => None,
+        });
+    }
+    assert!(opened.unwrap().contains("index.html#figure-"));
+    assert!(directory.path().join("index.html").exists());
 }

@@ -3,7 +3,6 @@
 use crate::common::{drag_from, has_samples, open, send, until};
 use eframe::egui::{self, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use weekender::app::{Command, Window};
 use weekender::scene::{Material, Sphere};
@@ -18,11 +17,11 @@ pub fn opened() -> Harness<'static, Window> {
 }
 
 pub fn spheres(harness: &Harness<'_, Window>) -> Vec<Sphere> {
-    harness.state().document().scene().spheres.clone()
+    harness.state().shown_document().scene().spheres.clone()
 }
 
 pub fn material(harness: &Harness<'_, Window>, sphere: usize) -> Material {
-    let scene = harness.state().document().scene();
+    let scene = harness.state().shown_document().scene();
     *scene.material_of(&scene.spheres[sphere])
 }
 
@@ -45,7 +44,7 @@ pub fn metal_sphere(harness: &Harness<'_, Window>) -> usize {
 
 /// Where a point of the scene is on the screen.
 pub fn on_screen(harness: &Harness<'_, Window>, point: DVec3) -> Pos2 {
-    let document = harness.state().document();
+    let document = harness.state().shown_document();
     let [x, y] = document.camera.place_of(point, document.aspect()).unwrap();
     harness.state().picture_rect().lerp_inside(egui::vec2(x as f32, y as f32))
 }
@@ -68,42 +67,35 @@ pub fn select(harness: &mut Harness<'_, Window>, sphere: usize) {
     assert_eq!(harness.state().selected(), Some(sphere));
 }
 
-pub fn has_label(harness: &Harness<'_, Window>, text: &str) -> bool {
-    harness.query_all_by_label_contains(text).next().is_some()
-}
-
 #[test]
 fn a_click_selects_and_a_click_on_the_sky_deselects() {
     let mut harness = opened();
-    let before = harness.state().document().clone();
+    let before = harness.state().shown_document().clone();
     let (middle, metal) = (middle_sphere(&harness), metal_sphere(&harness));
-    assert!(has_label(&harness, "Click a sphere"));
     select(&mut harness, metal);
-    assert!(has_label(&harness, &format!("sphere {metal}, ")));
     select(&mut harness, middle);
-    assert!(has_label(&harness, &format!("sphere {middle}, ")));
     let sky = harness.state().picture_rect().lerp_inside(egui::vec2(0.5, 0.03));
     click(&mut harness, sky, Modifiers::NONE);
     assert_eq!(harness.state().selected(), None);
-    assert!(*harness.state().document() == before, "selecting changes nothing");
+    assert!(*harness.state().shown_document() == before, "selecting changes nothing");
 }
 
 #[test]
 fn a_drag_moves_the_selected_sphere_and_nothing_else() {
     let mut harness = opened();
     let metal = metal_sphere(&harness);
-    let (before, camera) = (spheres(&harness), harness.state().document().camera);
+    let (before, camera) = (spheres(&harness), harness.state().shown_document().camera);
     let at = on_screen(&harness, before[metal].center);
     // A sphere that is not selected is not grasped: the drag turns the camera.
     drag_from(&mut harness, at, egui::vec2(20.0, 0.0));
     assert_eq!(spheres(&harness), before);
-    assert_ne!(harness.state().document().camera, camera);
+    assert_ne!(harness.state().shown_document().camera, camera);
     send(&mut harness, Command::Home);
 
     select(&mut harness, metal);
     let by = egui::vec2(-60.0, -40.0);
     drag_from(&mut harness, at, by);
-    let (after, document) = (spheres(&harness), harness.state().document().clone());
+    let (after, document) = (spheres(&harness), harness.state().shown_document().clone());
     assert_eq!(document.camera, camera, "the camera stays");
     assert!(on_screen(&harness, after[metal].center).distance(at + by) < 1.5, "it follows the pointer");
     let moved = after[metal].center - before[metal].center;
@@ -120,7 +112,7 @@ fn a_drag_moves_the_selected_sphere_and_nothing_else() {
     // The whole drag is one step.
     send(&mut harness, Command::Undo);
     assert_eq!(spheres(&harness), before);
-    assert!(!harness.state().document().has_changed_scene());
+    assert!(!harness.state().shown_document().has_changed_scene());
     send(&mut harness, Command::Redo);
     assert_eq!(spheres(&harness), after);
     assert_eq!(harness.state().selected(), Some(metal));
@@ -137,7 +129,7 @@ fn the_handle_changes_the_radius() {
     let distance = before.center.length();
     let outline = |radius: f64| {
         let angle = (radius / distance).asin();
-        let camera = harness.state().document().camera;
+        let camera = harness.state().shown_document().camera;
         let half = (camera.vfov_degrees.to_radians() / 2.0).tan();
         (angle.tan() / half) as f32 * harness.state().picture_rect().height() / 2.0
     };

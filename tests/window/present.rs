@@ -1,6 +1,6 @@
 //! A presentation.
 
-use crate::common::{SMALL, has_samples, open, open_sized, send, until};
+use crate::common::{has_samples, open_sized, send, until};
 use eframe::egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -20,32 +20,34 @@ fn present(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
 }
 
 #[test]
-fn f5_begins_and_escape_ends() {
-    let mut harness = open(SMALL);
+fn a_presentation_fits_renders_at_its_size_and_escape_ends_it_at_once() {
+    let mut harness = open_sized("--stage glass-schlick --device cpu", [1280.0, 720.0]);
     until(&mut harness, "a picture", has_samples(1));
-    assert!(has(&harness, "Choose a stage"));
+    let small = harness.state().shown_document().size();
+    send(&mut harness, Command::ActualSize);
+    send(&mut harness, Command::Wipe);
     for ends in [Key::Escape, Key::F5] {
         harness.key_press(Key::F5);
         harness.run_steps(3);
-        assert!(harness.state().is_presenting() && harness.state().is_full_screen());
-        assert!(!has(&harness, "Choose a stage") && !has(&harness, "Field of view"), "no menus and panels");
+        assert!(harness.state().is_presenting());
+        assert!(harness.query_all_by_label("Field of view").next().is_none(), "no panels");
+        until(&mut harness, "its own size", |window| {
+            let (rect, size) = (window.picture_rect(), window.shown_document().size());
+            (rect.width() - size[0] as f32).abs() < 2.0 && size[1] > small[1] && has_samples(1)(window)
+        });
+        let rect = harness.state().picture_rect();
+        assert!((rect.center().x - 640.0).abs() < 1.0 && rect.height() > 300.0, "{rect:?}");
         harness.key_press(ends);
         harness.run_steps(3);
-        assert!(!harness.state().is_presenting() && !harness.state().is_full_screen(), "{ends:?}");
-        assert!(has(&harness, "Choose a stage"));
+        assert!(!harness.state().is_presenting(), "{ends:?}");
+        assert!(harness.state().is_comparing(), "{ends:?} leaves the wipe");
     }
-    // A window that was in full-screen mode before stays in it.
-    send(&mut harness, Command::FullScreen);
-    send(&mut harness, Command::Present);
-    harness.key_press(Key::Escape);
-    harness.run_steps(3);
-    assert!(!harness.state().is_presenting() && harness.state().is_full_screen());
 }
 
 #[test]
 fn one_key_goes_to_the_next_stage() {
     let mut harness = present("--stage metal --size 32x18", [1280.0, 720.0]);
-    let id = |harness: &Harness<'_, Window>| harness.state().document().stage().unwrap().id;
+    let id = |harness: &Harness<'_, Window>| harness.state().shown_document().stage().unwrap().id;
     for (key, expected) in [
         (Key::PageDown, "metal-fuzzy"),
         (Key::ArrowRight, "glass-refract"),
@@ -57,7 +59,7 @@ fn one_key_goes_to_the_next_stage() {
         harness.key_press(key);
         harness.run_steps(3);
         assert_eq!(id(&harness), expected, "{key:?}");
-        assert!(has(&harness, harness.state().document().stage().unwrap().title));
+        assert!(has(&harness, harness.state().shown_document().stage().unwrap().title));
     }
     assert!(harness.state().messages().is_empty(), "{:?}", harness.state().messages());
 }

@@ -1,56 +1,149 @@
-//! What a window does with what others have left: several offers, and what it closes over.
+//! What the next window takes over: settings, and the film that the last one saved by itself.
 
-use crate::common::{has_samples, opened, until};
-use crate::session::{ENDLESS, SOON, files, kept_in, options, until_film, until_offered, window};
+use crate::common::{has_samples, opened, send, until};
+use eframe::{App, Storage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::fs;
+use std::collections::HashMap;
 use std::path::Path;
 use std::time::Duration;
-use weekender::app::Window;
+use weekender::app::{Command, Device, Dock, Theme, Window};
+use weekender::cli::{self, Request, WindowOptions};
+use weekender::film::checkpoint;
+use weekender::progressive::Stop;
 
-const LONG: Duration = Duration::from_secs(3600);
+const PICTURE: &str = "--stage glass-schlick --size 32x18 --device cpu --vfov 31";
 
-/// Leaves a film as a window does that is killed.
-fn leave_film(state: &Path, arguments: &str) {
-    let mut harness = window(state, arguments);
-    let before = files(state, "exr").len();
-    if before == 0 {
-        until_film(&mut harness, state);
-    } else {
-        until(&mut harness, "another film", |_| files(state, "exr").len() == before + 1);
-    }
+fn options(arguments: &str, state: Option<&Path>, every: Duration) -> WindowOptions {
+    let words = std::iter::once("weekender").chain(arguments.split_whitespace());
+    let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("no window") };
+    WindowOptions { state_directory: state.map(Path::to_owned), autosave_every: every, ..*options }
 }
 
-fn has(harness: &Harness<'_, Window>, label: &str) -> bool {
-    harness.query_all_by_label_contains(label).next().is_some()
+fn window(arguments: &str, state: &Path, every: u64) -> Harness<'static, Window> {
+    opened(Window::new(options(arguments, Some(state), Duration::from_secs(every))).unwrap())
+}
+
+/// Samples per pixel that the film held when the render began.
+fn held(window: &Window) -> u64 {
+    let added: u64 = window.status().contributions.iter().map(|part| part.samples_per_pixel).sum();
+    window.status().samples_per_pixel.saturating_sub(added)
+}
+
+fn has_offer(harness: &Harness<'_, Window>) -> bool {
+    harness.query_by_label("Go on with it").is_some()
 }
 
 #[test]
-fn a_changed_picture_is_offered_once_with_its_film() {
+fn the_last_picture_comes_back_with_its_samples() {
     let state = tempfile::tempdir().unwrap();
-    leave_film(state.path(), &format!("{ENDLESS} --vfov 31"));
-    let mut next = kept_in(state.path(), "--stage sky --size 32x18", LONG);
-    until_offered(&mut next);
-    assert!(!has(&next, "changed camera"));
-    next.get_by_label_contains("Open 11.4").click();
-    until(&mut next, "the picture", |window| window.document().camera.vfov_degrees == 31.0);
-    until(&mut next, "its samples", has_samples(1));
-    next.run_steps(3);
-    assert!(!next.state().has_offer(), "its note is not a second offer");
+    let mut first = window(&format!("{PICTURE} --samples 40"), state.path(), 3600);
+    until(&mut first, "the end", has_samples(40));
+    // Another window at the same time saves nothing.
+    let mut second = window("--stage metal --size 32x18 --samples 4", state.path(), 0);
+    until(&mut second, "the end", has_samples(4));
+    second.run_steps(3);
+    second.state_mut().on_exit(None);
+    first.state_mut().on_exit(None);
+    drop((first, second));
+
+    let mut next = window("--device cpu", state.path(), 3600);
+    until(&mut next, "its samples", |window| held(window) == 40);
+    let document = next.state().shown_document();
+    assert_eq!((document.stage().unwrap().id, document.camera.vfov_degrees), ("glass-schlick", 31.0));
+    assert_eq!((document.stop, document.size()), (Stop::at_samples(40), [32, 18]));
+    assert!(!has_offer(&next));
+    // The stop was this picture's alone.
+    send(&mut next, Command::NextStage);
+    assert_eq!(next.state().shown_document().stop.samples, None);
+    drop(next);
+    let fresh = window("--device cpu --fresh", state.path(), 3600);
+    assert_ne!(fresh.state().shown_document().stage().unwrap().id, "glass-schlick");
+}
+
+#[test]
+fn the_film_of_a_window_that_ended_early_is_offered() {
+    let state = tempfile::tempdir().unwrap();
+    let film = state.path().join("autosave.exr");
+    let mut first = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
+    until(&mut first, "a film", |_| film.exists());
+    // Not in order.
+    drop(first);
+
+    let mut next = window("--device cpu", state.path(), 0);
+    let samples = checkpoint::load(&state.path().join("recovered.exr")).unwrap().film.sample_count();
+    assert_ne!(next.state().shown_document().camera.vfov_degrees, 31.0, "it was opened unasked");
+    until(&mut next, "a film of its own", |_| film.exists());
+    next.get_by_label("Go on with it").click();
+    until(&mut next, "its samples", |window| held(window) == samples);
+    assert_eq!(next.state().shown_document().camera.vfov_degrees, 31.0);
+    next.state_mut().on_exit(None);
+    drop(next);
+    assert!(!has_offer(&window("--device cpu", state.path(), 3600)), "all windows have ended in order");
 }
 
 #[test]
 fn what_cannot_be_written_is_told_and_rendering_goes_on() {
-    for (ending, told) in [("exr", "Not autosaved: "), ("json", "What this window shows is not kept: ")] {
-        let state = tempfile::tempdir().unwrap();
-        let window = Window::new(options(ENDLESS, state.path(), SOON)).unwrap();
-        let [lock] = files(state.path(), "lock").try_into().unwrap();
-        // Nothing can be written where a folder is.
-        fs::create_dir_all(lock.with_extension(ending).join("full")).unwrap();
-        let mut harness = opened(window);
-        until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
-        let samples = harness.state().status().samples_per_pixel;
-        until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
+    let state = tempfile::tempdir().unwrap();
+    // Nothing can be written where a folder is.
+    std::fs::create_dir_all(state.path().join("autosave.exr/full")).unwrap();
+    let mut harness = window(&format!("{PICTURE} --samples 4000000000"), state.path(), 0);
+    let told = "Not saved by itself: ";
+    until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
+    let samples = harness.state().status().samples_per_pixel;
+    until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
+}
+
+#[derive(Default)]
+struct Stored(HashMap<String, String>);
+
+impl Storage for Stored {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
+
+fn remembering(arguments: &str, stored: &Stored) -> Harness<'static, Window> {
+    opened(Window::with(options(arguments, None, Duration::MAX), Some(stored)).unwrap())
+}
+
+#[test]
+fn settings_are_remembered_and_those_of_another_version_ignored() {
+    let mut stored = Stored::default();
+    let mut harness = remembering("--stage metal --size 16x9", &stored);
+    for command in [
+        Command::Theme(Theme::Light),
+        Command::Dock(Dock::Error),
+        Command::Info,
+        Command::Device(Device::Reference),
+        Command::AddBookmark,
+    ] {
+        send(&mut harness, command);
+    }
+    harness.state_mut().remembered_mut().threads = Some(1);
+    let kept = harness.state_mut().remembered_mut().clone();
+    harness.state_mut().save(&mut stored);
+    assert_eq!((kept.theme, kept.dock, kept.has_info), (Theme::Light, Some(Dock::Error), false));
+    assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
+    let mut again = remembering("--stage metal", &stored);
+    assert_eq!(*again.state_mut().remembered_mut(), kept);
+    let mut told = remembering("--stage metal --device cpu", &stored);
+    assert_eq!(told.state_mut().remembered_mut().device, Device::Cpu, "flags override settings");
+
+    for (from, to) in [("version:1", "version:2"), ("version:1", "damaged")] {
+        let changed = stored.0.iter().map(|(key, value)| (key.clone(), value.replace(from, to)));
+        let mut other = remembering("--stage metal", &Stored(changed.collect()));
+        assert_eq!(other.state_mut().remembered_mut().theme, Theme::System, "{to}");
+        assert!(other.state().messages().is_empty());
     }
 }

@@ -13,7 +13,7 @@ const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
 fn save_film(path: &Path, more: &str) {
     let mut harness = open(&format!("{PICTURE} {more} --samples 40"));
     until(&mut harness, "the end", has_samples(40));
-    save(&mut harness, Command::Save(OutputFormat::Exr), path);
+    save(&mut harness, Command::SaveAs(OutputFormat::Exr), path);
 }
 
 #[test]
@@ -23,7 +23,6 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
     save_film(&path, "");
     let resume = format!("--resume {} --device cpu", path.display());
     for (flags, stop) in [
-        ("--samples 90", Stop::at_samples(90)),
         ("--samples 90 --time-limit 1000", Stop { seconds: Some(1000.0), ..Stop::at_samples(90) }),
         ("--samples 90 --stage defocus --size 48x27 --vfov 31", Stop::at_samples(90)),
     ] {
@@ -36,20 +35,20 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
         until(&mut harness, "the film's samples", |window| {
             window.status().contributions.iter().map(|part| part.samples_per_pixel).sum::<u64>() == 50
         });
-        let document = harness.state().document();
+        let document = harness.state().shown_document();
         assert_eq!(document.stop, stop, "{flags}");
         assert_eq!(document.stage().map(|stage| stage.id), Some("defocus"));
         assert_eq!((document.camera.vfov_degrees, document.settings.width), (31.0, 48));
         // Its samples are those of an uninterrupted render.
         let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| directory.path().join(name));
-        save(&mut harness, Command::Save(OutputFormat::Exr), &resumed);
+        save(&mut harness, Command::SaveAs(OutputFormat::Exr), &resumed);
         let mut harness = open(&format!("{PICTURE} --samples 90"));
         until(&mut harness, "the end", has_samples(90));
-        save(&mut harness, Command::Save(OutputFormat::Exr), &whole);
+        save(&mut harness, Command::SaveAs(OutputFormat::Exr), &whole);
         let [resumed, whole] = [resumed, whole].map(|path| checkpoint::load(&path).unwrap().film);
         assert!(resumed == whole, "{flags}");
     }
     // Without a stop condition of its own, it continues as the picture usually would.
     let harness = open(&resume);
-    assert_eq!(harness.state().document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
+    assert_eq!(harness.state().shown_document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
 }

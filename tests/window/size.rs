@@ -27,7 +27,7 @@ fn following(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
 }
 
 fn size(harness: &Harness<'_, Window>) -> [u32; 2] {
-    harness.state().document().size()
+    harness.state().shown_document().size()
 }
 
 /// Draws frames for longer than a new size takes to be followed.
@@ -68,9 +68,9 @@ fn what_would_be_lost_is_kept_until_the_user_asks() {
     let film = directory.path().join("reference.exr");
     let mut harness = following(FOLLOWING, [1000.0, 600.0]);
     until(&mut harness, "the end", has_samples(2));
-    save(&mut harness, Command::Save(OutputFormat::Exr), &film);
+    save(&mut harness, Command::SaveAs(OutputFormat::Exr), &film);
     // Another size would have no difference from the reference film.
-    name_file(&mut harness, Command::LoadReference, &film);
+    name_file(&mut harness, Command::Show(Show::Difference), &film);
     until(&mut harness, "the difference", |window| window.show() == Show::Difference);
     let (before, run) = (size(&harness), harness.state().status().run);
     harness.key_press(Key::Tab);
@@ -83,8 +83,22 @@ fn what_would_be_lost_is_kept_until_the_user_asks() {
     offer.click();
     harness.run_steps(3);
     let [width, height] = size(&harness);
-    assert_eq!(label, format!("Render at {width}x{height}"));
+    assert_eq!(label, format!("Render at {width} × {height}"));
     assert!(width > before[0] + 300);
     assert!(harness.query_by_label_contains("Render at ").is_none());
     until(&mut harness, "the new picture", has_samples(2));
+}
+
+#[test]
+fn a_size_that_needs_much_memory_is_asked_about_first() {
+    let mut harness = following(FOLLOWING, [1000.0, 600.0]);
+    until(&mut harness, "the end", has_samples(2));
+    let before = size(&harness);
+    harness.state_mut().document_mut().give_size([30_000, 30_000]);
+    harness.run_steps(3);
+    assert!(harness.state().has_dialog());
+    assert_eq!(size(&harness), before);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert_eq!((size(&harness), harness.state().has_dialog()), (before, false));
 }

@@ -41,11 +41,17 @@ impl What {
         }
     }
 
-    fn ending(self) -> &'static str {
+    fn endings(self) -> &'static [&'static str] {
         match self {
-            What::Picture(format) => &format.ending()[1..],
-            What::Scene => "toml",
+            What::Picture(OutputFormat::Png) => &["png"],
+            What::Picture(OutputFormat::P6) => &["ppm"],
+            What::Picture(OutputFormat::Exr) => &["exr"],
+            What::Scene => &["toml"],
         }
+    }
+
+    fn ending(self) -> &'static str {
+        self.endings()[0]
     }
 }
 
@@ -86,12 +92,7 @@ impl Purpose {
             Purpose::Check => &["png", "ppm"],
             Purpose::ReferenceFilm => &["exr"],
             Purpose::SavePlot => &["csv"],
-            Purpose::Save(what, _) | Purpose::Place(what) => match what {
-                What::Picture(OutputFormat::Png) => &["png"],
-                What::Picture(OutputFormat::P6) => &["ppm"],
-                What::Picture(OutputFormat::Exr) => &["exr"],
-                What::Scene => &["toml"],
-            },
+            Purpose::Save(what, _) | Purpose::Place(what) => what.endings(),
         }
     }
 }
@@ -313,7 +314,11 @@ impl SaveBox {
             field
         });
         let mut output = field.inner;
-        let field = named(output.response.response, "Name");
+        // A typed ending chooses the format.
+        let typed = Path::new(self.name.trim()).extension();
+        let named = |what: &What| typed.is_some_and(|typed| typed.eq_ignore_ascii_case(what.ending()));
+        self.what = What::ALL.into_iter().find(named).unwrap_or(self.what);
+        let field = self::named(output.response.response, "Name");
         if std::mem::take(&mut self.is_new) {
             field.request_focus();
             let all = egui::text::CCursor::new(self.name.chars().count());

@@ -15,13 +15,16 @@ struct Held {
     shown: Shown,
 }
 
+/// The kept picture, the view, and three bytes per pixel.
+type Resolved = (Arc<Kept>, View, Vec<u8>);
+
 /// The pictures of kept films that were shown. They stay, so that a flip between two doesn't flicker.
 #[derive(Default)]
 pub struct KeptPicture {
     held: Vec<Held>,
     is_waiting: bool,
-    /// The kept picture, the view, and three bytes per pixel; none if that failed.
-    answers: Answers<Option<(Arc<Kept>, View, Vec<u8>)>>,
+    /// None if that failed.
+    answers: Answers<Option<Resolved>>,
 }
 
 impl KeptPicture {

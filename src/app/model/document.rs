@@ -94,6 +94,8 @@ impl Document {
     /// What differs from `other`, to name a change.
     pub fn difference(&self, other: &Document) -> &'static str {
         let (mine, theirs) = (&self.camera, &other.camera);
+        let [settings, of_other] =
+            [&self.settings, &other.settings].map(|of| RenderSettings { width: 0, height: 0, ..*of });
         if !Arc::ptr_eq(&self.origin, &other.origin) {
             "another picture"
         } else if !Arc::ptr_eq(&self.checked, &other.checked) {
@@ -110,13 +112,19 @@ impl Document {
             "focus distance"
         } else if mine != theirs {
             "camera"
+        } else if settings != of_other {
+            "settings"
         } else if self.stop != other.stop {
             "stop"
-        } else if self.chosen_settings() != other.chosen_settings() {
-            "settings"
         } else {
             "size"
         }
+    }
+
+    /// Whether scene, camera or settings are not the origin's, apart from size and stop.
+    pub fn is_edited(&self) -> bool {
+        let unchanged = Document::of(Arc::clone(&self.origin));
+        !matches!(self.difference(&unchanged), "size" | "stop")
     }
 
     /// The scene, as edited.

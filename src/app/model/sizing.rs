@@ -19,14 +19,6 @@ pub enum Sizing {
 impl Sizing {
     /// All of them.
     pub const ALL: [Sizing; 2] = [Sizing::Viewport, Sizing::Book];
-
-    /// The name in the panel.
-    pub fn name(self) -> &'static str {
-        match self {
-            Sizing::Viewport => "Viewport",
-            Sizing::Book => "Book",
-        }
-    }
 }
 
 impl Origin {
@@ -104,18 +96,6 @@ impl Document {
         let mut resized = self.clone();
         resized.set_size(other.size());
         resized.has_same_film(other)
-    }
-
-    /// The size in words, and what has decided it.
-    pub fn size_words(&self, sizing: Sizing) -> String {
-        let [width, height] = self.size();
-        let whose = match sizing {
-            _ if self.has_own_size => "",
-            Sizing::Viewport => ", as in the viewport",
-            Sizing::Book if self.stage().is_some() => ", as in the book",
-            Sizing::Book => ", as the scene defines it",
-        };
-        format!("{width}x{height}{whose}")
     }
 }
 

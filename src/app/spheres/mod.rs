@@ -26,8 +26,6 @@ pub struct Selected {
     pub body: Body,
     /// The name of its material.
     pub material: String,
-    /// The number of spheres of the scene.
-    pub count: usize,
 }
 
 impl Selected {
@@ -35,7 +33,7 @@ impl Selected {
         let (sphere, scene) = (model.selected?, model.document.scene());
         let body = Body::of(scene, sphere)?;
         let material = scene.materials[scene.spheres[sphere].material].name.clone();
-        Some(Selected { sphere, body, material, count: scene.spheres.len() })
+        Some(Selected { sphere, body, material })
     }
 }
 
