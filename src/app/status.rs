@@ -118,9 +118,7 @@ pub fn sentence(facts: &Facts) -> String {
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
         _ if facts.model.is_paused => format!("Paused at {samples}{error}"),
-        Phase::Done(_) if facts.document().further(status).is_none() && !is_random(facts) => {
-            "Done: nothing in this picture depends on chance".to_owned()
-        }
+        Phase::Done(_) if !is_random(facts) => "Done: nothing in this picture depends on chance".to_owned(),
         Phase::Done(reason) => {
             let seconds = facts.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
             let taken = facts.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
@@ -239,8 +237,7 @@ fn processors(status: &Status) -> Option<String> {
         let share = if status.contributions.len() > 1 { format!("{share:.0} %: ") } else { String::new() };
         format!("{share}{}", processor(&part.backend))
     });
-    let parts: Vec<String> = parts.collect();
-    if parts.is_empty() { status.backend.as_ref().map(processor) } else { Some(parts.join("\n")) }
+    parts.reduce(|all, part| format!("{all}\n{part}")).or_else(|| status.backend.as_ref().map(processor))
 }
 
 fn processor(BackendInfo { name, device, threads, .. }: &BackendInfo) -> String {

@@ -8,7 +8,7 @@ use crate::app::widgets::hint;
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{self, Key, Label, Modifiers, Response, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Key, Modifiers, Response, RichText, Ui, vec2};
 
 /// What an empty box offers a user who has not used five commands yet.
 const USUAL: [Command; 5] =
@@ -197,12 +197,10 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
     let text = command.map_or_else(String::new, |command| {
         facts.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
     });
-    let height = 2.0 * ui.text_style_height(&TextStyle::Body);
-    let (place, _) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
-    let mut within = ui.new_child(UiBuilder::new().max_rect(place));
-    within.shrink_clip_rect(place);
-    let text = RichText::new(text).color(ui.visuals().weak_text_color());
-    within.add(Label::new(text).wrap());
+    ui.allocate_ui(vec2(ui.available_width(), 40.0), |ui| {
+        ui.set_min_height(40.0);
+        hint(ui, &text);
+    });
 }
 
 #[cfg(test)]
