@@ -39,10 +39,8 @@ pub fn orbit_above_ground(camera: &Camera, pivot: DVec3, right: f64, up: f64, sc
     let heights: Vec<_> =
         ground(scene, camera).map(|sphere| (sphere, clearance(sphere, camera.look_from))).collect();
     let is_above = |moved: &Camera| {
-        let is_above = |(sphere, height): &(_, f64)| {
-            clearance(sphere, moved.look_from) >= height.min(floor) - 1e-6 * floor
-        };
-        heights.iter().all(is_above)
+        let low = |height: f64| height.min(floor) - 1e-6 * floor;
+        heights.iter().all(|(sphere, height)| clearance(sphere, moved.look_from) >= low(*height))
     };
     let turned = |share: f64| orbit(camera, pivot, right, share * up);
     if is_above(&turned(1.0)) {
