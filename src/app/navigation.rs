@@ -39,7 +39,8 @@ pub fn orbit_above_ground(camera: &Camera, pivot: DVec3, right: f64, up: f64, sc
     let heights: Vec<_> =
         ground(scene, camera).map(|sphere| (sphere, clearance(sphere, camera.look_from))).collect();
     let is_above = |moved: &Camera| {
-        heights.iter().all(|(sphere, height)| clearance(sphere, moved.look_from) >= 0.9 * height.min(floor))
+        let low = |height: f64| height.min(floor) - 1e-6 * floor;
+        heights.iter().all(|(sphere, height)| clearance(sphere, moved.look_from) >= low(*height))
     };
     let turned = |share: f64| orbit(camera, pivot, right, share * up);
     if is_above(&turned(1.0)) {
@@ -49,7 +50,9 @@ pub fn orbit_above_ground(camera: &Camera, pivot: DVec3, right: f64, up: f64, sc
         let middle = 0.5 * (low + high);
         if is_above(&turned(middle)) { [middle, high] } else { [low, middle] }
     });
-    Some(turned(low)).filter(is_above).unwrap_or(*camera)
+    // Where the ground curves up, a little higher.
+    let raised = [0.005, 0.02, 0.05].map(|rise| orbit(camera, pivot, right, rise));
+    std::iter::once(turned(low)).chain(raised).find(is_above).unwrap_or(*camera)
 }
 
 /// Moves along the line through `point`, which stays where it is in the picture: to `factor` times its distance. The
@@ -132,10 +135,11 @@ fn kept(old: &Camera, new: Camera) -> Camera {
     if new.validate().is_ok() { new } else { *old }
 }
 
-/// A coordinate to fourteen digits of the largest one, without what rounding adds.
+/// A coordinate to thirteen digits of the largest one, without what rounding adds.
 fn without_dust(n: f64, scale: f64) -> f64 {
-    let factor = 10.0_f64.powi(13 - scale.log10().floor().clamp(-9.0, 300.0) as i32);
-    (n * factor).round() / factor
+    let factor = 10.0_f64.powi(12 - scale.log10().floor().clamp(-9.0, 300.0) as i32);
+    // Without the sign of a zero, too.
+    (n * factor).round() / factor + 0.0
 }
 
 #[cfg(test)]

@@ -97,9 +97,9 @@ mod tests {
         let id = first.id(&context, square);
         let known = |id| context.tex_manager().read().meta(id).map(|meta| (meta.size, meta.options));
         assert_eq!(known(id), Some(([2, 2], square)));
-        let _earlier = context.tex_manager().write().take_delta();
+        context.tex_manager().write().take_delta().clear();
         assert_eq!(first.id(&context, smooth), id);
-        let uploaded = context.tex_manager().write().take_delta();
+        let mut uploaded = context.tex_manager().write().take_delta();
         assert!(
             uploaded
                 .set
@@ -107,8 +107,10 @@ mod tests {
                 .any(|(at, delta)| *at == id && delta.iter().any(|delta| delta.options == smooth)),
             "it is smoothed at once"
         );
+        uploaded.clear();
         let mut second = Texture::new([1, 3], &[0; 9], Some(first));
         assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]), "it is uploaded at once");
         assert_eq!(second.id(&context, smooth), id);
+        context.tex_manager().write().take_delta().clear();
     }
 }

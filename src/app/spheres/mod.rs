@@ -16,7 +16,7 @@ use std::sync::Arc;
 const MANY: usize = 50_000;
 
 /// A sphere with a radius of this many times the distance to the point looked at is ground.
-const GROUND: f64 = 5.0;
+const GROUND: f64 = 2.0;
 
 /// The selected sphere as the panel and the picture show it.
 #[derive(Clone, Debug)]
@@ -145,7 +145,8 @@ mod tests {
         let mut window = window("weekender --stage view-distant --size 16x9 --device cpu");
         let document = &mut window.model.document;
         assert!(!inside(document) && !is_lost(document, &document.camera));
-        let away = Camera { look_at: DVec3::new(-2.0, 2.0, 90.0), ..document.camera };
+        let away =
+            Camera { look_at: document.camera.look_from + DVec3::new(0.0, 0.5, 9.0), ..document.camera };
         assert!(is_lost(document, &away));
         document.camera.look_from = document.scene().spheres[1].center;
         assert!(inside(document));

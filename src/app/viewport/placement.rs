@@ -175,6 +175,7 @@ mod tests {
     fn no_pan_leaves_a_gap_beside_the_picture() {
         let mut placement = placed(1.0);
         placement.zoom_by(2.0);
+        placement.place(ROOM, SIZE, 1.0);
         for pan in [vec2(1e4, -1e4), vec2(-1e5, 1e5), vec2(30.0, 30.0)] {
             placement.pan_by(pan);
             assert!(placement.place(ROOM, SIZE, 1.0).expand(0.5).contains_rect(ROOM), "{pan}");
@@ -182,6 +183,7 @@ mod tests {
         // The last pan is not swallowed by what went too far.
         assert_eq!(placement.rect().left(), ROOM.left() - 800.0 + 30.0);
         placement.zoom_by(0.1);
+        placement.place(ROOM, SIZE, 1.0);
         placement.pan_by(vec2(50.0, 50.0));
         assert!(
             placement.place(ROOM, SIZE, 1.0).center().distance(ROOM.center()) < 1.0,
