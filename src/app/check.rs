@@ -349,12 +349,7 @@ mod tests {
         let (context, mut check) = (egui::Context::default(), Check::default());
         let give = |check: &Check, number, reason: &str| {
             let answer = Answer::cannot_check(&anyhow::anyhow!("{reason}"));
-            check.answers.answer(&context).give(Checked {
-                number,
-                answer,
-                figures: "PNG".into(),
-                views: None,
-            });
+            check.answers.answer(&context).give(Checked { number, answer, rgb8: None });
         };
         (check.number, check.path) = (2, Some("second.ppm".into()));
         give(&check, 1, "first");
