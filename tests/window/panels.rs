@@ -10,12 +10,12 @@ use weekender::job::render::RenderSettings;
 #[test]
 fn sliders_change_the_picture_and_reset_brings_it_back() {
     let mut harness = open("--stage defocus --size 32x18");
-    let before = harness.state().document().clone();
+    let before = harness.state().shown_document().clone();
     control(&harness, "Field of view").set_value_accesskit(50.0);
     control(&harness, "Defocus angle").set_value_accesskit(3.0);
     control(&harness, "Focus distance").set_value_accesskit(2.0);
     harness.run_steps(2);
-    let camera = harness.state().document().camera;
+    let camera = harness.state().shown_document().camera;
     assert_eq!(
         (camera.vfov_degrees, camera.defocus_angle_degrees, camera.focus_distance),
         (50.0, 3.0, Some(2.0))
@@ -25,7 +25,7 @@ fn sliders_change_the_picture_and_reset_brings_it_back() {
         control(&harness, label).set_value_accesskit(value + 1.0);
         harness.run_steps(2);
     }
-    let document = harness.state().document();
+    let document = harness.state().shown_document();
     assert_eq!(document.camera.look_from.x, before.camera.look_from.x + 1.0);
     assert_eq!(document.camera.look_at.y, before.camera.look_at.y + 1.0);
     assert_eq!(document.camera.vup.z, before.camera.vup.z + 1.0);
@@ -36,10 +36,10 @@ fn sliders_change_the_picture_and_reset_brings_it_back() {
         harness.get_by_label(&format!("Reset {group}")).click();
         harness.run_steps(2);
     }
-    let origin = &harness.state().document().origin;
-    assert_eq!(harness.state().document().camera, origin.recipe.camera);
+    let origin = &harness.state().shown_document().origin;
+    assert_eq!(harness.state().shown_document().camera, origin.recipe.camera);
     let in_the_book = RenderSettings { width: 400, height: 225, ..origin.recipe.settings };
-    assert_eq!(harness.state().document().settings, in_the_book);
+    assert_eq!(harness.state().shown_document().settings, in_the_book);
 }
 
 #[test]
@@ -47,18 +47,18 @@ fn check_boxes_and_lists_do_what_they_say() {
     let mut harness = open("--stage defocus --size 32x18");
     harness.get_by_label("Estimate error").click();
     harness.run_steps(2);
-    assert!(!harness.state().document().settings.estimate_error);
+    assert!(!harness.state().shown_document().settings.estimate_error);
     harness.get_by_label("Estimate error").click();
     harness.get_by_label("Focus on Look at").click();
     harness.run_steps(2);
-    assert_eq!(harness.state().document().camera.focus_distance, None);
+    assert_eq!(harness.state().shown_document().camera.focus_distance, None);
     for (label, choice) in [("Sampler", "independent"), ("Lanes", "1"), ("Threads", "1"), ("Device", "f64")] {
         control(&harness, label).click();
         harness.run_steps(3);
         harness.get_all_by_label(choice).last().unwrap().click();
         harness.run_steps(3);
     }
-    assert_eq!(harness.state().document().settings.sampler.name(), "independent");
+    assert_eq!(harness.state().shown_document().settings.sampler.name(), "independent");
     let remembered = harness.state_mut().remembered_mut();
     assert_eq!(
         (remembered.lanes, remembered.threads, remembered.device),
@@ -68,11 +68,11 @@ fn check_boxes_and_lists_do_what_they_say() {
         control(&harness, label).click();
         harness.run_steps(2);
     }
-    let stop = harness.state().document().stop;
+    let stop = harness.state().shown_document().stop;
     assert!(stop.samples.is_some() && stop.seconds.is_some() && stop.noise.is_none(), "{stop:?}");
     harness.get_by_label("Reset stop").click();
     harness.run_steps(2);
-    assert!(harness.state().document().stop.noise.is_some());
+    assert!(harness.state().shown_document().stop.noise.is_some());
 }
 
 #[test]
@@ -94,13 +94,13 @@ fn what_has_no_effect_is_disabled() {
 #[test]
 fn bookmarks_bring_the_camera_back() {
     let mut harness = open(SMALL);
-    let before = harness.state().document().camera;
+    let before = harness.state().shown_document().camera;
     send(&mut harness, Command::AddBookmark);
     harness.state_mut().document_mut().camera.vfov_degrees = 12.0;
     harness.run_steps(2);
     harness.get_by_label("Go to 11.4 view 1").click();
     harness.run_steps(60);
-    assert_eq!(harness.state().document().camera, before);
+    assert_eq!(harness.state().shown_document().camera, before);
 }
 
 #[test]
