@@ -240,10 +240,7 @@ mod tests {
                 assert_eq!(theirs.camera, mine.camera, "{}", stage.id);
             }
         }
-        assert!(
-            of_cameras.contains(&"fov-wide") && !of_cameras.contains(&"glass-schlick"),
-            "{of_cameras:?}"
-        );
+        assert!(of_cameras.contains(&"fov-wide") && !of_cameras.contains(&"glass-schlick"), "{of_cameras:?}");
     }
 
     #[test]

@@ -4,7 +4,6 @@ use crate::common::{control, drag_from, has_samples, until, window};
 use crate::objects::{click, middle_sphere, on_screen, spheres};
 use eframe::egui::{self, Key, Modifiers, vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
 use std::path::Path;
 use weekender::app::{Command, Theme, Window};
 
