@@ -133,7 +133,7 @@ fn state_of(harness: &mut Harness<'_, Window>) -> String {
         harness.root().children_recursive().map(|node| node.accesskit_node().toggled()).collect();
     let window = harness.state_mut();
     let remembered = format!("{:?}", window.remembered_mut());
-    let document = window.document();
+    let document = window.shown_document();
     let stage = document.stage().map(|stage| stage.id);
     format!(
         "{stage:?} {:?} {:?} {:?} {remembered} {:?} {:?} {:?} {:?} {nodes:?}",
