@@ -7,7 +7,7 @@ use super::places::Place;
 use super::theme;
 use super::widgets::{Sign, primary, sign_button, tip};
 use crate::stages::Stage;
-use eframe::egui::{self, Align, Color32, Frame, Label, Layout, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Align, Color32, Frame, Label, Layout, Margin, RichText, Sense, Stroke, Ui, vec2};
 
 /// Narrower cards have a step on each line, points.
 const THREE_COLUMNS: f32 = 620.0;
@@ -24,15 +24,25 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         return;
     }
     let has_columns = ui.available_width() >= THREE_COLUMNS;
-    let height = if has_columns { 148.0 } else { 176.0 };
-    let frame = Frame::new()
+    let height = if has_columns { 140.0 } else { 168.0 };
+    if ui.available_height() < 2.0 * height {
+        // The picture comes first.
+        return;
+    }
+    let around =
+        Frame::new().fill(theme::surround(ui)).inner_margin(Margin { bottom: 8, ..Margin::symmetric(8, 0) });
+    let card = Frame::new()
         .fill(theme::colours(ui).panel)
         .stroke(Stroke::new(1.0, theme::colours(ui).line))
         .corner_radius(8)
-        .inner_margin(16)
-        .outer_margin(egui::Margin { left: 8, right: 8, top: 0, bottom: 8 });
+        .inner_margin(15);
     let panel = egui::Panel::bottom("first steps").exact_size(height).show_separator_line(false);
-    panel.frame(frame).show(ui, |ui| content(ui, has_columns, facts, commands));
+    panel.frame(around).show(ui, |ui| {
+        card.show(ui, |ui| {
+            ui.set_min_size(ui.available_size());
+            content(ui, has_columns, facts, commands);
+        });
+    });
 }
 
 fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
@@ -42,7 +52,7 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
         vec2(ui.available_width(), 20.0),
         Layout::left_to_right(Align::Center),
         |ui| {
-            ui.label(RichText::new("First steps").text_style(theme::card()).strong());
+            ui.label(RichText::new("First steps").size(16.0).strong());
             let about = match (steps.has_all(), has_columns) {
                 (true, _) => "That is all. The book begins at 2.1.",
                 (false, true) => "Every picture of Ray Tracing in One Weekend, rendered while you watch.",

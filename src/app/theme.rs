@@ -109,11 +109,6 @@ pub fn accent(ui: &Ui) -> Color32 {
     colours(ui).accent
 }
 
-/// The text style of the first steps' title.
-pub fn card() -> TextStyle {
-    TextStyle::Name("card".into())
-}
-
 /// Sets both themes' styles.
 pub fn install(context: &Context) {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
@@ -135,7 +130,6 @@ fn dress(style: &mut Style, is_dark: bool) {
         (TextStyle::Small, FontId::proportional(12.0)),
         (TextStyle::Body, FontId::proportional(14.0)),
         (TextStyle::Button, FontId::proportional(14.0)),
-        (card(), FontId::proportional(16.0)),
         (TextStyle::Heading, FontId::proportional(20.0)),
         (TextStyle::Monospace, FontId::monospace(12.0)),
     ]
