@@ -10,7 +10,7 @@ use super::widgets::hint;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Shading;
-use eframe::egui::{self, Color32, Rect, RichText, Sense, Sides, Ui, WidgetInfo, vec2};
+use eframe::egui::{self, Color32, Rect, RichText, Sense, Ui, WidgetInfo, vec2};
 
 /// Samples that each lane traces.
 const SAMPLES: u64 = 12;
@@ -95,26 +95,21 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
         "A core traces {lanes} paths side by side, one per lane. Each row is a lane, each column a step. A lane whose path \
          has ended waits, unless it is refilled with the next path."
     )).wrap());
+    let colours = data_colours(ui);
+    ui.horizontal_wrapped(|ui| {
+        let names = ["from the camera", "off matte", "off metal", "glass", "waits"];
+        names.into_iter().zip(&colours).for_each(|(name, colour)| swatch(ui, *colour, name));
+    });
     let steps = timelines.iter().map(Timeline::len).max().unwrap_or(0).max(1);
     let column = (ui.available_width() / steps as f32).min(COLUMN);
     let room = 0.5 * ui.available_height() - HEADING - 8.0;
     let row = (room / lanes as f32).clamp(*ROWS.start(), *ROWS.end());
-    let colours = data_colours(ui);
     for (timeline, name) in timelines.iter().zip(["Without refill", "With refill"]) {
         let (steps, share) = (timeline.len(), 100.0 * timeline.share_at_work());
         let figures = format!("{steps} steps, {share:.0} % of the lanes at work");
-        let left = |ui: &mut Ui| {
+        ui.horizontal(|ui| {
             ui.label(RichText::new(name).small().strong());
             ui.label(RichText::new(&figures).small().color(ui.visuals().weak_text_color()));
-        };
-        let names = ["waits", "glass", "off metal", "off matte", "from the camera"];
-        Sides::new().height(HEADING - 4.0).shrink_left().show(ui, left, |ui| {
-            if name == "Without refill" {
-                names
-                    .into_iter()
-                    .zip(colours.iter().rev())
-                    .for_each(|(name, colour)| swatch(ui, *colour, name));
-            }
         });
         let size = vec2(column * timeline.len() as f32, row * lanes as f32);
         let (place, response) = ui.allocate_exact_size(size, Sense::hover());

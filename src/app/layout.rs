@@ -114,7 +114,7 @@ impl Window {
                 self.ask_path(ui.ctx(), Purpose::SavePlot);
             }
         }
-        if facts.model.has_panels() {
+        if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
             first_steps::ui(ui, facts, &mut self.commands);
         }
         let Model { remembered, .. } = &facts.model;

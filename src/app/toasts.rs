@@ -156,6 +156,9 @@ impl Toast {
                 let label = ui.add(Label::new(RichText::new(&self.text).color(color)).wrap());
                 let live = if self.is_error { Live::Assertive } else { Live::Polite };
                 label.ctx.accesskit_node_builder(label.id, |node| node.set_live(live));
+                if self.offers.is_empty() {
+                    return;
+                }
                 ui.horizontal_wrapped(|ui| {
                     for command in &self.offers {
                         if ui.button(command.name()).on_hover_text(command.help()).clicked() {

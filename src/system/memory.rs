@@ -2,7 +2,7 @@
 //! later, and a failed allocation would abort it.
 //!
 //! Code that needs memory in proportion to a number from outside (films, pictures, scenes) first calls [`check`], or
-//! allocates with [`filled`].
+//! allocates with [`zeroed`].
 
 use std::fs;
 
@@ -21,8 +21,8 @@ pub struct MemoryError {
 /// A number of bytes with a unit.
 pub fn words(bytes: u64) -> String {
     match bytes {
-        0..1_000_000 => format!("{bytes} bytes"),
-        1_000_000..1_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        0..100_000 => format!("{bytes} bytes"),
+        100_000..1_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
         _ => format!("{:.1} GB", bytes as f64 / 1e9),
     }
 }
@@ -30,7 +30,7 @@ pub fn words(bytes: u64) -> String {
 /// Everything else: program, threads, files.
 const BASE_BYTES: u64 = 64 << 20;
 
-/// Smaller sizes are not checked with the system; [`filled`] notices if the allocation fails.
+/// Smaller sizes are not checked with the system; [`zeroed`] notices if the allocation fails.
 const SMALL_BYTES: u64 = 16 << 20;
 
 /// Returns an error if `bytes` do not fit into the free memory that the system reports. `what` names their purpose.
