@@ -111,7 +111,7 @@ fn a_kept_picture_is_wiped_and_subtracted() {
     let mut harness = finished(8);
     let kept = mean(&mut harness);
     keep(&mut harness);
-    control(&harness, "Difference").click();
+    send(&mut harness, Command::KeptDifference);
     let none = HeatScale::DIFFERENCE.colour(0.0);
     until(&mut harness, "no difference", |window| window.shown_pixel(AT) == Some(none));
     change(&mut harness);

@@ -10,7 +10,6 @@ mod faults;
 mod files;
 mod first_steps;
 mod kept;
-mod menus;
 mod moving;
 mod objects;
 mod palette;

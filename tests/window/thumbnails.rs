@@ -3,13 +3,17 @@
 use crate::common::open_sized;
 use eframe::egui::{Event, Key};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Window};
 use weekender::stages::Stage;
 
 fn rows(harness: &Harness<'_, Window>) -> usize {
-    let is_there = |stage: &&'static Stage| harness.query_by_label(&Command::Stage(stage).name()).is_some();
-    Stage::ALL.iter().filter(is_there).count()
+    let is_row = |stage: &'static Stage| {
+        let name = Command::Stage(stage).name();
+        let mut named = harness.query_all_by_label(&name);
+        named.any(|node| node.accesskit_node().toggled().is_some())
+    };
+    Stage::ALL.iter().filter(|stage| is_row(stage)).count()
 }
 
 fn shown(harness: &Harness<'_, Window>) -> &'static str {

@@ -421,8 +421,10 @@ mod tests {
     use proptest::prelude::*;
 
     fn samples(parts: &[[u64; 2]]) -> Manifest {
-        let part =
-            |(index, samples): (usize, &[u64; 2])| Part { file: format!("{index}.exr"), samples: *samples };
+        let part = |(index, samples): (usize, &[u64; 2])| Part {
+            file: part_file(index, parts.len()),
+            samples: *samples,
+        };
         let parts = parts.iter().enumerate().map(part).collect();
         Manifest::new(Work::Samples(Samples { samples: [4, 12], block: 1, parts }))
     }
