@@ -17,7 +17,7 @@ use crate::stages::Stage;
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 use std::sync::LazyLock;
 
-/// A thing that can be done. Its row in [`ROWS`] says all about it; a [place](Command::place) has no row.
+/// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     Open,
@@ -716,7 +716,6 @@ mod tests {
         let submenus = [Menu::Show, Menu::Bookmarks, Menu::Theme].len() + 1;
         let entries = ROWS.iter().filter(|row| row.menu.is_some()).count() + submenus;
         let listed = ROWS.iter().filter(|row| row.is_listed).count();
-        println!("{entries} menu entries, {listed} commands in the palette");
         assert!(entries <= 70 && listed <= 90, "{entries} entries, {listed} commands");
     }
 }

@@ -2,11 +2,10 @@
 
 use super::answers::Answers;
 use super::command::Command;
-use super::model::checked::stamp_of;
+use super::model::checked::{Stamp, stamp_of};
 use super::model::origin::{Origin, Source};
 use super::window::Window;
 use crate::job::recipe::{Recipe, file};
-use crate::system::files::Stamp;
 use eframe::egui::Context;
 use std::path::Path;
 use std::sync::{Arc, Weak};

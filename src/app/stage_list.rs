@@ -245,7 +245,7 @@ mod tests {
             assert!(image_of(stage).is_some(), "{}", stage.id);
             assert!(found(stage.section).contains(&Row::Stage(stage)), "{}", stage.id);
         }
-        assert_eq!(Row::all().count(), Stage::ALL.len() + shown_cases().iter().count());
+        assert_eq!(Row::all().count(), Stage::ALL.len() + shown_cases().len());
         assert!(found("schl") == [Row::Stage(Stage::find("glass-schlick").unwrap())]);
         assert!(found("no such words").is_empty());
     }

@@ -35,8 +35,8 @@ fn rank(text: &str, name: &str, synonyms: &str, help: &str) -> Option<usize> {
     let all = |words: &[&str], is_found: fn(&str, &str) -> bool| {
         typed.iter().all(|typed| words.iter().any(|word| is_found(word, typed)))
     };
-    let (whole, begins): (fn(&str, &str) -> bool, fn(&str, &str) -> bool) =
-        (|word, typed| word == typed, |word, typed| word.starts_with(typed));
+    let whole = |word: &str, typed: &str| word == typed;
+    let begins = |word: &str, typed: &str| word.starts_with(typed);
     let [of_name, of_synonyms, of_help] = [&name, &synonyms, &help].map(|text| words_of(text));
     let everything = [of_name.clone(), of_synonyms.clone(), of_help].concat();
     let ways: [bool; 6] = [

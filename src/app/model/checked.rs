@@ -3,9 +3,9 @@
 use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::Rules;
-use crate::system::files::Stamp;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::SystemTime;
 
 /// A scene under the rules of its origin. It never changes: an edit makes another one.
 #[derive(Debug)]
@@ -61,9 +61,13 @@ impl CheckedScene {
     }
 }
 
-/// The stamp of a file; `None` if there is no such file, or it cannot be examined.
-pub(crate) fn stamp_of(path: &Path) -> Option<Stamp> {
-    Stamp::of(path).ok().flatten()
+/// A file's length and modification time, which change with its content.
+pub type Stamp = (u64, Option<SystemTime>);
+
+/// The stamp of a regular file, if it can be examined.
+pub fn stamp_of(path: &Path) -> Option<Stamp> {
+    let found = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
+    Some((found.len(), found.modified().ok()))
 }
 
 #[cfg(test)]

@@ -1,11 +1,10 @@
 //! The origin of a picture.
 
-use super::checked::{CheckedScene, stamp_of};
+use super::checked::{CheckedScene, Stamp, stamp_of};
 use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage, SurfaceRule};
-use crate::system::files::Stamp;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -65,7 +64,7 @@ impl Origin {
     /// Whether the scene file still holds the recipe, as far as is known; `false` without a scene file.
     pub fn is_in_file(&self) -> bool {
         let Source::File(path) = &self.source else { return false };
-        let found = self.found.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let found = *self.found.lock().unwrap_or_else(PoisonError::into_inner);
         found.is_none_or(|stamp| stamp.is_some() && stamp_of(path) == stamp)
     }
 

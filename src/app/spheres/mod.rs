@@ -120,9 +120,7 @@ mod tests {
         let model = &mut window.model;
         let first = Body::of(model.document.scene(), 1).unwrap();
         let with_radius = |radius| Edit::Change(1, Body { radius, ..first });
-        let begin = std::time::Instant::now();
         edit(model, with_radius(0.125)).unwrap();
-        println!("{:?} for an edit of {} spheres", begin.elapsed(), model.document.scene().spheres.len());
         assert_eq!((model.document.scene().spheres[1].radius, model.selected), (0.125, Some(1)));
         assert!(edit(model, with_radius(0.0)).unwrap_err().contains("radius"));
         assert_eq!(model.document.scene().spheres[1].radius, 0.125);

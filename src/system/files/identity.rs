@@ -3,7 +3,6 @@
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
 
 /// The file that a path leads to through any links, whether or not it exists yet.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -44,30 +43,6 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     match path.file_name() {
         Some(name) => Ok(resolved(parent)?.join(name)),
         None => std::path::absolute(path),
-    }
-}
-
-/// A file's length and modification time, which change with its content.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Stamp {
-    length: u64,
-    changed: Option<SystemTime>,
-}
-
-impl Stamp {
-    /// The stamp of the regular file at `path`; `None` if there is no such file.
-    ///
-    /// # Errors
-    /// If the file cannot be examined.
-    pub fn of(path: &Path) -> io::Result<Option<Stamp>> {
-        match fs::metadata(path) {
-            Ok(found) if found.is_file() => {
-                Ok(Some(Stamp { length: found.len(), changed: found.modified().ok() }))
-            }
-            Ok(_) => Ok(None),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error),
-        }
     }
 }
 

@@ -9,7 +9,6 @@ mod read;
 mod replace;
 
 pub use identity::FileIdentity;
-pub(crate) use identity::Stamp;
 pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
 pub use paths::{
