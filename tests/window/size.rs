@@ -74,7 +74,7 @@ fn what_would_be_lost_is_kept_until_the_user_asks() {
     name_file(&mut harness, Command::Show(Show::Difference), &film);
     until(&mut harness, "the difference", |window| window.show() == Show::Difference);
     let (before, run) = (size(&harness), harness.state().status().run);
-    harness.key_press(Key::Tab);
+    harness.set_size(egui::vec2(1500.0, 900.0));
     until_seen(&mut harness, "Render at ");
     settle(&mut harness);
     assert_eq!((size(&harness), harness.state().status().run), (before, run), "it was kept");
