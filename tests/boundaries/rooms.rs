@@ -19,7 +19,7 @@ batch: system scene stages film job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
 measure: system numbers scene stages film job kernel prepared render_cpu render_gpu backends progressive cli pictures
 page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch measure
-app: system numbers scene stages film job prepared render_cpu render_gpu backends progressive cli pictures measure page";
+app: system numbers scene stages film job render_cpu render_gpu backends progressive cli pictures measure page";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
@@ -33,7 +33,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("fearless_simd", &["render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
-    ("image", &["numbers", "job", "pictures"]),
+    ("image", &["numbers", "job", "pictures", "app"]),
     ("indicatif", &["cli", "measure"]),
     ("maud", &["page"]),
     ("plotters", &["numbers"]),
