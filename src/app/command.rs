@@ -369,7 +369,7 @@ fn rows() -> Vec<Row> {
         also("scale font")}
 
     menu = Some(Menu::Render);
-    row! {C::Pause, "Pause, Go on",
+    row! {C::Pause, "Pause or go on",
         "Stops and continues; when done, goes on to half the error. No sample is lost",
         |w, c| w.pause_or_go_on(c), key(Key::Space),
         needs(

@@ -138,7 +138,7 @@ fn a_picture_of_another_size_is_rendered_beside_the_one_that_is_shown() {
     until(&mut harness, "the end", has_samples(6));
     let run = harness.state().status().run;
     send(&mut harness, Command::Save);
-    control(&harness, "Twice as large").click();
+    control(&harness, "Twice as large").click_accesskit();
     harness.run_steps(3);
     control(&harness, "Name").focus();
     harness.step();

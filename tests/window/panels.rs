@@ -86,6 +86,14 @@ fn state_of(harness: &mut Harness<'_, Window>) -> String {
     )
 }
 
+fn control_of<'h>(harness: &'h Harness<'_, Window>, role: Role, name: &str) -> Node<'h> {
+    let is_it = |node: &Node<'_>| {
+        let node = node.accesskit_node();
+        node.role() == role && node.label().unwrap_or_default() == name
+    };
+    harness.root().children_recursive().find(is_it).unwrap_or_else(|| panic!("{name} has gone"))
+}
+
 #[test]
 fn every_control_has_a_name_and_changes_something() {
     let opened = || {
@@ -110,12 +118,7 @@ fn every_control_has_a_name_and_changes_something() {
     for (name, role) in controls {
         assert!(!name.is_empty(), "a {role:?} without a name");
         let before = state_of(&mut harness);
-        let is_it = |node: &Node<'_>| {
-            let node = node.accesskit_node();
-            node.role() == role && node.label().unwrap_or_default() == name
-        };
-        let node =
-            harness.root().children_recursive().find(is_it).unwrap_or_else(|| panic!("{name} has gone"));
+        let node = control_of(&harness, role, &name);
         // Choosing what is chosen already changes nothing.
         if node.accesskit_node().toggled().is_some() {
             continue;
@@ -123,7 +126,14 @@ fn every_control_has_a_name_and_changes_something() {
         match role {
             Role::Slider | Role::SpinButton => {
                 let value = node.accesskit_node().numeric_value().unwrap_or_default();
-                node.set_value_accesskit(value + 1.0);
+                // At the end of a slider there is only the way back.
+                for other in [value + 1.0, 0.5 * value] {
+                    control_of(&harness, role, &name).set_value_accesskit(other);
+                    harness.run_steps(4);
+                    if state_of(&mut harness) != before {
+                        break;
+                    }
+                }
             }
             _ => node.click_accesskit(),
         }
