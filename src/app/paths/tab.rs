@@ -5,7 +5,9 @@ use crate::app::theme;
 use crate::app::widgets::{Sign, compact, hint, point_words, sign_button, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::scene::Scene;
-use eframe::egui::{Atom, Button, Frame, Label, Margin, RichText, ScrollArea, Sides, Stroke, Ui, vec2};
+use eframe::egui::{
+    Align, Atom, Button, Frame, Label, Layout, Margin, RichText, ScrollArea, Sides, Stroke, Ui, vec2,
+};
 
 /// The largest width of the list, points.
 const LIST: f32 = 352.0;
@@ -28,7 +30,8 @@ impl Paths {
         let (mut selected, mut point) = (self.selected, self.point);
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 16.0;
-            ui.allocate_ui(vec2(width, ui.available_height()), |ui| {
+            let size = vec2(width, ui.available_height());
+            ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
                 ui.set_width(width);
                 ui.spacing_mut().item_spacing = vec2(8.0, 0.0);
                 Sides::new().show(
