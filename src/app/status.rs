@@ -12,8 +12,8 @@ use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
-    self, Align, Button, Grid, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText,
-    Stroke, Ui, accesskit::Live, vec2,
+    self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText,
+    Stroke, Ui, accesskit::Live,
 };
 
 const HEIGHT: f32 = 32.0;
@@ -178,23 +178,14 @@ fn details(ui: &mut Ui, facts: &Facts) {
             ui.set_width(304.0);
             egui::Frame::new().inner_margin(12).show(ui, |ui| {
                 ui.label(RichText::new("Details").strong());
-                Grid::new("details").num_columns(2).spacing(vec2(16.0, 4.0)).min_row_height(0.0).show(
-                    ui,
-                    |ui| {
-                        for (name, value) in figures(facts) {
-                            ui.label(RichText::new(name).small().color(theme::colours(ui).weak));
-                            let room = ui.available_size_before_wrap();
-                            ui.allocate_ui_with_layout(
-                                vec2(room.x, 0.0),
-                                Layout::top_down(Align::Max),
-                                |ui| {
-                                    ui.add(Label::new(RichText::new(value).small()).wrap());
-                                },
-                            );
-                            ui.end_row();
-                        }
-                    },
-                );
+                for (name, value) in figures(facts) {
+                    ui.horizontal(|ui| {
+                        ui.label(RichText::new(name).small().color(theme::colours(ui).weak));
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            ui.add(Label::new(RichText::new(value).small()).truncate());
+                        });
+                    });
+                }
                 ui.add(Label::new(RichText::new(TERMS).small().color(theme::colours(ui).weak)).wrap());
             });
         });

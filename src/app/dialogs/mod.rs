@@ -87,21 +87,22 @@ impl Dialogs {
         }
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
-        let modal =
-            Modal::new(Id::unique("dialog")).frame(egui::Frame::window(ui.style())).show(ui.ctx(), |ui| {
-                ui.set_max_width((room.x - 64.0).min(512.0));
-                match dialog {
-                    Dialog::Palette(palette) => {
-                        palette.ui(ui, (room.y - 180.0).clamp(100.0, 360.0), (facts, &self.used), commands)
-                    }
-                    Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
-                    Dialog::Sky => sky::ui(ui, facts, edits),
-                    Dialog::About => about::ui(ui, facts),
-                    Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
-                    Dialog::Path(field) => field.ui(ui),
-                    Dialog::Large(large) => large.ui(ui),
+        // Each kind has its own size.
+        let id = Id::unique(("dialog", std::mem::discriminant(dialog)));
+        let modal = Modal::new(id).frame(egui::Frame::window(ui.style())).show(ui.ctx(), |ui| {
+            ui.set_max_width((room.x - 64.0).min(512.0));
+            match dialog {
+                Dialog::Palette(palette) => {
+                    palette.ui(ui, (room.y - 180.0).clamp(100.0, 360.0), (facts, &self.used), commands)
                 }
-            });
+                Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
+                Dialog::Sky => sky::ui(ui, facts, edits),
+                Dialog::About => about::ui(ui, facts),
+                Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
+                Dialog::Path(field) => field.ui(ui),
+                Dialog::Large(large) => large.ui(ui),
+            }
+        });
         if modal.should_close() || !matches!(modal.inner, Outcome::Stay) {
             self.open = None;
         }
