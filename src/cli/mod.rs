@@ -149,7 +149,12 @@ enum RawCommand {
 
 /// All flags and subcommands with their help, from which manual pages and completions are made.
 pub fn command() -> clap::Command {
-    Raw::command()
+    // A negative number is a wrong value of its flag, not an unknown flag.
+    let negative = |arg: clap::Arg| {
+        let takes_values = arg.get_action().takes_values();
+        if takes_values { arg.allow_negative_numbers(true) } else { arg }
+    };
+    Raw::command().mut_args(negative).mut_subcommands(move |command| command.mut_args(negative))
 }
 
 /// The file of `--log`, needed before the flags are validated. `None` if clap does not accept the command line;

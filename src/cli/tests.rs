@@ -23,6 +23,14 @@ fn the_definition_of_all_flags_is_consistent() {
 }
 
 #[test]
+fn a_negative_number_is_a_wrong_value() {
+    for line in ["--batch --samples -3", "bench --runs -1", "plan --parts -2"] {
+        let message = refused(line);
+        assert!(message.contains("invalid value '-"), "{message}");
+    }
+}
+
+#[test]
 fn commands_call_the_program_from_any_directory() {
     let whole = std::env::current_exe().unwrap().to_str().unwrap().to_owned();
     for (name, expected) in [
