@@ -93,7 +93,7 @@ mod tests {
                 identity.follow(Some(other), subject, &context);
             }
         });
-        let late = "nothing is told of films that are no longer compared";
+        let late = "an answer about films that are no longer compared is dropped";
         assert_eq!([identity.answers.take(), identity.answers.take()], [Some(false), None], "{late}");
     }
 }

@@ -180,13 +180,13 @@ mod tests {
     #[test]
     fn spheres_and_materials_are_counted_as_edited() {
         let mut harness = panel("--scene field:20 --size 32x18");
-        let told = |harness: &Harness<'_, Panel>| {
+        let shown = |harness: &Harness<'_, Panel>| {
             let scene = harness.state().facts.document().scene();
             let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
             assert!(harness.query_by_label(&words).is_some(), "{words}");
             words
         };
-        let before = told(&harness);
+        let before = shown(&harness);
         let document = &mut harness.state_mut().facts.model.document;
         let mut scene = document.scene().clone();
         let material = scene.materials[0].clone();
@@ -194,7 +194,7 @@ mod tests {
         scene.spheres.truncate(4);
         document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
         harness.run_steps(3);
-        assert_ne!(told(&harness), before);
+        assert_ne!(shown(&harness), before);
     }
 
     #[test]
@@ -202,14 +202,14 @@ mod tests {
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
         let source = Source::File("/of/mine.toml".into());
         let mut harness = panel("--stage sky --size 32x18");
-        for (frames, is_told) in [(Vec::new(), false), (vec![0, 20], true)] {
+        for (frames, is_shown) in [(Vec::new(), false), (vec![0, 20], true)] {
             recipe.keyframes =
                 frames.iter().map(|frame| Keyframe { frame: *frame, camera: recipe.camera }).collect();
             let document = Document::new(Origin::new(recipe.clone(), source.clone()));
             harness.state_mut().facts.model.document = document;
             harness.run_steps(3);
             for words in ["Animation", "21 frames along", "--frames=0..21"] {
-                assert_eq!(harness.query_by_label_contains(words).is_some(), is_told, "{words}");
+                assert_eq!(harness.query_by_label_contains(words).is_some(), is_shown, "{words}");
             }
         }
     }

@@ -134,7 +134,7 @@ impl Palette {
         let first = usize::from(!self.text.trim().is_empty() && !found.is_empty());
         self.chosen = (self.chosen.max(first) + down).min(found.len()).saturating_sub(up).max(first);
         let chosen = found.get(self.chosen.wrapping_sub(1)).map(|found| found.command);
-        let (mut run, mut told) = (chosen.filter(|_| is_enter), chosen);
+        let (mut run, mut described) = (chosen.filter(|_| is_enter), chosen);
         let list =
             egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
         list.show(ui, |ui| {
@@ -156,14 +156,14 @@ impl Palette {
                     response.scroll_to_me(None);
                 }
                 if response.hovered() {
-                    told = Some(*command);
+                    described = Some(*command);
                 }
                 if response.clicked() {
                     run = Some(*command);
                 }
             }
         });
-        about(ui, facts, told);
+        about(ui, facts, described);
         match run {
             Some(command) => {
                 commands.push(command);

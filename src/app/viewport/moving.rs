@@ -54,7 +54,7 @@ impl Moving {
         if is_panning {
             pan(ui, response, placement);
         } else if is_orbit {
-            // What was under the pointer before the drag was told from a click.
+            // Where the button went down, before the pointer moved far enough for a drag.
             let begin = pressed.filter(|_| response.drag_started()).or(response.interact_pointer_pos());
             let pivot = *self.pivot.get_or_insert_with(|| {
                 let there = begin.and_then(|at| point(camera, at)).unwrap_or(camera.look_at);
