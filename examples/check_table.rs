@@ -115,7 +115,7 @@ fn found(
 ) -> anyhow::Result<(&'static str, f64)> {
     let [width, height] = SIZE;
     let bytes = Book::new(stage, mistake).render(width, height, samples, seed);
-    let mine = Mine { width, height, bytes, format: "P3", damages: Vec::new() };
+    let mine = Mine::of_bytes(bytes, [width, height]);
     let begin = Instant::now();
     let finding = judge(&mine, Some(Stage::find(stage)?))?;
     let seconds = begin.elapsed().as_secs_f64();

@@ -127,7 +127,7 @@ impl Files {
         let description = self.described(film, status);
         if !is_film(&render.out) {
             say(&render.out);
-            let forms = Forms { ppm: render.ppm, ..Forms::default() };
+            let forms = Forms { ppm: render.ppm, format: Some(render.format), ..Forms::default() };
             let transfer = render.job.rules().transfer;
             let write = || write_image_as(&render.out, film, transfer, &description, forms);
             match caught(&render.out, || write().map_err(|error| error.to_string())) {

@@ -39,5 +39,9 @@ pub fn is_times_255(mine: &Mine, right: &Compared) -> bool {
         }
     }
     let (slope, deviation) = (-product / square, scaled.sqrt() / square);
-    right.is_noise && count >= 1000 && (slope - 1.0).abs() < 0.4 && slope > 6.0 * deviation
+    mine.most == 255
+        && right.is_noise
+        && count >= 1000
+        && (slope - 1.0).abs() < 0.4
+        && slope > 6.0 * deviation
 }

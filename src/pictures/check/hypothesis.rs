@@ -282,14 +282,16 @@ pub struct Compared {
 
 pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> Compared {
     let (width, height) = (mine.width as usize, mine.height as usize);
+    let step = mine.step();
     let linear = |byte: u8, index: usize| hypothesis.written.linear(byte, index / width, height);
     let pixels = mine.bytes.iter().zip(&expected).enumerate();
     let (values, steps): (Vec<[f64; 3]>, Vec<[f64; 3]>) = pixels
         .map(|(index, (bytes, expected))| {
             let [least, most] = [0, 255].map(|byte| linear(byte, index)[0]);
-            let mine = bytes.map(|byte| linear(byte, index));
-            let value = [0, 1, 2].map(|channel| mine[channel][0] - expected[channel].clamp(least, most));
-            (value, mine.map(|[_, step]| step))
+            let mine_linear = bytes.map(|byte| linear(byte, index));
+            let value =
+                [0, 1, 2].map(|channel| mine_linear[channel][0] - expected[channel].clamp(least, most));
+            (value, mine_linear.map(|[_, half]| half * step))
         })
         .unzip();
     let test = BlockTest::of(&Differences {

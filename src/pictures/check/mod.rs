@@ -12,10 +12,11 @@ mod mine;
 mod mistakes;
 mod tracer;
 
+pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Mistake};
 pub use judge::{Finding, judge, stages};
-pub use mine::{Damage, Mine};
+pub use mine::Mine;
 pub use mistakes::MISTAKES;
 
 use super::answer::{Verdict, check_outputs, deliver, lines};

@@ -22,7 +22,7 @@ fn mistake(id: &str) -> &'static Mistake {
 }
 
 fn picture_of(bytes: Vec<[u8; 3]>, [width, height]: [u32; 2]) -> Mine {
-    Mine { width, height, bytes, format: "P3", damages: Vec::new() }
+    Mine::of_bytes(bytes, [width, height])
 }
 
 /// Compares bytes with linear values; both are functions of column and row.
