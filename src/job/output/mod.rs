@@ -11,7 +11,9 @@ mod ppm;
 mod read;
 
 pub use apng::{FrameRate, animation_in, check_frame, write_animation};
-pub use read::{Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture};
+pub use read::{
+    Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
+};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 

@@ -222,7 +222,7 @@ fn rounded(value: u16, most: u16) -> [f64; 2] {
 }
 
 /// IEC 61966-2-1.
-fn srgb_to_linear(v: f64) -> f64 {
+pub fn srgb_to_linear(v: f64) -> f64 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 

@@ -1,16 +1,17 @@
 //! The table of mistakes that readers of the book are known to make: explanation, where each can show, and how to
 //! render it.
 
-use super::bytes::{is_times_255, is_truncated};
-use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
-use super::tracer::Random;
+use super::bytes::{is_same_seed, is_times_255, is_truncated};
+use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake, Written};
+use super::tracer::{Random, Steps};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::{Material, Scene};
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule, Transfer};
+use glam::DVec3;
 
 /// All mistakes, those of the file and the camera first.
-pub static MISTAKES: [Mistake; 34] = [
+pub static MISTAKES: [Mistake; 40] = [
     Mistake {
         id: "flipped-rows",
         section: "2.2",
@@ -61,6 +62,33 @@ pub static MISTAKES: [Mistake; 34] = [
                  linear values",
         applies: has_gamma,
         change: Change::Written(|written| written.curve = Curve::Gamma(4.0)),
+    },
+    Mistake {
+        id: "gamma-other",
+        section: "9.5",
+        title: "another curve is applied than the square root",
+        remedy: "nothing is wrong: gamma 2.2 and sRGB are brighter than the book's square root; take that for the book's \
+                 picture",
+        applies: has_gamma,
+        change: Change::Several(|recipe| {
+            let curves = [(Curve::Gamma(2.2), "pow(x, 1 / 2.2)"), (Curve::Srgb, "the sRGB curve")];
+            let right = Hypothesis::right(recipe);
+            curves
+                .map(|(curve, name)| Hypothesis {
+                    note: Some(format!("it looks as with {name}")),
+                    written: Written { curve, ..right.written },
+                    ..right.clone()
+                })
+                .into()
+        }),
+    },
+    Mistake {
+        id: "wraps-to-0",
+        section: "8.2",
+        title: "the brightest values become 0",
+        remedy: "clamp before the conversion: int(256 * clamp(x, 0, 0.999)); 256 does not fit into a byte, where it becomes 0",
+        applies: always,
+        change: Change::Written(|written| written.wraps = true),
     },
     Mistake {
         id: "scale-255",
@@ -249,6 +277,26 @@ pub static MISTAKES: [Mistake; 34] = [
         change: Change::Materials(invert),
     },
     Mistake {
+        id: "glass-black",
+        section: "11.2",
+        title: "glass is black",
+        remedy: "set attenuation = color(1.0, 1.0, 1.0) in dielectric::scatter, and return true",
+        applies: has_glass,
+        change: Change::Materials(|material| {
+            if let Material::Dielectric { .. } = material {
+                *material = Material::Lambertian { albedo: DVec3::ZERO };
+            }
+        }),
+    },
+    Mistake {
+        id: "glass-swapped",
+        section: "11.3",
+        title: "glass reflects where it should refract, and refracts where it should reflect",
+        remedy: "if (cannot_refract || reflectance(cos_theta, ri) > random_double()) reflect, else refract",
+        applies: |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
+        change: Change::Steps(|steps| steps.swaps_glass = true),
+    },
+    Mistake {
         id: "always-refract",
         section: "11.3",
         title: "glass refracts even where Snell's law has no solution",
@@ -297,12 +345,43 @@ pub static MISTAKES: [Mistake; 34] = [
         change: Change::Camera(|camera| camera.defocus_angle_degrees = 0.0),
     },
     Mistake {
+        id: "lens-origin",
+        section: "13.2",
+        title: "rays start at one point of the lens, but are aimed from another",
+        remedy: "use the same point twice: ray(ray_origin, pixel_sample - ray_origin)",
+        applies: has_lens,
+        change: Change::Several(|recipe| {
+            let from_eye =
+                Steps { lens: |eye, on_lens, target| [eye, target - on_lens], ..Steps::OF_THE_BOOK };
+            let from_lens =
+                Steps { lens: |eye, on_lens, target| [on_lens, target - eye], ..Steps::OF_THE_BOOK };
+            [
+                (from_eye, "start at the centre of the lens"),
+                (from_lens, "be aimed from the centre of the lens"),
+            ]
+            .map(|(steps, what)| Hypothesis {
+                note: Some(format!("rays seem to {what}")),
+                making: Making::Plain(steps),
+                ..Hypothesis::right(recipe)
+            })
+            .into()
+        }),
+    },
+    Mistake {
         id: "focus-distance-one",
         section: "13.2",
         title: "the plane in focus is 1 away",
         remedy: "use focus_dist for the viewport: viewport_height = 2 * h * focus_dist, and center - focus_dist * w",
         applies: has_lens,
         change: Change::Camera(|camera| camera.focus_distance = Some(1.0)),
+    },
+    Mistake {
+        id: "same-seed",
+        section: "9.1",
+        title: "every pixel uses the same random numbers",
+        remedy: "seed the generator once, before the loops, not for each pixel",
+        applies: |recipe| recipe.rules.antialiasing && has_bounces(recipe),
+        change: Change::InNoise(is_same_seed),
     },
 ];
 
