@@ -376,7 +376,7 @@ impl Book {
         let mut x = if is_gamma { gamma(linear) } else { linear };
         match self.mistake {
             "gamma-twice" => x = gamma(x),
-            "gamma-22" => x = linear.max(0.0).powf(1.0 / 2.2),
+            "gamma-2.2" => x = linear.max(0.0).powf(1.0 / 2.2),
             "gamma-srgb" if linear <= 0.003_130_8 => x = 12.92 * linear,
             "gamma-srgb" => x = 1.055 * linear.powf(1.0 / 2.4) - 0.055,
             _ => {}

@@ -56,6 +56,14 @@ fn planted_mistakes_are_named() {
         ("hollow-glass", "last-hit-wins"),
         ("hollow-glass", "vfov-radians"),
         ("defocus", "focus-distance-one"),
+        ("lambertian-gamma", "gamma-2.2"),
+        ("hollow-glass", "gamma-srgb"),
+        ("lambertian-gamma", "wraps-to-0"),
+        ("hollow-glass", "glass-black"),
+        ("hollow-glass", "glass-swapped"),
+        ("defocus", "lens-origin"),
+        ("defocus", "lens-aim"),
+        ("lambertian-gamma", "same-seed"),
     ];
     for (stage, mistake) in planted {
         assert_eq!(found(&mine(stage, mistake, 60, 3), Some(stage)), mistake, "{stage}");

@@ -1,4 +1,4 @@
-//! Netpbm's formats as any program writes them: PBM, PGM, PPM (`P1` to `P6`) and PFM (`PF`, `Pf`).
+//! Netpbm's formats as any program writes them: PGM and PPM (`P2`, `P3`, `P5`, `P6`), and PFM (`PF`, `Pf`).
 //!
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
@@ -67,17 +67,16 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
     let kind = file[1];
     let mut words = Words { file, at: 2 };
     match kind {
-        b'1'..=b'3' => return text(file, kind, damages),
+        b'2' | b'3' => return text(file, kind, damages),
         b'F' | b'f' => return floats(words, if kind == b'F' { 3 } else { 1 }).map(Found::Picture),
         _ => {}
     }
     let size = [words.number("width")?, words.number("height")?];
-    let most = if kind == b'4' { 1 } else { words.number("largest value")? };
+    let most = words.number("largest value")?;
     let ((width, height, count), most) = (checked(size)?, checked_most(most)?);
     let channels = if kind == b'6' { 3 } else { 1 };
     let bytes_per_value = if most > 255 { 2 } else { 1 };
-    let row = (width as usize).div_ceil(8);
-    let needed = if kind == b'4' { row * height as usize } else { count * channels * bytes_per_value };
+    let needed = count * channels * bytes_per_value;
     let mut data = Cow::Borrowed(words.payload(needed));
     if data.len() < needed {
         return Err(invalid(format!(
@@ -104,15 +103,11 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
     }
     check_memory(width, height)?;
     let data = &data[..needed];
-    let values: Vec<u16> = match (kind, bytes_per_value) {
-        (b'4', _) => {
-            let bit = |line: &[u8], x: usize| 1 - u16::from(line[x / 8] >> (7 - x % 8) & 1);
-            data.chunks(row).flat_map(|line| (0..width as usize).map(move |x| bit(line, x))).collect()
-        }
-        (_, 1) => data.iter().copied().map(u16::from).collect(),
+    let values: Vec<u16> = match bytes_per_value {
+        1 => data.iter().copied().map(u16::from).collect(),
         _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect(),
     };
-    let format = ["P4", "P5", "P6"][usize::from(kind - b'4')];
+    let format = if kind == b'6' { "P6" } else { "P5" };
     Ok(Found::Picture(integers([width, height], format, most, channels, values, notes, damages)))
 }
 
@@ -167,19 +162,15 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
         ));
     }
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
-    let head_length = if kind == b'1' { 2 } else { 3 };
-    let head: Vec<i64> =
-        words().take(head_length).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
-    let (width, height, most) = match *head.as_slice() {
-        [width, height] if head_length == 2 => (width, height, 1),
-        [width, height, most] => (width, height, most),
-        _ => return Err(invalid(format!("its header is not complete; {HEADER}"))),
+    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
+    let [width, height, most] = *head.as_slice() else {
+        return Err(invalid(format!("its header is not complete; {HEADER}")));
     };
     let size = [width, height].map(|side| u64::try_from(side).unwrap_or(0));
     let ((width, height, count), most) = (checked(size)?, checked_most(most.try_into().unwrap_or(0))?);
     let channels = if kind == b'3' { 3 } else { 1 };
     let needed = count * channels;
-    let words = || words().skip(head_length);
+    let words = || words().skip(3);
     let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
     // With decimal commas, there are as many words as numbers.
     let has_decimal_commas = has_commas && words().count() >= needed;
@@ -192,9 +183,7 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
         }));
     };
     for word in words() {
-        if kind == b'1' {
-            word.bytes().for_each(|bit| add(if bit == b'0' { "1" } else { "0" }));
-        } else if has_decimal_commas {
+        if has_decimal_commas {
             add(&word.trim_end_matches(',').replace(',', "."));
         } else {
             word.split(',').filter(|part| !part.is_empty()).for_each(&mut add);
@@ -232,7 +221,7 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
     values.truncate(needed);
     outside(values.iter().filter(|value| !(0..=most.into()).contains(*value)).count(), most, damages);
     let values = values.iter().map(|value| (*value).clamp(0, most.into()) as u16).collect();
-    let format = ["P1", "P2", "P3"][usize::from(kind - b'1')];
+    let format = if kind == b'3' { "P3" } else { "P2" };
     Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
 }
 
@@ -368,12 +357,12 @@ fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
 
 /// Whether a picture of one of these formats begins here.
 fn is_header(bytes: &[u8]) -> bool {
-    matches!(bytes, [b'P', b'1'..=b'6' | b'F' | b'f', next, ..] if next.is_ascii_whitespace() || *next == b'#')
+    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', next, ..] if next.is_ascii_whitespace() || *next == b'#')
 }
 
 /// Where the picture begins: at once, or at a line after some text.
 fn header(file: &[u8]) -> Option<usize> {
-    if let [b'P', b'1'..=b'6' | b'F' | b'f', ..] = file {
+    if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
         return Some(0);
     }
     let mut at = 0;

@@ -141,10 +141,7 @@ const LENGTH_LIMIT: u64 = 16 * PIXEL_LIMIT;
 /// Largest expansion of a byte: deflate expands up to 1032 times, and one bit of a palette index becomes 3 bytes.
 const LARGEST_RATIO: u64 = 1032 * 24;
 
-fn read_png(mut reader: impl BufRead + Seek, length: u64) -> io::Result<ReadPicture> {
-    let mut head = [0; 26];
-    reader.read_exact(&mut head)?;
-    reader.rewind()?;
+fn read_png(reader: impl BufRead + Seek, length: u64) -> io::Result<ReadPicture> {
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
     let incomplete = |error| invalid(format!("{error}; check whether the file is complete"));
@@ -167,19 +164,12 @@ fn read_png(mut reader: impl BufRead + Seek, length: u64) -> io::Result<ReadPict
         }
     }
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
-    let (top, values): (u16, Vec<u16>) = if is_deep {
+    let (most, values): (u16, Vec<u16>) = if is_deep {
         (u16::MAX, image.to_rgb16().into_raw())
     } else {
         (u16::from(u8::MAX), image.to_rgb8().into_raw().into_iter().map(u16::from).collect())
     };
-    let most = match head[24..] {
-        // The bits of a sample, unless it is the index of a colour in a palette.
-        [bits @ (1 | 2 | 4), colour_type] if colour_type != 3 => (1 << bits) - 1,
-        _ => top,
-    };
-    // The decoder has scaled the values up to 8 bits.
-    let stored = |value: u16| (f64::from(value) * f64::from(most) / f64::from(top)).round() as u16;
-    let rgb = values.as_chunks::<3>().0.iter().map(|pixel| pixel.map(stored)).collect();
+    let rgb = values.as_chunks::<3>().0.to_vec();
     let values = Values::Integers { most, rgb };
     Ok(ReadPicture { width, height, format: "PNG", values, damages: Vec::new(), notes })
 }
@@ -337,39 +327,5 @@ mod tests {
         assert_intervals(b"P3 4 1 31 0 0 0 16 16 16 30 30 30 31 31 31 ", &of_32, 31.0 / 32.0);
         let of_1024 = [[511.5 / 1023.0, 512.5 / 1023.0], unknown];
         assert_intervals(b"P5 2 1 1023 \x02\x00\x03\xff", &of_1024, 1023.0 / 1024.0);
-        // In a bitmap, 1 is black.
-        assert_intervals(b"P4 2 1 \x80", &[[0.0, 0.5], unknown], 0.5);
-    }
-
-    #[test]
-    fn png_levels_follow_bit_depth_and_palette() {
-        use ::png::{
-            BitDepth,
-            ColorType::{self, Grayscale, Indexed},
-        };
-        let png_of = |colour: ColorType, depth: BitDepth, width: u32, row: &[u8]| {
-            let mut file = Vec::new();
-            let mut encoder = ::png::Encoder::new(&mut file, width, 1);
-            encoder.set_color(colour);
-            encoder.set_depth(depth);
-            if colour == Indexed {
-                encoder.set_palette(vec![0x80; 3]);
-            }
-            let mut writer = encoder.write_header().unwrap();
-            writer.write_image_data(row).unwrap();
-            writer.finish().unwrap();
-            file
-        };
-        let unknown = [f64::NAN; 2];
-        let of_16 = [[0.0, 1.0 / 16.0], [6.5 / 15.0, 0.5], unknown];
-        assert_intervals(&png_of(Grayscale, BitDepth::Four, 3, b"\x07\xf0"), &of_16, 15.0 / 16.0);
-        assert_intervals(&png_of(Grayscale, BitDepth::Two, 2, b"\x30"), &[[0.0, 0.25], unknown], 0.75);
-        assert_intervals(&png_of(Grayscale, BitDepth::One, 2, b"\x40"), &[[0.0, 0.5], unknown], 0.5);
-        let of_256 = [[128.0 / 256.0, 129.0 / 256.0]];
-        assert_intervals(&png_of(Grayscale, BitDepth::Eight, 1, b"\x80"), &of_256, 255.0 / 256.0);
-        assert_intervals(&png_of(Indexed, BitDepth::One, 1, b"\x00"), &of_256, 255.0 / 256.0);
-        let of_65536 = [[32_768.0 / 65_536.0, 32_769.0 / 65_536.0], unknown];
-        let deep = png_of(Grayscale, BitDepth::Sixteen, 2, b"\x80\x00\xff\xff");
-        assert_intervals(&deep, &of_65536, 65_535.0 / 65_536.0);
     }
 }

@@ -7,8 +7,8 @@ use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::scene::{Camera, Material, Scene};
-use crate::stages::{Rules, Transfer};
+use crate::scene::Material;
+use crate::stages::Transfer;
 use anyhow::Result;
 use std::ops::Range;
 use std::sync::Arc;
@@ -41,9 +41,6 @@ pub enum Change {
     Written(fn(&mut Written)),
     /// Changes the recipe of the program's own tracer.
     Recipe(fn(&mut Recipe)),
-    Rules(fn(&mut Rules)),
-    Camera(fn(&mut Camera)),
-    Scene(fn(&mut Scene)),
     Materials(fn(&mut Material)),
     /// Changes a step of the plain tracer.
     Steps(fn(&mut Steps)),
@@ -88,9 +85,6 @@ impl Change {
                 return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
             }
             Change::Recipe(change) => change(&mut changed),
-            Change::Rules(change) => change(&mut changed.rules),
-            Change::Camera(change) => change(&mut changed.camera),
-            Change::Scene(change) => change(Arc::make_mut(&mut changed.scene)),
             Change::Materials(change) => {
                 let materials = &mut Arc::make_mut(&mut changed.scene).materials;
                 materials.iter_mut().for_each(|named| change(&mut named.material));
