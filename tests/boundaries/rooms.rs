@@ -14,7 +14,7 @@ prepared: scene stages film job kernel
 render_cpu: system stages film job kernel prepared
 render_gpu: stages film job kernel prepared
 backends: system scene stages film job kernel render_cpu render_gpu
-progressive: numbers scene stages film denoise job backends
+progressive: system numbers scene stages film denoise job backends
 cli: system numbers scene stages film job render_cpu render_gpu backends progressive
 batch: system scene stages film denoise job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli

@@ -36,6 +36,7 @@ impl What {
         match self {
             What::Picture(OutputFormat::Png) => ["PNG picture", "To look at; remembers how it was made"],
             What::Picture(OutputFormat::P6) => ["PPM picture (P6)", "The format of the book"],
+            What::Picture(OutputFormat::Pfm) => ["PFM picture", "Linear numbers for other programs"],
             What::Picture(OutputFormat::Exr) => ["Film (EXR)", "All light and samples; can go on later"],
             What::Scene => ["Scene (TOML)", "Text to edit; no picture in it"],
         }
@@ -45,6 +46,7 @@ impl What {
         match self {
             What::Picture(OutputFormat::Png) => &["png"],
             What::Picture(OutputFormat::P6) => &["ppm"],
+            What::Picture(OutputFormat::Pfm) => &["pfm"],
             What::Picture(OutputFormat::Exr) => &["exr"],
             What::Scene => &["toml"],
         }
@@ -435,6 +437,7 @@ fn file_bytes(format: OutputFormat, [width, height]: [u32; 2], document: &Docume
     match format {
         OutputFormat::Png => pixels,
         OutputFormat::P6 => 3 * pixels,
+        OutputFormat::Pfm => 12 * pixels,
         OutputFormat::Exr => Film::bytes(width, height, document.settings.half_count()) / 2,
     }
 }

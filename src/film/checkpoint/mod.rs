@@ -66,6 +66,12 @@ pub enum CheckpointError {
     )]
     NotFilm { path: PathBuf },
     #[error(
+        "{} is no film any more: another program has saved it again, and its sums are lost ({what}); add samples to the film \
+         as Weekender saved it, or compare this one as a picture",
+        path.shown()
+    )]
+    Resaved { path: PathBuf, what: String },
+    #[error(
         "{} is a film of layout {layout} with samples of version {samples}, written by {writer}, but this program \
          ({SOFTWARE}) has layout {VERSION} and samples of version {SAMPLE_VERSION}; continue with {writer}, or render it again",
         path.shown()
@@ -128,6 +134,10 @@ mod tests {
             let message = opened(&file(change)).unwrap_err().to_string();
             assert!(message.contains("x.exr is damaged") && message.contains(part), "{part}: {message}");
         };
+        let resaved = |change: fn(&mut Head), part: &str| {
+            let message = opened(&file(change)).unwrap_err().to_string();
+            assert!(message.contains("no film any more") && message.contains(part), "{part}: {message}");
+        };
         refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
         refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");
         refused(|head| head.samples = vec![[7, 7]], "7..7");
@@ -138,8 +148,8 @@ mod tests {
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
         refused(|head| head.halves = 3, "3 halves and 1 checksums of bands");
-        refused(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
-        refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
+        resaved(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
+        resaved(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
 
     #[test]

@@ -12,10 +12,11 @@ use crate::backends::BackendChoice;
 use crate::denoise;
 use crate::film::{Film, SampleRanges};
 use crate::job::render::{RenderError, RenderJob, Renderer, Stats};
+use crate::system::clock::Instant;
 use backends::Pending;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Estimating the error may take at most one in this many parts of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
