@@ -101,6 +101,13 @@ impl Check {
         self.shown.as_ref().map(|(answer, _)| answer)
     }
 
+    /// What was checked, in words.
+    pub fn words(&self) -> Option<String> {
+        let (_, pictures) = self.shown.as_ref()?;
+        let ([width, height], _) = pictures.as_ref()?;
+        Some(format!("Checked {}, {width} × {height} pixels", self.name()))
+    }
+
     /// Whether an answer is shown or awaited.
     pub fn is_open(&self) -> bool {
         self.path.is_some()

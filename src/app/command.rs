@@ -2,9 +2,10 @@
 
 use super::dialogs::{Dialog, Keys, Palette};
 use super::facts::Facts;
+use super::layout::NARROW;
 use super::model::device::Device;
 use super::model::origin::Source;
-use super::model::remembered::{Dock, Theme};
+use super::model::remembered::{Dock, Tab, Theme};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::tone::{Channel, Tone};
@@ -290,9 +291,9 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Edit);
     row! {C::Undo, "Undo", "Takes back the last change", |w, _| w.undo(), keys(CTRL, Key::Z),
-        needs(|f| f.can_undo, "Nothing has been changed yet"), also("back lost")}
+        needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost")}
     row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
-        needs(|f| f.can_redo, "Nothing has been undone")}
+        needs(|f| f.redo.is_some(), "Nothing has been undone")}
     row! {C::ResetAll, "Reset everything",
         "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
@@ -435,7 +436,7 @@ fn rows() -> Vec<Row> {
     row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
         |w, _| w.toggle_code(), key(Key::K),
         off(|f| no_presentation(f).or_else(|| no_stage(f))),
-        on(Facts::shows_code), also("source rust wgsl program")}
+        on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| w.open_book(c),
         also("web section")}
     row! {C::Companion, "Read in the companion",
@@ -662,6 +663,9 @@ impl Command {
             Command::Field(name) => {
                 let remembered = &mut window.model.remembered;
                 (remembered.has_panels, remembered.has_controls) = (true, true);
+                if context.content_rect().width() < NARROW {
+                    remembered.tab = Tab::Controls;
+                }
                 super::widgets::focus(context, name);
             }
             _ => {

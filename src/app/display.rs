@@ -1,18 +1,23 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
+use super::command::Command;
 use super::identity::Identity;
 use super::kept::{KeptActions, Subject};
 use super::layers::Layers;
 use super::model::Model;
+use super::model::checked::CheckedScene;
 use super::model::show::Show;
 use super::pixel_values::PixelValues;
 use super::sight::Sighted;
+use super::spheres::is_lost;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
 use super::tracer::Shown;
 use super::tracing::Tracing;
 use super::viewport::Viewport;
+use crate::scene::Camera;
 use eframe::egui::Context;
+use std::sync::Arc;
 
 /// With this many samples per pixel, pictures differ by more than their noise.
 const CLEAR_SAMPLES: u64 = 16;
@@ -25,8 +30,10 @@ pub struct Display {
     pub values: PixelValues,
     pub identity: Identity,
     pub kept: KeptActions,
-    /// The toast of a lost scene was shown.
-    pub is_home_offered: bool,
+    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    pub is_lost: bool,
+    /// Camera and scene of which that was found.
+    judged: Option<(Camera, Arc<CheckedScene>)>,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,
 }
@@ -56,6 +63,17 @@ impl Display {
         toasts: &mut Toasts,
     ) {
         let (document, view) = (&model.document, &model.view);
+        let is_known = |(camera, scene): &(Camera, Arc<CheckedScene>)| {
+            *camera == document.camera && Arc::ptr_eq(scene, &document.checked)
+        };
+        if !is_moving && !self.judged.as_ref().is_some_and(is_known) {
+            self.judged = Some((document.camera, Arc::clone(&document.checked)));
+            let is_lost = is_lost(document);
+            if is_lost && !std::mem::replace(&mut self.is_lost, is_lost) {
+                toasts.good_with("Home brings you back", &[Command::Home]);
+            }
+            self.is_lost = is_lost;
+        }
         let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
         if let Some(kept) = view.kept.shown().or_else(other) {
             self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));

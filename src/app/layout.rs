@@ -21,7 +21,7 @@ use super::{bar, controls, dock, first_steps, right, stage_panel, status, theme}
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
-const NARROW: f32 = 1000.0;
+pub const NARROW: f32 = 1000.0;
 
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
@@ -117,10 +117,7 @@ impl Window {
         if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
             first_steps::ui(ui, facts, &mut self.commands);
         }
-        let Model { remembered, .. } = &facts.model;
-        if facts.model.has_panels()
-            && remembered.has_info
-            && remembered.tab == Tab::Check
+        if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
         {
             return Touch { room: Some(room), ..Touch::default() };
@@ -180,9 +177,6 @@ impl Window {
         }
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
-        }
-        if touch.is_lost && !std::mem::replace(&mut self.display.is_home_offered, true) {
-            self.shell.toasts.offer("Home brings you back", &[Command::Home]);
         }
         if touch.is_orbit {
             self.note_step(Step::Orbit);

@@ -92,9 +92,8 @@ impl Window {
             document.stop = stop;
         }
         let before = self.document();
-        if before.is_edited() && !before.is_from_file {
-            let place = before.stage().map_or_else(|| before.title(), |stage| stage.section.to_owned());
-            let words = format!("Your changes to {place} are kept in Undo");
+        if before.is_changed() && !before.is_from_file {
+            let words = format!("Your changes to {} are kept in Undo", before.place());
             self.shell.toasts.good_with(words, &[Command::Undo]);
         }
         self.show_document(document);
@@ -135,9 +134,8 @@ impl Window {
     // Undo
 
     pub(super) fn undo(&mut self) {
-        let before = self.document().clone();
+        let words = format!("Undone: {}", self.facts().undo.unwrap_or_default());
         self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
-        let words = format!("Undone: {}", self.document().difference(&before));
         self.shell.toasts.withdraw(Command::Redo);
         self.shell.toasts.good_with(words, &[Command::Redo]);
     }
@@ -189,7 +187,7 @@ impl Window {
     pub(super) fn add_bookmark(&mut self) {
         let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-        let place = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
+        let place = document.place();
         let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
         bookmarks.push(Bookmark::new(name, &document.camera));
         self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
@@ -348,8 +346,8 @@ impl Window {
     }
 
     pub(super) fn toggle_code(&mut self) {
+        let is_open = self.model.shows(Tab::Code);
         let remembered = &mut self.model.remembered;
-        let is_open = remembered.has_panels && remembered.has_info && remembered.tab == Tab::Code;
         remembered.tab = if is_open { Tab::Stage } else { Tab::Code };
         (remembered.has_panels, remembered.has_info) = (true, true);
     }
@@ -634,8 +632,7 @@ impl Window {
         let Some((document, samples)) = self.files.autosave.left().and_then(|path| picture_of(&path)) else {
             return;
         };
-        let name = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
-        let samples = grouped(samples);
+        let (name, samples) = (document.place(), grouped(samples));
         let words =
             format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
         self.shell.toasts.offer(words, &[Command::Recover, Command::NotNow]);

@@ -38,12 +38,19 @@ impl<'a> About<'a> {
 /// Gives a widget a name for assistive technology, and for [`focus`].
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    take_focus(response, name);
+}
+
+/// Focuses the widget if it is the one that [`focus`] wants. Returns whether it is.
+fn take_focus(response: &Response, name: &str) -> bool {
     let wanted: Option<String> = response.ctx.data(|data| data.get_temp(wanted()));
-    if wanted.as_deref() == Some(name) {
+    let is_wanted = wanted.as_deref() == Some(name);
+    if is_wanted {
         response.ctx.data_mut(|data| data.remove::<String>(self::wanted()));
         response.scroll_to_me(None);
         response.request_focus();
     }
+    is_wanted
 }
 
 /// Gives the keyboard focus to the first widget of this name that is drawn next.
@@ -106,6 +113,19 @@ pub fn above(ui: &mut Ui, about: About<'_>) {
         Label::new(RichText::new(about.name).small().color(color)),
     );
     tip(ui, label, about.help, about.disabled_reason);
+}
+
+/// Small weak text.
+pub fn small(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let text = RichText::new(text).small().color(ui.visuals().weak_text_color());
+    ui.add(Label::new(text).wrap())
+}
+
+/// A small heading between rows of a list.
+pub fn caption(ui: &mut Ui, text: &str) {
+    ui.add_space(8.0);
+    small(ui, text);
+    ui.add_space(4.0);
 }
 
 /// A weak sentence that wraps.
@@ -575,7 +595,9 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
         let words = if state.is_open() { "open" } else { "folded" };
         let name = format!("{}, {words}", header.title);
         response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &name));
-        if response.clicked() {
+        if take_focus(&response, header.title) {
+            state.set_open(true);
+        } else if response.clicked() {
             state.toggle(ui);
         }
         let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));

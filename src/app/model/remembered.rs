@@ -1,8 +1,10 @@
 //! Settings that the window keeps from one run to the next.
 
+use super::Model;
 use super::device::{self, Device};
 use super::first_steps::FirstSteps;
 use super::sizing::Sizing;
+use super::view::ViewState;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;
@@ -166,32 +168,28 @@ impl Default for Remembered {
     }
 }
 
-/// What eframe stores for the next window.
+/// What eframe stores for the next window: settings and view. Those of another version are not read.
 #[derive(Serialize, Deserialize)]
 pub struct Stored {
     version: u32,
     remembered: Remembered,
-    exposure: f64,
+    view: ViewState,
 }
 
 impl Stored {
-    /// Settings of another version are not read.
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
     const KEY: &str = "settings";
 
-    pub fn new(remembered: &Remembered, exposure: f64) -> Self {
-        Stored { version: Stored::VERSION, remembered: remembered.clone(), exposure }
-    }
-
-    /// Settings and exposure of the last window, or the usual ones.
-    pub fn read(storage: Option<&dyn Storage>) -> (Remembered, f64) {
+    /// Settings and view of the last window, or the usual ones.
+    pub fn read(storage: Option<&dyn Storage>) -> (Remembered, ViewState) {
         let stored: Option<Stored> = storage.and_then(|storage| eframe::get_value(storage, Stored::KEY));
         let stored = stored.filter(|stored| stored.version == Stored::VERSION);
-        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.exposure))
+        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.view.mended()))
     }
 
-    pub fn write(&self, storage: &mut dyn Storage) {
-        eframe::set_value(storage, Stored::KEY, self);
+    pub fn write(model: &Model, storage: &mut dyn Storage) {
+        let Model { remembered, view, .. } = model.clone();
+        eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
     }
 }
 

@@ -23,7 +23,7 @@ pub enum Mode {
 }
 
 /// The kind of picture to compare with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum With {
     /// The stage that belongs to this one; without a stage, the book's own arithmetic.
     Stage,
@@ -70,7 +70,7 @@ impl Other {
 }
 
 /// The current view, which is exactly one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
@@ -82,8 +82,10 @@ pub struct ViewState {
     /// The divider waits to be put where the pictures differ most.
     pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
+    #[serde(skip)]
     pub reference: Option<Arc<ReferenceMeans>>,
     /// Pictures that are kept; one of them can be shown instead of the traced one.
+    #[serde(skip)]
     pub kept: KeptList,
 }
 
@@ -103,6 +105,17 @@ impl Default for ViewState {
 }
 
 impl ViewState {
+    /// The view without films and kept pictures, which are gone with their window.
+    pub fn mended(mut self) -> Self {
+        if matches!(self.with, With::Kept(_)) {
+            self.end_comparison();
+        }
+        if self.show == Show::Difference {
+            self.show = Show::Picture;
+        }
+        self
+    }
+
     /// The current view of the film.
     pub fn show(&self) -> Show {
         self.show

@@ -80,8 +80,13 @@ pub fn inside(document: &Document) -> bool {
         && spheres.iter().any(|sphere| clearance(sphere, eye) < 0.0)
 }
 
-/// Whether the camera sees nothing but sky and ground.
-pub fn is_lost(document: &Document, camera: &Camera) -> bool {
+/// Whether the camera sees nothing but sky and ground, and that of the stage sees more.
+pub fn is_lost(document: &Document) -> bool {
+    let home = document.origin.recipe.camera;
+    document.camera != home && sees_nothing(document, &document.camera) && !sees_nothing(document, &home)
+}
+
+fn sees_nothing(document: &Document, camera: &Camera) -> bool {
     /// Rays across and down.
     const RAYS: usize = 9;
     let scene = document.scene();

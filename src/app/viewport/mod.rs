@@ -72,8 +72,6 @@ pub struct Touch {
     pub is_refused: bool,
     /// The camera was dragged around a point.
     pub is_orbit: bool,
-    /// A drag has ended that leaves nothing but sky and ground in sight.
-    pub is_lost: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
