@@ -1,7 +1,6 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
 use super::command::Command;
-use super::identity::Identity;
 use super::kept::{KeptActions, Subject};
 use super::layers::Layers;
 use super::model::Model;
@@ -19,16 +18,12 @@ use crate::scene::Camera;
 use eframe::egui::Context;
 use std::sync::Arc;
 
-/// With this many samples per pixel, pictures differ by more than their noise.
-const CLEAR_SAMPLES: u64 = 16;
-
 #[derive(Default)]
 pub struct Display {
     pub viewport: Viewport,
     pub layers: Layers,
     pub tone: ToneUi,
     pub values: PixelValues,
-    pub identity: Identity,
     pub kept: KeptActions,
     /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
     pub is_lost: bool,
@@ -89,27 +84,5 @@ impl Display {
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
         let area = self.viewport.room().filter(|_| is_picture);
         self.values.follow(&subject, self.viewport.placement.rect(), area, context);
-        self.identity.follow(view.subtracted(tracing.second.film()), &subject, context);
-    }
-
-    /// Puts the divider of a new wipe where the two pictures differ most, once both are clear.
-    pub fn place_divider(&self, model: &mut Model, tracing: &Tracing) {
-        if !model.view.is_divider_unplaced {
-            return;
-        }
-        let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
-        let mine = match model.view.kept.shown() {
-            Some(kept) => self.kept.picture.shown(kept),
-            None => {
-                let is_over = tracing.main.status().phase.is_over();
-                tracing.main.shown().filter(|shown| is_clear(shown) || is_over)
-            }
-        };
-        let theirs = tracing.second.shown().filter(|shown| is_clear(shown) || tracing.second.is_over());
-        if let (Some(mine), Some(theirs)) = (mine, theirs) {
-            let column = mine.texture.most_different_column(&theirs.texture);
-            model.view.divider = column.unwrap_or(model.view.divider);
-            model.view.is_divider_unplaced = false;
-        }
     }
 }

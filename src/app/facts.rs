@@ -18,8 +18,6 @@ pub struct Facts {
     pub model: Model,
     /// The status of the render.
     pub status: Arc<Status>,
-    /// Paths per second of tracing at present, if known.
-    pub speed: Option<f64>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
     /// What Undo and Redo would change, if anything.

@@ -34,15 +34,6 @@ pub struct Pixel {
     pub samples: u64,
 }
 
-/// What the picture that is compared with this one has at the pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OtherPixel {
-    /// Linear radiance.
-    pub mean: [f64; 3],
-    /// Its column and row, if that picture is scaled.
-    pub scaled: Option<[u32; 2]>,
-}
-
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
@@ -115,7 +106,7 @@ impl Inspector {
         ui: &mut Ui,
         document: &Document,
         layer: Option<(Layer, [f64; 3])>,
-        other: Option<OtherPixel>,
+        other: Option<[f64; 3]>,
     ) {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The header and four rows, so that what is above stays where it is.
@@ -140,7 +131,7 @@ fn pixel_ui(
     document: &Document,
     pixel: &Pixel,
     layer: Option<(Layer, [f64; 3])>,
-    other: Option<OtherPixel>,
+    other: Option<[f64; 3]>,
     ui: &mut Ui,
 ) {
     let (colours, [x, y]) = (theme::colours(ui), pixel.at);
@@ -159,15 +150,11 @@ fn pixel_ui(
     };
     let light = "Linear radiance: the mean of the samples, before gamma";
     match other {
-        Some(OtherPixel { mean, scaled }) => {
+        Some(mean) => {
             line("A", &format!("This picture. {light}"), pixel.mean.map(decimals));
-            let at = scaled.map_or_else(String::new, |[x, y]| format!(", at its pixel {x}, {y}"));
-            line("B", &format!("The picture that it is compared with{at}"), mean.map(decimals));
-            // A difference of scaled pictures would show the scaling.
-            if scaled.is_none() {
-                let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
-                line("A − B", "How much brighter this picture is", difference.map(signed));
-            }
+            line("B", "The picture that it is compared with", mean.map(decimals));
+            let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
+            line("A − B", "How much brighter this picture is", difference.map(signed));
         }
         None => line("light", light, pixel.mean.map(decimals)),
     }
@@ -245,7 +232,7 @@ mod tests {
     fn a_difference_tells_both_sides() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
         let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
-        let other = OtherPixel { mean: [0.25, 0.5, 1.0], scaled: None };
+        let other = [0.25, 0.5, 1.0];
         let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
         let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();

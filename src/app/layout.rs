@@ -3,11 +3,10 @@
 use super::command::Command;
 use super::dialogs::Purpose;
 use super::facts::Facts;
-use super::inspector::OtherPixel;
 use super::model::Model;
 use super::model::document::Document;
 use super::model::first_steps::Step;
-use super::model::fitted::Fitted;
+use super::paths::at_same_place;
 use super::model::remembered::{Dock, Remembered, Tab};
 use super::model::view::{Mode, ViewState};
 use super::places::Place;
@@ -140,7 +139,7 @@ impl Window {
             None => tracing.main.shown_mut(),
         };
         let has_film = shown.is_some();
-        let (fitted, size) = (view.wiped(document).map(|(_, fitted)| fitted), facts.shown().size());
+        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown_mut(layer)) {
                 Some(layer) => Some((&mut layer.texture, layer.divisor)),
@@ -151,11 +150,10 @@ impl Window {
             second: tracing.second.shown_mut().map(|shown| SecondPicture {
                 texture: &mut shown.texture,
                 divisor: shown.divisor,
-                fitted: fitted.unwrap_or(Fitted::new(size, size)),
+                is_scaled,
             }),
             paths: kept.is_none().then_some(&tools.paths),
             values: &display.values,
-            is_same: display.identity.is_same(),
         };
         let handle =
             Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
@@ -164,9 +162,6 @@ impl Window {
 
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch, facts: &Facts) {
-        if touch.is_divider_moved {
-            self.model.view.is_divider_unplaced = false;
-        }
         if facts.model.presentation.is_some() {
             self.lens(ui, touch.hovered, touch.room);
         }
@@ -210,9 +205,10 @@ impl Window {
             None => display.shown(model, tracing).map(|shown| colours(&shown.texture, shown.divisor, at)),
         };
         let Some(mine) = mine else { return };
-        let other = view.mode().and_then(|_| tracing.second.shown()).and_then(|shown| {
-            let at = view.wiped(document).map_or(Some(at), |(_, fitted)| fitted.pixel(at))?;
-            Some(colours(&shown.texture, shown.divisor, at))
+        let other = view.mode().and_then(|_| tracing.second.shown()).map(|shown| {
+            let size = view.shown_document(document).size();
+            let at = view.wiped().map_or(at, |kept| at_same_place(at, [size, kept.size()]));
+            colours(&shown.texture, shown.divisor, at)
         });
         let inspected = tools.inspector.pixel().filter(|pixel| pixel.at == at);
         let with = match view.mode() {
@@ -254,15 +250,12 @@ fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
     })
 }
 
-/// The pixel of the other picture of a comparison.
-fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<OtherPixel> {
-    if let Some((kept, fitted)) = view.wiped(live) {
-        let place = fitted.pixel(at)?;
-        let scaled = (!fitted.is_exact()).then_some(place);
-        return Some(OtherPixel { mean: kept.mean(place)?, scaled });
+/// What the other picture of a comparison has at a pixel: linear radiance.
+fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
+    match view.wiped() {
+        Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
+        None => view.subtracted(second.film())?.mean(at),
     }
-    let mean = view.subtracted(second.film())?.mean(at)?;
-    Some(OtherPixel { mean, scaled: None })
 }
 
 /// A panel whose content scrolls.

@@ -21,7 +21,6 @@ mod facts;
 mod files;
 mod first_steps;
 mod frame_log;
-mod identity;
 mod input;
 mod inspector;
 mod kept;
@@ -47,7 +46,6 @@ mod second;
 mod shell;
 mod sight;
 mod sizer;
-mod speed;
 mod spheres;
 mod stage_list;
 mod stage_panel;
@@ -149,6 +147,7 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
             .with_title("Weekender")
             .with_app_id("weekender")
             .with_inner_size([1280.0, 800.0])
+            .with_clamp_size_to_monitor_size(true)
             .with_min_inner_size([480.0, 320.0])
             .with_icon(theme::icon())
             .with_drag_and_drop(true),

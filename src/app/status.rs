@@ -208,7 +208,7 @@ fn details(ui: &mut Ui, facts: &Facts) {
 fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
     let status = &*facts.status;
     let unknown = || "–".to_owned();
-    let speed = facts.speed.unwrap_or_else(|| status.paths_per_second()) / 1e6;
+    let speed = status.paths_per_second() / 1e6;
     // A film that was opened does not say how its samples were traced.
     let has_paths = status.stats.paths > 0;
     let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;

@@ -113,7 +113,6 @@ impl Window {
     pub(super) fn facts(&self) -> Facts {
         Facts {
             status: self.tracing.main.status().clone(),
-            speed: self.tracing.speed.paths_per_second(),
             seconds_before: self.tracing.seconds_before,
             undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
             redo: self.changes.later().map(|other| self.document().difference(other)),
@@ -134,7 +133,6 @@ impl Window {
     pub fn ui_in(&mut self, ui: &mut egui::Ui) {
         let context = ui.ctx().clone();
         self.dress(&context);
-        self.shell.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
         self.take_input(&context);
@@ -255,7 +253,6 @@ impl Window {
             shell.toasts.bad(words);
         }
         tools.follow(context, model, &subject, is_moving);
-        display.place_divider(model, tracing);
         if !has_second {
             model.view.end_comparison();
         }
@@ -313,13 +310,6 @@ impl eframe::App for Window {
         let begin = Instant::now();
         self.ui_in(ui);
         self.shell.frame_times.ui = begin.elapsed();
-    }
-
-    fn raw_input_hook(&mut self, context: &egui::Context, raw: &mut egui::RawInput) {
-        input::part_at_tab(&mut self.shell.late_events, &mut raw.events);
-        if !self.shell.late_events.is_empty() {
-            context.request_repaint();
-        }
     }
 
     fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {

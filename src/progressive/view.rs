@@ -4,7 +4,6 @@ use crate::film::Film;
 use crate::job::render::TileOccupancy;
 use crate::numbers::heat::HeatScale;
 use crate::stages::Transfer;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// What a [`super::Picture`] shows.
@@ -32,48 +31,18 @@ pub struct ReferenceMeans {
     pub height: u32,
     /// Linear RGB, row by row from the top.
     pub means: Vec<[f32; 3]>,
-    /// The film's identity, if it is known.
-    pub identity: Option<FilmIdentity>,
 }
 
 impl ReferenceMeans {
     /// A reference with the film's current means.
     pub fn of(film: &Film) -> Self {
-        ReferenceMeans { width: film.width(), height: film.height(), means: film.means(), identity: None }
+        ReferenceMeans { width: film.width(), height: film.height(), means: film.means() }
     }
 
     /// The mean of a pixel, column and row from the upper left; linear RGB.
     pub fn mean(&self, [x, y]: [u32; 2]) -> Option<[f64; 3]> {
         let index = (x < self.width).then_some(y as usize * self.width as usize + x as usize)?;
         self.means.get(index).map(|mean| mean.map(f64::from))
-    }
-}
-
-/// Distinguishes films: those with the same identity have the same samples and, but for a chance of 2^-64, the same
-/// sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FilmIdentity {
-    samples: u64,
-    sums: u64,
-}
-
-impl FilmIdentity {
-    /// The identity of a film, from all its sums.
-    pub fn of(film: &Film) -> Self {
-        let mut hasher = DefaultHasher::new();
-        for half in film.halves() {
-            for sum in half {
-                sum.0.hash(&mut hasher);
-            }
-        }
-        (film.width(), film.height(), film.rejected()).hash(&mut hasher);
-        film.samples().iter().for_each(|range| range.hash(&mut hasher));
-        FilmIdentity { samples: film.sample_count(), sums: hasher.finish() }
-    }
-
-    /// Whether this is the identity of `film`. Its sums are read only if it has as many samples.
-    pub fn is_of(&self, film: &Film) -> bool {
-        self.samples == film.sample_count() && *self == FilmIdentity::of(film)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The dialog that lists keys and mouse actions.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::command::{Command, Menu, ROWS, Row};
 use crate::app::model::remembered::Dock;
 use crate::app::theme;

@@ -1,6 +1,6 @@
 //! Finds a command by what it does: type a few words, then press Enter.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
 use crate::app::menu::line;

@@ -186,13 +186,6 @@ impl Document {
         if self.has_changed_scene() { changed(name) } else { name.clone() }
     }
 
-    /// The name for its scene file, which is not that of a file that holds something else by now.
-    pub fn scene_name(&self) -> String {
-        let is_from_file = matches!(self.origin.source, Source::File(_)) && !self.has_changed_scene();
-        let name = self.name();
-        if is_from_file && !self.origin.is_in_file() { changed(&name) } else { name }
-    }
-
     /// Width divided by height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.settings.width) / f64::from(self.settings.height)

@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use crate::film::{Film, to_byte};
-use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
+use crate::progressive::{ReferenceMeans, Status};
 use crate::system::memory::words;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -100,10 +100,7 @@ impl Kept {
 
     /// Its picture to subtract from another. The first call takes as long as resolving the picture.
     pub fn means(&self) -> &Arc<ReferenceMeans> {
-        self.means.get_or_init(|| {
-            let identity = Some(FilmIdentity::of(&self.film));
-            Arc::new(ReferenceMeans { identity, ..ReferenceMeans::of(&self.film) })
-        })
+        self.means.get_or_init(|| Arc::new(ReferenceMeans::of(&self.film)))
     }
 
     /// Bytes that it takes.
@@ -255,6 +252,5 @@ mod tests {
         assert!(kept.known_means().is_none());
         let means = Arc::clone(kept.means());
         assert!(kept.known_means().is_some_and(|known| Arc::ptr_eq(known, &means)));
-        assert!(means.identity.as_ref().is_some_and(|identity| identity.is_of(&kept.film)));
     }
 }

@@ -8,7 +8,6 @@ pub mod device;
 pub mod document;
 pub mod edit;
 pub mod first_steps;
-pub mod fitted;
 pub mod further;
 pub mod kept;
 pub mod origin;

@@ -2,7 +2,6 @@
 
 use super::checked::CheckedScene;
 use super::document::Document;
-use super::fitted::Fitted;
 use super::kept::{Kept, KeptList};
 use super::origin::Origin;
 use super::show::Show;
@@ -79,8 +78,6 @@ pub struct ViewState {
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
-    /// The divider waits to be put where the pictures differ most.
-    pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
     #[serde(skip)]
     pub reference: Option<Arc<ReferenceMeans>>,
@@ -97,7 +94,6 @@ impl Default for ViewState {
             with: With::Stage,
             divider: 0.5,
             tone: Tone::default(),
-            is_divider_unplaced: false,
             reference: None,
             kept: KeptList::default(),
         }
@@ -165,7 +161,7 @@ impl ViewState {
         }
         self.show = Show::Picture;
         (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
-        (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
+        self.divider = 0.5;
     }
 
     /// Shows a kept picture, or the traced one.
@@ -228,11 +224,10 @@ impl ViewState {
         }
     }
 
-    /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
-    pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
+    /// The kept picture at the other side of a wipe, which is as large as the shown one.
+    pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        let kept = &self.kept.get(place)?.kept;
-        Some((kept, Fitted::new(kept.size(), self.shown_document(live).size())))
+        self.kept.get(place).map(|named| &named.kept)
     }
 
     /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.

@@ -80,7 +80,6 @@ pub struct Touch {
     pub said: Option<String>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
-    pub is_divider_moved: bool,
     pub edit: Option<Edit>,
     /// The area of the viewport.
     pub room: Option<Rect>,
@@ -122,9 +121,8 @@ impl Viewport {
         let rect = self.place(ui, room, facts);
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = view.mode() == Some(Mode::Wipe);
-        let before = (*divider, *camera);
+        let before = *camera;
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        touch.is_divider_moved = *divider != before.0;
         if is_kept && !is_held {
             moving::move_picture(ui, &response, &mut self.placement);
             is_held = true;
@@ -138,7 +136,7 @@ impl Viewport {
             self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
             self.handle_click(ui, &response, live, camera, &mut touch);
         }
-        if touch.is_move && camera.basis().w != before.1.basis().w {
+        if touch.is_move && camera.basis().w != before.basis().w {
             self.turned = Some(Instant::now());
         }
         let document = match is_kept {

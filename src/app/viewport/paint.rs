@@ -3,7 +3,6 @@
 use super::placement::Placement;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
-use crate::app::model::fitted::Fitted;
 use crate::app::model::show::Show;
 use crate::app::model::view::Mode;
 use crate::app::paths::Paths;
@@ -43,8 +42,6 @@ pub struct Pictures<'a> {
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first, each from the longest to the shortest.
     pub titles: [Vec<String>; 2],
-    /// Whether a difference is nothing anywhere.
-    pub is_same: bool,
 }
 
 /// The picture at the other side of a wipe.
@@ -52,8 +49,8 @@ pub struct SecondPicture<'a> {
     pub texture: &'a mut Texture,
     /// The factor by which it is smaller than its full size.
     pub divisor: u32,
-    /// Where it lies in the place of the first picture.
-    pub fitted: Fitted,
+    /// Its full size is another than that of the first picture.
+    pub is_scaled: bool,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -74,7 +71,7 @@ pub(super) fn paint(
         let is_square = divisor == 1 && !is_scaled && (is_exact || times >= SQUARES);
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
-    let Pictures { main, has_film, second, paths, values, titles, is_same } = pictures;
+    let Pictures { main, has_film, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::surround(ui));
@@ -90,10 +87,10 @@ pub(super) fn paint(
     let [theirs, mine] = titles.each_ref().map(Vec::as_slice);
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some(second)) => {
-            let texture = second.texture.id(ui.ctx(), options(second.divisor, !second.fitted.is_exact()));
+            let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
             let x = rect.lerp_inside(vec2(divider, 0.0)).x;
             let side = Rect { max: pos2(x, rect.bottom()), ..rect };
-            paint_second(ui, &painter, rect, side, (texture, &second.fitted));
+            painter.image(texture, side, Rect { max: pos2(divider, 1.0), ..WHOLE }, Color32::WHITE);
             paint_divider(&painter, corners, x);
             title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
             title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
@@ -105,9 +102,6 @@ pub(super) fn paint(
         _ => {}
     }
     let is_difference = view.mode() == Some(Mode::Difference);
-    if is_same {
-        title(ui, &painter, corners, Align2::RIGHT_TOP, &["Identical to the bit".to_owned()]);
-    }
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         paint_scale(ui, &painter, corners, &scale);
@@ -141,24 +135,6 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
         Rect { min: pos2(hole.right(), hole.top()), max: pos2(room.right(), hole.bottom()) },
     ] {
         painter.rect_filled(rect, 0.0, colour);
-    }
-}
-
-/// Draws the second picture at its `side` of the divider.
-fn paint_second(
-    ui: &Ui,
-    painter: &Painter,
-    rect: Rect,
-    side: Rect,
-    (texture, fitted): (egui::TextureId, &Fitted),
-) {
-    let [left, top, right, bottom] = fitted.part().map(|share| share as f32);
-    let place = Rect::from_min_max(rect.lerp_inside(vec2(left, top)), rect.lerp_inside(vec2(right, bottom)));
-    let seen = place.intersect(side);
-    fill_around(painter, side, seen, theme::surround(ui));
-    if seen.is_positive() {
-        let [min, max] = [seen.min, seen.max].map(|corner| ((corner - place.min) / place.size()).to_pos2());
-        painter.image(texture, seen, Rect { min, max }, Color32::WHITE);
     }
 }
 
