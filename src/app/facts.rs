@@ -4,10 +4,9 @@ use super::command::Command;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::document::Document;
-use super::model::further::Further;
 use super::model::show::Show;
 use super::model::view::{Mode, partner};
-use crate::progressive::Status;
+use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -63,7 +62,7 @@ impl Facts {
     }
 
     /// How a render that has ended can go on.
-    pub fn further(&self) -> Option<Further> {
+    pub fn further(&self) -> Option<Stop> {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
     }
 

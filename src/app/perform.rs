@@ -429,8 +429,8 @@ impl Window {
     // Tracing
 
     pub(super) fn pause_or_go_on(&mut self, context: &Context) {
-        if let Some(further) = self.facts().further() {
-            self.model.document.stop = further.stop;
+        if let Some(stop) = self.facts().further() {
+            self.model.document.stop = stop;
             return;
         }
         self.model.is_paused = !self.model.is_paused;

@@ -131,7 +131,9 @@ pub fn sentence(facts: &Facts) -> String {
             format!("Paused; the picture has moved, and {count} samples show it")
         }
         _ if facts.model.is_paused => format!("Paused at {samples}{error}"),
-        Phase::Done(_) if !is_random(facts) => "Done: nothing in this picture depends on chance".to_owned(),
+        Phase::Done(_) if !facts.document().is_random() => {
+            "Done: nothing in this picture depends on chance".to_owned()
+        }
         Phase::Done(reason) => {
             let seconds = facts.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
             let taken = facts.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
@@ -160,11 +162,6 @@ fn ending(facts: &Facts) -> String {
     } else {
         String::new()
     }
-}
-
-fn is_random(facts: &Facts) -> bool {
-    let rules = facts.document().rules();
-    rules.antialiasing || rules.shading == crate::stages::Shading::Path
 }
 
 /// How much of the work is done, `0..=1`; none without an end.

@@ -14,6 +14,9 @@ use std::ops::RangeInclusive;
 /// Width of a field for a number, points.
 pub const FIELD: f32 = 64.0;
 
+/// Height of a row of tabs, points.
+pub const TABS: f32 = 40.0;
+
 /// Seconds for which a refused number is explained.
 const REFUSAL_SECONDS: f64 = 4.0;
 
@@ -634,6 +637,23 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
         },
     );
     is_reset
+}
+
+/// A tab of a panel or of the dock.
+pub fn tab(ui: &mut Ui, name: &str, is_on: bool) -> Response {
+    let colours = theme::colours(ui);
+    let text = RichText::new(name).color(if is_on { colours.strong } else { colours.weak });
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = 0.0;
+        let response = ui.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)));
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, name));
+        if is_on {
+            let line = response.rect.x_range().expand(8.0);
+            ui.painter().hline(line, response.rect.bottom() - 1.0, Stroke::new(2.0, colours.accent));
+        }
+        response
+    })
+    .inner
 }
 
 /// A line over the whole width of a panel.

@@ -138,21 +138,6 @@ mod tests {
     }
 
     #[test]
-    fn films_are_identical_or_not() {
-        let identity = FilmIdentity::of(&film(1, 3));
-        assert!(identity.is_of(&film(1, 3)) && !identity.is_of(&film(3, 1)));
-        let mut off_by_one = film(1, 3);
-        off_by_one.halves_mut()[1][0].0[2] += 1;
-        assert!(!identity.is_of(&off_by_one));
-        let mut longer = film(1, 3);
-        longer.record(2..4, 0).unwrap();
-        assert!(!identity.is_of(&longer), "the same sums of more samples");
-        let mut other = film(1, 3);
-        other.record(2..4, 1).unwrap();
-        assert!(!FilmIdentity::of(&longer).is_of(&other), "a rejected sample");
-    }
-
-    #[test]
     fn halves_of_different_counts_are_weighed() {
         // Two samples of 3 in one half, one of 0 in the other: (3 - 0)^2 2 1 / 3^2.
         let mut film = Film::new(1, 1, 2);
@@ -226,7 +211,7 @@ mod tests {
     #[test]
     fn references_compare_by_address_and_check_bounds() {
         let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
-        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
+        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means });
         assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);
         assert_eq!([[3, 0], [0, 2]].map(|at| reference.mean(at)), [None; 2]);
         let copy = View::Difference(Arc::new(ReferenceMeans::clone(&reference)));

@@ -10,7 +10,7 @@ mod verdict;
 
 pub use actions::{KeptActions, Reopened};
 pub use picture::KeptPicture;
-pub use subject::{FilmId, Subject};
+pub use subject::{FilmId, Query, Subject};
 pub use verdict::Verdict;
 
 use super::answers::caught;

@@ -241,14 +241,5 @@ mod tests {
         let begin = format!("weekender --batch --scene={} --samples=4 ", path.display());
         assert!(line.starts_with(&begin) && line.ends_with(" --out=mine.png"), "{line}");
         assert_eq!(job_of(&line), document.job(1).unwrap());
-        document.origin.note_file(None);
-        let line = document.command_line(4, "cpu", None);
-        assert!(line.starts_with("weekender --batch --scene=mine-changed.toml --size=480x270 "), "{line}");
-        assert_eq!((document.scene_name().as_str(), document.name().as_str()), ("mine-changed", "mine"));
-        // The file of an earlier change, which holds something else by now.
-        let recipe = Recipe { name: "mine-changed".to_owned(), ..document.origin.recipe.clone() };
-        let again = Document::new(Origin::new(recipe, Source::File(path)));
-        again.origin.note_file(None);
-        assert_eq!(again.scene_name(), "mine-changed");
     }
 }

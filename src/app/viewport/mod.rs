@@ -2,7 +2,7 @@
 
 mod axes;
 mod moving;
-mod paint;
+pub mod paint;
 mod placement;
 mod selection;
 

@@ -91,7 +91,7 @@ pub(super) fn paint(
             let x = rect.lerp_inside(vec2(divider, 0.0)).x;
             let side = Rect { max: pos2(x, rect.bottom()), ..rect };
             painter.image(texture, side, Rect { max: pos2(divider, 1.0), ..WHOLE }, Color32::WHITE);
-            paint_divider(&painter, corners, x);
+            self::divider(&painter, corners, x);
             title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
             title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
         }
@@ -138,7 +138,8 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
-fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
+/// The divider of a wipe, with a round handle.
+pub fn divider(painter: &Painter, rect: Rect, x: f32) {
     const HANDLE: f32 = 24.0;
     painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
@@ -169,7 +170,7 @@ fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
 }
 
 /// The longest of these titles that has room in a corner of the area; none if none has.
-fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
+pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
     let area = area.shrink(CORNER);
     let at = corner.pos_in_rect(&area);
     if let Some(text) =
