@@ -151,7 +151,7 @@ mod tests {
         for (name, act) in actions {
             // A frame that asks for no other one.
             for _ in 0..4 {
-                let _ = context.run_ui(RawInput::default(), |_| {});
+                context.run_ui(RawInput::default(), |_| {}).textures_delta.clear();
             }
             let before = wakes.load(Ordering::Relaxed);
             act(answers.answer(&context));

@@ -229,7 +229,7 @@ mod tests {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
         let event = Event::PointerButton { pos: Pos2::ZERO, button, pressed, modifiers };
         let input = RawInput { events: vec![event], ..RawInput::default() };
-        let _ = context.run_ui(input, |_| {});
+        context.run_ui(input, |_| {}).textures_delta.clear();
     }
 
     #[test]

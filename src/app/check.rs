@@ -194,7 +194,7 @@ impl Check {
         let (answer, pictures) = self.shown.as_mut()?;
         let (size, [yours, ours, difference]) = pictures.as_mut()?;
         let room = ui.available_rect_before_wrap();
-        ui.painter().rect_filled(room, 0, theme::surround(ui));
+        ui.painter().rect_filled(room, 0, theme::colours(ui).surround);
         let size = size.map(|pixels| pixels as f32);
         let scale = ((room.width() - 16.0) / size[0]).min((room.height() - 16.0) / size[1]).max(0.0);
         let rect = Rect::from_center_size(room.center(), vec2(size[0], size[1]) * scale);

@@ -317,10 +317,11 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Show);
     for (place, show) in Show::ALL.into_iter().enumerate() {
-        row! {C::Show(show), show.name(), show.help(), move |w, c| w.show_as(c, show),
+        let [name, help, synonyms] = show.words();
+        row! {C::Show(show), name, help, move |w, c| w.show_as(c, show),
             keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
             on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
-            also(show.synonyms())}
+            also(synonyms)}
     }
     menu = Some(Menu::View);
     row! {C::Fit, "Fit in the window", "Shows the whole picture as large as possible",
@@ -358,8 +359,9 @@ fn rows() -> Vec<Row> {
         key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
     for theme in Theme::ALL {
-        row! {C::Theme(theme), theme.name(), theme.help(), move |w, c| w.choose_theme(c, theme),
-            on(move |f| f.model.remembered.theme == theme), also(theme.synonyms())}
+        let [name, help, synonyms] = theme.words();
+        row! {C::Theme(theme), name, help, move |w, c| w.choose_theme(c, theme),
+            on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
     menu = Some(Menu::View);
     row! {C::Larger, "Larger", "Makes text and controls larger",
@@ -510,7 +512,8 @@ fn rows() -> Vec<Row> {
         |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
         also("kept slot compare same")}
     for device in [Device::Cpu, Device::Gpu, Device::Both] {
-        row! {C::Device(device), device.long_label(), device.help(),
+        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
+        row! {C::Device(device), name, device.help(),
             move |w, _| w.model.remembered.device = device, off(move |_| device.unavailable()),
             on(move |f| f.model.remembered.device == device), also("device trace")}
     }

@@ -213,7 +213,7 @@ fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
 }
 
 fn albedo_words() -> About<'static> {
-    About::new("Colour", "The share of red, green and blue light that it gives back (albedo):")
+    About::new("Colour", "The share of red, green and blue light that it gives back (albedo)")
 }
 
 /// The kinds of material. Another kind keeps the colour.

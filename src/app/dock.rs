@@ -41,7 +41,8 @@ impl Cards {
         let place = self.textures.iter().position(|(number, _)| *number == kept.number());
         let place = place.unwrap_or_else(|| {
             let small = &kept.thumbnail;
-            let image = ColorImage::from_rgb(small.size.map(|length| length as usize), &small.rgb8);
+            let size = [small.width(), small.height()].map(|length| length as usize);
+            let image = ColorImage::from_rgb(size, small);
             let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
             self.textures.push((kept.number(), texture));
             self.textures.len() - 1
@@ -329,15 +330,6 @@ fn empty_place(ui: &mut Ui) -> Response {
     let colour = if response.hovered() { colours.strong } else { colours.weak };
     ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     response
-}
-
-/// Colours that tell data apart: from the camera or CPU, matte or GPU, metal or expected, glass or both, waits.
-pub fn data_colours(ui: &Ui) -> [Color32; 5] {
-    let colours: [[u8; 3]; 5] = match ui.visuals().dark_mode {
-        true => [[92, 150, 255], [235, 148, 56], [180, 180, 190], [70, 195, 150], [46, 50, 56]],
-        false => [[47, 111, 224], [217, 121, 26], [140, 140, 152], [31, 154, 107], [220, 221, 221]],
-    };
-    colours.map(|[red, green, blue]| Color32::from_rgb(red, green, blue))
 }
 
 /// An entry of a legend.

@@ -345,7 +345,7 @@ fn read<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::kept::tests::{OnScreen, small_film};
 
     fn files() -> Files {
         Files::new(Autosave::new(None, Duration::MAX))

@@ -1,7 +1,7 @@
 //! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
 //! expected continuation, and the goal.
 
-use super::dock::{data_colours, swatch};
+use super::dock::swatch;
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
@@ -48,7 +48,8 @@ pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
 }
 
 fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
-    let [of_cpu, of_gpu, expected, of_both, _] = data_colours(ui);
+    let &theme::Colours { first: of_cpu, second: of_gpu, third: expected, fourth: of_both, .. } =
+        theme::colours(ui);
     let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
     let style = |backend: &str| match backend {
         "cpu" => (of_cpu, "CPU"),

@@ -59,7 +59,7 @@ impl Presenter {
             response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &words));
             let done = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
             ui.painter().rect_filled(rect, 0.0, theme::colours(ui).raised);
-            ui.painter().rect_filled(done, 0.0, theme::accent(ui));
+            ui.painter().rect_filled(done, 0.0, theme::colours(ui).accent);
         });
         if !facts.model.presentation.is_some_and(|presentation| presentation.has_captions) {
             return;
@@ -176,7 +176,7 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
         for (name, text) in texts {
             ui.vertical(|ui| {
                 ui.set_width(width);
-                ui.label(RichText::new(name).size(heading).color(theme::accent(ui)));
+                ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));
                 ui.add(Label::new(RichText::new(text).size(size).color(theme::colours(ui).strong)).wrap());
             });
         }

@@ -225,7 +225,7 @@ mod tests {
             ("fov", Command::Field("Field of view")),
             ("beamer", Command::Present),
             ("homework", Command::CheckPicture),
-            ("quality", Command::Field("Size and samples")),
+            ("resolution", Command::Field("Size and samples")),
             ("11.4", Command::Stage(Stage::find("glass-schlick").unwrap())),
         ] {
             assert_eq!(first(text), Some(expected), "{text}");

@@ -2,10 +2,10 @@
 //! the screen, which is the traced one or a kept one.
 
 mod actions;
-#[cfg(test)]
-pub mod on_screen;
 mod picture;
 mod subject;
+#[cfg(test)]
+pub mod tests;
 mod verdict;
 
 pub use actions::{KeptActions, Reopened};

@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_question_is_asked_again_when_its_subject_has_changed() {
-        use crate::app::kept::on_screen::{OnScreen, small_film};
+        use crate::app::kept::tests::{OnScreen, small_film};
         let (screen, context) = (OnScreen::new(small_film(5, 0.5)), Context::default());
         let mut query = Query::default();
         let count = |film: &Film| Some(film.sample_count());

@@ -309,7 +309,7 @@ mod tests {
             (|document| document.stop = Stop::at_samples(9), false),
             (|document| document.camera.vfov_degrees = 33.0, true),
             (|document| document.settings.seed = 9, true),
-            (|document| document.give_size([480, 270]), true),
+            (|document| document.give_size([480, 270]), false),
             (|document| *document = edited(document), true),
         ];
         for (index, (change, is_change)) in changes.into_iter().enumerate() {

@@ -30,28 +30,12 @@ pub enum Theme {
 impl Theme {
     pub const ALL: [Theme; 3] = [Theme::System, Theme::Dark, Theme::Light];
 
-    pub fn name(self) -> &'static str {
+    /// Its name, one sentence about it, and other words by which the palette finds it.
+    pub fn words(self) -> [&'static str; 3] {
         match self {
-            Theme::System => "As the system",
-            Theme::Dark => "Dark",
-            Theme::Light => "Light",
-        }
-    }
-
-    pub fn help(self) -> &'static str {
-        match self {
-            Theme::System => "Follows the system",
-            Theme::Dark => "Light text on dark panels",
-            Theme::Light => "Dark text on light panels",
-        }
-    }
-
-    /// Other words by which the palette finds it.
-    pub fn synonyms(self) -> &'static str {
-        match self {
-            Theme::System => "theme",
-            Theme::Dark => "theme night",
-            Theme::Light => "theme bright",
+            Theme::System => ["As the system", "Follows the system", "theme"],
+            Theme::Dark => ["Dark", "Light text on dark panels", "theme night"],
+            Theme::Light => ["Light", "Dark text on light panels", "theme bright"],
         }
     }
 }

@@ -74,7 +74,7 @@ pub(super) fn paint(
     let Pictures { main, has_film, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
-    fill_around(&painter, room, hole, theme::surround(ui));
+    fill_around(&painter, room, hole, theme::colours(ui).surround);
     let view = &facts.model.view;
     if let Some((texture, divisor)) = main {
         painter.image(texture.id(ui.ctx(), options(divisor, false)), rect, WHOLE, Color32::WHITE);
@@ -201,7 +201,7 @@ pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: 
     let inwards = (clip.min - rect.min).max(egui::Vec2::ZERO) - (rect.max - clip.max).max(egui::Vec2::ZERO);
     let rect = rect.translate(inwards);
     let fill = match ui.visuals().dark_mode {
-        true => theme::surround(ui).gamma_multiply(0.88),
+        true => theme::colours(ui).surround.gamma_multiply(0.88),
         false => ui.visuals().panel_fill.gamma_multiply(0.93),
     };
     painter.rect_filled(rect, CornerRadius::same(4), fill);
@@ -240,7 +240,7 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
     let painter = ui.ctx().layer_painter(layer);
     painter.rect_filled(room, 0.0, ui.visuals().panel_fill.gamma_multiply(0.8));
-    let edge = Stroke::new(2.0, theme::accent(ui));
+    let edge = Stroke::new(2.0, theme::colours(ui).accent);
     painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
     let font = TextStyle::Heading.resolve(ui.style());
     painter.text(
