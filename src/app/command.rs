@@ -1,6 +1,6 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Keys, Palette};
+use super::dialogs::{Dialog, Keys, Palette, Purpose};
 use super::facts::Facts;
 use super::layout::NARROW;
 use super::model::device::Device;
@@ -11,6 +11,9 @@ use super::model::sizing::Sizing;
 use super::model::tone::{Channel, Tone};
 use super::model::view::{Mode, With};
 use super::model::viewpoint::Viewpoint;
+use super::places;
+use super::spheres::neighbour;
+use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
@@ -262,13 +265,16 @@ fn rows() -> Vec<Row> {
     }
 
     menu = Some(Menu::File);
-    row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", |w, c| w.ask_open(c),
+    row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", 
+        |w, c| w.ask_path(c, Purpose::Open),
         keys(CTRL, Key::O), also("load import resume")}
     row! {C::CheckPicture, "Check my picture…",
-        "Finds the mistake in a picture that your own program has rendered", |w, c| w.ask_check(c),
+        "Finds the mistake in a picture that your own program has rendered", 
+        |w, c| w.ask_path(c, Purpose::Check),
         also("wrong mistake homework verify compare")}
     row! {C::Reload, "Reload the scene", "Reads the scene file again, after another program has changed it",
-        |w, c| w.reload(c), keys(CTRL, Key::R),
+        
+        |w, c| w.files.scene_file.reload(c, &w.model.document.origin), keys(CTRL, Key::R),
         needs(
             |f| matches!(f.document().origin.source, Source::File(_)),
             "This picture is not from a scene file"
@@ -355,12 +361,14 @@ fn rows() -> Vec<Row> {
     row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
         |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
         also("lecture slides projector beamer")}
-    row! {C::FullScreen, "Full screen", "Fills the screen with the window", |w, c| w.toggle_full_screen(c),
+    row! {C::FullScreen, "Full screen", "Fills the screen with the window", 
+        |w, c| w.fill_screen(c, !w.model.is_full_screen),
         key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
     for theme in Theme::ALL {
         let [name, help, synonyms] = theme.words();
-        row! {C::Theme(theme), name, help, move |w, c| w.choose_theme(c, theme),
+        row! {C::Theme(theme), name, help, 
+            move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
             on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
     menu = Some(Menu::View);
@@ -383,12 +391,13 @@ fn rows() -> Vec<Row> {
     row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| w.restart(),
         key(Key::R)}
     row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-        |w, _| w.switch_device(), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
+        |w, _| w.switch_device(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
     row! {C::Device(Device::Reference), "Reference (f64)",
-        "Traces with twice the digits, slowly, to show rounding errors", |w, _| w.toggle_reference(),
+        "Traces with twice the digits, slowly, to show rounding errors", 
+        |w, _| w.switch_device(Device::Reference),
         on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
     row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
-        |w, _| w.keep(), key(Key::M), line(),
+        |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
         needs(
             |f| f.model.view.kept.looked().is_none(),
             "This picture is kept already; Escape returns to the one that is traced"
@@ -443,7 +452,7 @@ fn rows() -> Vec<Row> {
         also("web section")}
     row! {C::Companion, "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds",
-        |w, c| w.open_companion(c), also("web page explain")}
+        |w, c| w.write_companion(c, true), also("web page explain")}
     row! {C::ExtremeScenes, "Extreme scenes…",
         "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
         |w, c| w.open_stage_list(c, true), line(), off(no_presentation), also("stress stiff numerical")}
@@ -486,10 +495,11 @@ fn rows() -> Vec<Row> {
         row! {C::ViewFrom(side), side.name(), "Looks at the same point from that side",
             move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
     }
-    row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", |w, _| w.step_sphere(true),
+    row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", 
+        |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, true),
         key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
-        |w, _| w.step_sphere(false), key(Key::Comma),
+        |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, false), key(Key::Comma),
         needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::LookAtSphere, "Look at the sphere",
         "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
@@ -536,7 +546,7 @@ fn rows() -> Vec<Row> {
     row! {C::GoOnFromKept, "Go on from it",
         "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
         |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
-    row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.delete_kept(),
+    row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
         needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::LookLive, "Return to the picture", "Leaves the kept picture", |w, _| w.model.view.look(None),
         keys(Modifiers::ALT, Key::Num0), unlisted()}
@@ -546,9 +556,10 @@ fn rows() -> Vec<Row> {
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::ClearPaths, "Close the paths", "", |w, _| w.clear_paths(), needs(|f| f.has_paths, NO_PATHS),
         unlisted()}
-    row! {C::NextPanel, "Next panel", "", |w, c| w.next_panel(c), key(Key::F6), off(no_presentation),
+    row! {C::NextPanel, "Next panel", "", |w, c| w.shell.panel = places::next(c, w.shell.panel, &w.model), key(Key::F6), off(no_presentation),
         unlisted()}
-    row! {C::Blank, "Blank the screen", "", |w, _| w.toggle_blank(), key(Key::B),
+    row! {C::Blank, "Blank the screen", "", 
+        |w, _| w.model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true), key(Key::B),
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
         unlisted()}
     for sizing in Sizing::ALL {

@@ -12,17 +12,15 @@ use super::model::edit::Edit;
 use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
 use super::model::presentation::Presentation;
-use super::model::remembered::{Bookmark, Dock, Remembered, Tab, Theme};
+use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::view::{Mode, ViewState, With};
 use super::model::viewpoint::Viewpoint;
 use super::navigation;
-use super::places;
 use super::sight::Sighted;
 use super::spheres::grip::{new_body, to_copy};
-use super::spheres::{self, Selected, neighbour};
-use super::theme;
+use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::film::Film;
@@ -227,10 +225,6 @@ impl Window {
         }
     }
 
-    pub(super) fn step_sphere(&mut self, is_next: bool) {
-        self.model.selected = neighbour(self.document().scene(), self.model.selected, is_next);
-    }
-
     pub(super) fn look_at_sphere(&mut self) {
         if let Some(selected) = Selected::of(&self.model) {
             let camera = navigation::recentre(&self.document().camera, selected.body.center);
@@ -364,25 +358,12 @@ impl Window {
         }
     }
 
-    pub(super) fn next_panel(&mut self, context: &Context) {
-        self.shell.panel = places::next(context, self.shell.panel, &self.model);
-    }
-
     pub(super) fn open_stage_list(&mut self, context: &Context, is_at_end: bool) {
         self.model.remembered.has_panels = true;
         super::stage_list::open(context, is_at_end);
     }
 
-    pub(super) fn choose_theme(&mut self, context: &Context, theme: Theme) {
-        self.model.remembered.theme = theme;
-        theme::choose(context, theme);
-    }
-
-    pub(super) fn toggle_full_screen(&mut self, context: &Context) {
-        self.fill_screen(context, !self.model.is_full_screen);
-    }
-
-    fn fill_screen(&mut self, context: &Context, is_full: bool) {
+    pub(super) fn fill_screen(&mut self, context: &Context, is_full: bool) {
         if self.model.is_full_screen != is_full {
             self.model.is_full_screen = is_full;
             context.send_viewport_cmd(ViewportCommand::Fullscreen(is_full));
@@ -400,12 +381,6 @@ impl Window {
                 self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
-        }
-    }
-
-    pub(super) fn toggle_blank(&mut self) {
-        if let Some(presentation) = &mut self.model.presentation {
-            presentation.is_blank = !presentation.is_blank;
         }
     }
 
@@ -448,14 +423,10 @@ impl Window {
         self.tracing.restart();
     }
 
-    pub(super) fn switch_device(&mut self) {
+    /// Traces on this device, or on the CPU again.
+    pub(super) fn switch_device(&mut self, other: Device) {
         let device = &mut self.model.remembered.device;
-        *device = if *device == Device::Gpu { Device::Cpu } else { Device::Gpu };
-    }
-
-    pub(super) fn toggle_reference(&mut self) {
-        let device = &mut self.model.remembered.device;
-        *device = if *device == Device::Reference { Device::Cpu } else { Device::Reference };
+        *device = if *device == other { Device::Cpu } else { other };
     }
 
     pub(super) fn take_size(&mut self, sizing: Sizing) {
@@ -465,10 +436,6 @@ impl Window {
     }
 
     // Kept pictures
-
-    pub(super) fn keep(&mut self) {
-        self.display.kept.is_wanted = true;
-    }
 
     /// Keeps the picture once it has samples.
     pub(super) fn keep_wanted(&mut self, context: &Context) {
@@ -496,12 +463,6 @@ impl Window {
         }
     }
 
-    pub(super) fn delete_kept(&mut self) {
-        if let Some(place) = self.model.view.kept.chosen() {
-            self.model.view.delete_kept(place);
-        }
-    }
-
     /// Tests whether the shown picture and the chosen kept one differ by noise alone.
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
@@ -513,14 +474,6 @@ impl Window {
     }
 
     // Files
-
-    pub(super) fn ask_open(&mut self, context: &Context) {
-        self.ask_path(context, Purpose::Open);
-    }
-
-    pub(super) fn ask_check(&mut self, context: &Context) {
-        self.ask_path(context, Purpose::Check);
-    }
 
     pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
         let mut from = self.folder();
@@ -660,10 +613,6 @@ impl Window {
         }
     }
 
-    pub(super) fn reload(&mut self, context: &Context) {
-        self.files.scene_file.reload(context, &self.model.document.origin);
-    }
-
     pub(super) fn show_in_folder(&mut self, context: &Context) {
         let folder = self.model.remembered.recent.first().and_then(|path| path.parent());
         if let Some(url) = folder.map(companion::file_url) {
@@ -686,10 +635,6 @@ impl Window {
     pub(super) fn open_book(&mut self, context: &Context) {
         let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
         self.open_or_tell(context, url);
-    }
-
-    pub(super) fn open_companion(&mut self, context: &Context) {
-        self.write_companion(context, true);
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {

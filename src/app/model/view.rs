@@ -179,8 +179,9 @@ impl ViewState {
         self.look(if self.kept.looked().is_some() { None } else { self.kept.chosen() });
     }
 
-    /// Deletes a kept picture. A comparison with it ends.
-    pub fn delete_kept(&mut self, place: usize) {
+    /// Deletes the chosen kept picture. A comparison with it ends.
+    pub fn delete_kept(&mut self) {
+        let Some(place) = self.kept.chosen() else { return };
         if matches!(self.with, With::Kept(_)) {
             self.end_comparison();
         }
