@@ -17,9 +17,7 @@ use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
 use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{
-    FilmIdentity, Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop,
-};
+use crate::progressive::{Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
@@ -291,8 +289,7 @@ impl Files {
     pub fn load_reference(&self, context: &Context, path: PathBuf) {
         read(&self.references, context, move || {
             let (_, read) = saved::open_film(&path)?;
-            let identity = Some(FilmIdentity::of(&read.film));
-            Ok((path, ReferenceMeans { identity, ..ReferenceMeans::of(&read.film) }))
+            Ok((path, ReferenceMeans::of(&read.film)))
         });
     }
 }
@@ -348,7 +345,7 @@ fn read<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::kept::tests::{OnScreen, small_film};
 
     fn files() -> Files {
         Files::new(Autosave::new(None, Duration::MAX))

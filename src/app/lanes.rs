@@ -2,10 +2,11 @@
 //! tracer's.
 
 use super::answers::Answers;
-use super::dock::{data_colours, swatch};
+use super::dock::swatch;
 use super::facts::Facts;
 use super::model::device::Device;
 use super::model::document::Document;
+use super::theme;
 use super::widgets::hint;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
@@ -95,7 +96,8 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
         "A core traces {lanes} paths side by side, one per lane. Each row is a lane, each column a step. A lane whose path \
          has ended waits, unless it is refilled with the next path."
     )).wrap());
-    let colours = data_colours(ui);
+    let colours = theme::colours(ui);
+    let colours = [colours.first, colours.second, colours.third, colours.fourth, colours.waits];
     ui.horizontal_wrapped(|ui| {
         let names = ["from the camera", "off matte", "off metal", "glass", "waits"];
         names.into_iter().zip(&colours).for_each(|(name, colour)| swatch(ui, *colour, name));

@@ -21,7 +21,6 @@ mod facts;
 mod files;
 mod first_steps;
 mod frame_log;
-mod identity;
 mod input;
 mod inspector;
 mod kept;
@@ -47,7 +46,6 @@ mod second;
 mod shell;
 mod sight;
 mod sizer;
-mod speed;
 mod spheres;
 mod stage_list;
 mod stage_panel;
@@ -176,6 +174,7 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
             .with_title("Weekender")
             .with_app_id("weekender")
             .with_inner_size([1280.0, 800.0])
+            .with_clamp_size_to_monitor_size(true)
             .with_min_inner_size([480.0, 320.0])
             .with_icon(theme::icon())
             .with_drag_and_drop(true),
@@ -205,7 +204,6 @@ mod tests {
     use eframe::egui::{Event, Pos2, Ui};
 
     use egui_kittest::{Harness, HarnessBuilder};
-    use std::time::{Duration, Instant};
 
     /// The window of a command line, without a display.
     pub(super) fn window(words: &str) -> Window {
@@ -238,34 +236,6 @@ mod tests {
     pub(super) fn rest_at<State>(harness: &mut Harness<'_, State>, at: Pos2) {
         harness.event(Event::PointerMoved(at));
         harness.run_steps(6);
-    }
-
-    fn input() -> egui::RawInput {
-        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0));
-        egui::RawInput { screen_rect: Some(screen), ..egui::RawInput::default() }
-    }
-
-    /// How long the window may sleep after a frame that does this.
-    pub(super) fn sleep_after(context: &egui::Context, mut act: impl FnMut(&egui::Context)) -> Duration {
-        // What earlier frames have asked for is over.
-        (0..4).for_each(|_| drop(context.run_ui(input(), |_| {})));
-        let output = context.run_ui(input(), |ui| act(ui.ctx()));
-        output.viewport_output[&egui::ViewportId::ROOT].repaint_delay
-    }
-
-    /// Draws frames until the condition holds.
-    pub(super) fn until(
-        window: &mut Window,
-        context: &egui::Context,
-        what: &str,
-        is_so: impl Fn(&Window) -> bool,
-    ) {
-        let begin = Instant::now();
-        while !is_so(window) {
-            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}; {:?}", window.messages());
-            std::thread::sleep(Duration::from_millis(2));
-            context.run_ui(input(), |ui| window.ui_in(ui)).textures_delta.clear();
-        }
     }
 
     #[test]

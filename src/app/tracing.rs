@@ -7,7 +7,6 @@ use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::second::Second;
 use super::sizer::{Present, Sizer};
-use super::speed::Speed;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
 use super::wording::in_window_words;
@@ -24,7 +23,6 @@ pub struct Tracing {
     pub main: Tracer,
     /// Traces what the picture is compared with.
     pub second: Second,
-    pub speed: Speed,
     pub sizer: Sizer,
     /// Tracing time of the film's samples from before this run; none if it is not known.
     pub seconds_before: Option<f64>,
@@ -44,7 +42,6 @@ impl Tracing {
         Ok(Tracing {
             main: Tracer::new()?,
             second: Second::default(),
-            speed: Speed::default(),
             sizer: Sizer::default(),
             seconds_before: Some(0.0),
             film: None,
@@ -57,9 +54,7 @@ impl Tracing {
     /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
     pub fn poll(&mut self, context: &Context) -> Option<Instant> {
         self.second.receive();
-        let pictured = self.main.poll(context);
-        self.speed.follow(self.main.status());
-        pictured
+        self.main.poll(context)
     }
 
     /// Goes on with this film, which is the document's.

@@ -5,7 +5,6 @@ use crate::film::Film;
 use crate::job::render::TileOccupancy;
 use crate::numbers::heat::HeatScale;
 use crate::stages::Transfer;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// What a [`super::Picture`] shows.
@@ -36,48 +35,18 @@ pub struct ReferenceMeans {
     pub height: u32,
     /// Linear RGB, row by row from the top.
     pub means: Vec<[f32; 3]>,
-    /// The film's identity, if it is known.
-    pub identity: Option<FilmIdentity>,
 }
 
 impl ReferenceMeans {
     /// A reference with the film's current means.
     pub fn of(film: &Film) -> Self {
-        ReferenceMeans { width: film.width(), height: film.height(), means: film.means(), identity: None }
+        ReferenceMeans { width: film.width(), height: film.height(), means: film.means() }
     }
 
     /// The mean of a pixel, column and row from the upper left; linear RGB.
     pub fn mean(&self, [x, y]: [u32; 2]) -> Option<[f64; 3]> {
         let index = (x < self.width).then_some(y as usize * self.width as usize + x as usize)?;
         self.means.get(index).map(|mean| mean.map(f64::from))
-    }
-}
-
-/// Distinguishes films: those with the same identity have the same samples and, but for a chance of 2^-64, the same
-/// sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FilmIdentity {
-    samples: u64,
-    sums: u64,
-}
-
-impl FilmIdentity {
-    /// The identity of a film, from all its sums.
-    pub fn of(film: &Film) -> Self {
-        let mut hasher = DefaultHasher::new();
-        for half in film.halves() {
-            for sum in half {
-                sum.0.hash(&mut hasher);
-            }
-        }
-        (film.width(), film.height(), film.rejected()).hash(&mut hasher);
-        film.samples().iter().for_each(|range| range.hash(&mut hasher));
-        FilmIdentity { samples: film.sample_count(), sums: hasher.finish() }
-    }
-
-    /// Whether this is the identity of `film`. Its sums are read only if it has as many samples.
-    pub fn is_of(&self, film: &Film) -> bool {
-        self.samples == film.sample_count() && *self == FilmIdentity::of(film)
     }
 }
 
@@ -184,21 +153,6 @@ mod tests {
     }
 
     #[test]
-    fn films_are_identical_or_not() {
-        let identity = FilmIdentity::of(&film(1, 3));
-        assert!(identity.is_of(&film(1, 3)) && !identity.is_of(&film(3, 1)));
-        let mut off_by_one = film(1, 3);
-        off_by_one.halves_mut()[1][0].0[2] += 1;
-        assert!(!identity.is_of(&off_by_one));
-        let mut longer = film(1, 3);
-        longer.record(2..4, 0).unwrap();
-        assert!(!identity.is_of(&longer), "the same sums of more samples");
-        let mut other = film(1, 3);
-        other.record(2..4, 1).unwrap();
-        assert!(!FilmIdentity::of(&longer).is_of(&other), "a rejected sample");
-    }
-
-    #[test]
     fn halves_of_different_counts_are_weighed() {
         // Two samples of 3 in one half, one of 0 in the other: (3 - 0)^2 2 1 / 3^2.
         let mut film = Film::new(1, 1, 2);
@@ -272,7 +226,7 @@ mod tests {
     #[test]
     fn references_compare_by_address_and_check_bounds() {
         let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
-        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
+        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means });
         assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);
         assert_eq!([[3, 0], [0, 2]].map(|at| reference.mean(at)), [None; 2]);
         let copy = View::Difference(Arc::new(ReferenceMeans::clone(&reference)));

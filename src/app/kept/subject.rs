@@ -1,12 +1,14 @@
 //! The film on the screen: the live one, or one that was kept.
 
+use crate::app::answers::Answers;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::ViewState;
 use crate::app::tracer::Tracer;
 use crate::film::Film;
 use crate::progressive::Status;
-use std::sync::Arc;
+use eframe::egui::Context;
+use std::sync::{Arc, Weak};
 
 /// Tells films apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +98,56 @@ impl<'a> Subject<'a> {
     }
 }
 
+/// A question about the film on the screen, which is asked again when `K` has changed, one at a time.
+pub struct Query<K, T> {
+    asked: Option<K>,
+    /// Can be upgraded as long as the question waits for the film.
+    waiting: Weak<()>,
+    answers: Answers<T>,
+}
+
+impl<K, T> Default for Query<K, T> {
+    fn default() -> Self {
+        Query { asked: None, waiting: Weak::new(), answers: Answers::default() }
+    }
+}
+
+impl<K: PartialEq, T: Send + 'static> Query<K, T> {
+    /// What was asked last.
+    pub fn asked(&self) -> Option<&K> {
+        self.asked.as_ref()
+    }
+
+    /// Takes the newest answer.
+    pub fn take(&self) -> Option<T> {
+        std::iter::from_fn(|| self.answers.take()).last()
+    }
+
+    /// Asks about `key`, unless that was asked last, or the question before is open. `look` finds the answer, if any, in the
+    /// film. Returns whether it was asked.
+    pub fn ask(
+        &mut self,
+        context: &Context,
+        subject: &Subject<'_>,
+        key: K,
+        look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
+    ) -> bool {
+        if self.waiting.strong_count() > 0 || self.asked.as_ref() == Some(&key) {
+            return false;
+        }
+        let question = Arc::new(());
+        (self.waiting, self.asked) = (Arc::downgrade(&question), Some(key));
+        let answer = self.answers.answer(context);
+        subject.inspect(move |film| {
+            let found = look(film);
+            // Dropped first: the answer wakes a frame, which may ask the next question.
+            drop(question);
+            found.into_iter().for_each(|found| answer.give_one(found));
+        });
+        true
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,5 +178,25 @@ mod tests {
         let (answer, answers) = channel();
         subject.inspect(move |film| answer.send(film.sample_count()).unwrap());
         assert_eq!(answers.recv().unwrap(), 7);
+    }
+
+    #[test]
+    fn a_question_is_asked_again_when_its_subject_has_changed() {
+        use crate::app::kept::tests::{OnScreen, small_film};
+        let (screen, context) = (OnScreen::new(small_film(5, 0.5)), Context::default());
+        let mut query = Query::default();
+        let count = |film: &Film| Some(film.sample_count());
+        for key in [1, 2] {
+            screen.before_answers(|subject| {
+                assert!(query.ask(&context, subject, key, count));
+                assert!(!query.ask(&context, subject, key + 1, count), "the one before is open");
+            });
+            assert_eq!((query.take(), query.take()), (Some(5), None));
+            screen
+                .before_answers(|subject| assert!(!query.ask(&context, subject, key, count), "it is known"));
+        }
+        screen.before_answers(|subject| assert!(query.ask(&context, subject, 3, |_| None)));
+        assert_eq!(query.take(), None);
+        screen.before_answers(|subject| assert!(query.ask(&context, subject, 4, count)));
     }
 }

@@ -8,7 +8,6 @@ pub mod device;
 pub mod document;
 pub mod edit;
 pub mod first_steps;
-pub mod fitted;
 pub mod further;
 pub mod kept;
 pub mod origin;
@@ -26,7 +25,7 @@ use crate::progressive::Stop;
 use device::DeviceOptions;
 use document::Document;
 use presentation::Presentation;
-use remembered::Remembered;
+use remembered::{Remembered, Tab};
 use view::ViewState;
 
 /// Everything that the user has chosen.
@@ -58,6 +57,11 @@ impl Model {
     /// Whether panels are shown. A presentation has none.
     pub fn has_panels(&self) -> bool {
         self.remembered.has_panels && self.presentation.is_none()
+    }
+
+    /// Whether the right panel shows this tab.
+    pub fn shows(&self, tab: Tab) -> bool {
+        self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
     }
 
     /// The backend for the chosen device, lanes and threads.

@@ -2,7 +2,6 @@
 
 use super::checked::CheckedScene;
 use super::document::Document;
-use super::fitted::Fitted;
 use super::kept::{Kept, KeptList};
 use super::origin::Origin;
 use super::show::Show;
@@ -23,7 +22,7 @@ pub enum Mode {
 }
 
 /// The kind of picture to compare with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum With {
     /// The stage that belongs to this one; without a stage, the book's own arithmetic.
     Stage,
@@ -70,7 +69,7 @@ impl Other {
 }
 
 /// The current view, which is exactly one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
@@ -79,11 +78,11 @@ pub struct ViewState {
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
-    /// The divider waits to be put where the pictures differ most.
-    pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
+    #[serde(skip)]
     pub reference: Option<Arc<ReferenceMeans>>,
     /// Pictures that are kept; one of them can be shown instead of the traced one.
+    #[serde(skip)]
     pub kept: KeptList,
 }
 
@@ -95,7 +94,6 @@ impl Default for ViewState {
             with: With::Stage,
             divider: 0.5,
             tone: Tone::default(),
-            is_divider_unplaced: false,
             reference: None,
             kept: KeptList::default(),
         }
@@ -103,6 +101,17 @@ impl Default for ViewState {
 }
 
 impl ViewState {
+    /// The view without films and kept pictures, which are gone with their window.
+    pub fn mended(mut self) -> Self {
+        if matches!(self.with, With::Kept(_)) {
+            self.end_comparison();
+        }
+        if self.show == Show::Difference {
+            self.show = Show::Picture;
+        }
+        self
+    }
+
     /// The current view of the film.
     pub fn show(&self) -> Show {
         self.show
@@ -152,7 +161,7 @@ impl ViewState {
         }
         self.show = Show::Picture;
         (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
-        (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
+        self.divider = 0.5;
     }
 
     /// Shows a kept picture, or the traced one.
@@ -170,8 +179,9 @@ impl ViewState {
         self.look(if self.kept.looked().is_some() { None } else { self.kept.chosen() });
     }
 
-    /// Deletes a kept picture. A comparison with it ends.
-    pub fn delete_kept(&mut self, place: usize) {
+    /// Deletes the chosen kept picture. A comparison with it ends.
+    pub fn delete_kept(&mut self) {
+        let Some(place) = self.kept.chosen() else { return };
         if matches!(self.with, With::Kept(_)) {
             self.end_comparison();
         }
@@ -215,11 +225,10 @@ impl ViewState {
         }
     }
 
-    /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
-    pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
+    /// The kept picture at the other side of a wipe, which is as large as the shown one.
+    pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        let kept = &self.kept.get(place)?.kept;
-        Some((kept, Fitted::new(kept.size(), self.shown_document(live).size())))
+        self.kept.get(place).map(|named| &named.kept)
     }
 
     /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.
