@@ -114,7 +114,8 @@ fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary
         ..Status::default()
     };
     let samples = Some(film.samples().to_string());
-    Summary { render, samples, status, files: vec![render.out.clone()], writing: Duration::ZERO }
+    let files = vec![render.out.clone()];
+    Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
 /// The part's film, if there is one to continue. A damaged one is moved aside.

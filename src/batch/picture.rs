@@ -99,7 +99,8 @@ impl<'a> Picture<'a> {
         }
         let outcome = outcome(render, &status, film.as_ref(), &written, kept);
         let samples = film.map(|film| film.samples().to_string());
-        (Summary { render, samples, status, files: written.files, writing: begin.elapsed() }, outcome)
+        let (denoised, writing) = (written.denoised, begin.elapsed());
+        (Summary { render, samples, status, denoised, files: written.files, writing }, outcome)
     }
 }
 

@@ -79,6 +79,10 @@ pub(super) struct FileFlags {
     /// The format of --out, if its name does not tell it
     #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
     format: Option<OutputFormat>,
+    /// Write the denoised picture, with an estimate of its error; the film of a .exr gets it as a layer and stays as it
+    /// is; --noise-target is then for the denoised picture
+    #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
+    denoise: bool,
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
     #[arg(long, value_enum, requires = "batch", conflicts_with = "AnimationFlags")]
     ppm: Option<PpmForm>,
@@ -303,6 +307,9 @@ fn render(
     if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
         bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
     }
+    if files.denoise && !job.settings().estimate_error {
+        bail!("--denoise needs --estimate-error on: the filter compares the film's two halves");
+    }
     Ok(RenderOptions {
         plan: plan(flags, &chosen.recipe),
         recipe: chosen.recipe,
@@ -338,7 +345,7 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    let stop = Stop { samples, seconds, noise };
+    let stop = Stop { samples, seconds, noise, is_denoised: flags.files.denoise };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 

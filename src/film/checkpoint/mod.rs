@@ -5,6 +5,7 @@
 //! `rest.R.lo`, `rest.R.hi` and so on (32-bit unsigned) are the low and high words of what the rounding of the mean
 //! loses: mean times samples times 2^24, rounded, plus the rest is the exact sum. The rest is small, so it takes little
 //! space. If there are two halves, `sum.a.R.lo` and so on are the sums of the first; the second's is the difference.
+//! Channels `denoised.R`, `.G` and `.B`, if present, are a denoised picture for other programs; they are not read.
 //! Three text attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
 //! `weekenderFilm` the `Head`.
 //!
@@ -24,8 +25,8 @@ pub(crate) use length::check_length;
 pub(crate) use open::read_description;
 pub use open::{FilmHead, read_head};
 pub use read::{check, load, read};
-pub use write::save;
 pub(crate) use write::write;
+pub use write::{save, save_with};
 
 use super::{Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
 use crate::system::files::{InputError, ShownPath};
@@ -118,7 +119,7 @@ mod tests {
         change(&mut head);
         head.head_checksum = head.checksum(TEXTS);
         let mut file = Cursor::new(Vec::new());
-        write_with(&film, TEXTS, &head, &mut file).unwrap();
+        write_with(&film, None, TEXTS, &head, &mut file).unwrap();
         file.into_inner()
     }
 

@@ -157,7 +157,7 @@ pub fn write_image_as(
     replace_file(path, |writer| match format {
         OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
         OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
-        OutputFormat::Exr => checkpoint::write(film, description, writer),
+        OutputFormat::Exr => checkpoint::write(film, None, description, writer),
         OutputFormat::Pfm => netpbm::write_pfm(film, writer),
     })?;
     Ok(())
