@@ -4,7 +4,7 @@ use super::limits::{check_memory, invalid, pixel_count};
 use super::read::{ReadPicture, Values};
 use crate::film::checkpoint;
 use exr::error::{Error, Result};
-use exr::image::{AnyChannels, AnyImage, FlatSamples, Layer as Part};
+use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
 use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Seek};
@@ -32,7 +32,7 @@ pub(super) fn read(
     }
     // Each of the two ways refuses files that the other reads: the first those with a wrong number of chunks, the second
     // those with an odd header.
-    let mut decoded = |is_pedantic: bool| -> Result<AnyImage> {
+    let mut decoded = |is_pedantic: bool| -> Result<FlatImage> {
         reader.rewind()?;
         let builder =
             reading().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
@@ -76,7 +76,7 @@ pub(super) fn read(
 }
 
 /// All layers with red, green and blue; if there are none, all with luminance.
-fn layers(image: &AnyImage) -> Vec<Layer<'_>> {
+fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
     let (mut colour, mut grey) = (Vec::new(), Vec::new());
     for part in &image.layer_data {
         let mut groups: BTreeMap<String, [Option<&FlatSamples>; 5]> = BTreeMap::new();
@@ -109,7 +109,7 @@ fn layers(image: &AnyImage) -> Vec<Layer<'_>> {
     if colour.is_empty() { grey } else { colour }
 }
 
-fn choose<'a>(layers: &'a [Layer], image: &AnyImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
+fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
     if let Some(name) = name {
         let found = layers.iter().find(|layer| layer.name == name);
         return found.ok_or_else(|| {
@@ -138,7 +138,7 @@ fn names(layers: &[Layer]) -> String {
 }
 
 /// What makes the numbers of a picture mean something else than usual.
-fn notes(image: &AnyImage, compression: Compression) -> Vec<String> {
+fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(space) = &image.attributes.chromaticities {
         let found = [space.red, space.green, space.blue, space.white];
