@@ -41,7 +41,8 @@ impl Picture {
             }
             _ => (path, None),
         };
-        let saved = match Saved::read(path) {
+        // A film's layers are pictures.
+        let saved = match if layer.is_some() { Saved::describe(path) } else { Saved::read(path) } {
             Ok(saved) => Some(saved),
             // Most pictures have no description. Reading the picture below reports its own errors.
             Err(OpenError::Picture(_)) => None,
