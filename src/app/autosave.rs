@@ -51,7 +51,7 @@ impl Note {
             Source::File(path) => path.to_str().map(str::to_owned),
             _ => None,
         };
-        let Stop { samples, seconds, noise } = document.stop;
+        let Stop { samples, seconds, noise, .. } = document.stop;
         Note {
             stage: document.stage().map(|stage| stage.id.to_owned()),
             file,
@@ -90,7 +90,8 @@ pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     }
     (document.camera, document.settings) = (recipe.camera, recipe.settings);
     (document.has_own_size, document.is_from_file) = (note.has_own_size, note.is_from_file);
-    document.stop = Stop { samples: note.samples, seconds: note.seconds, noise: note.noise };
+    document.stop =
+        Stop { samples: note.samples, seconds: note.seconds, noise: note.noise, ..Stop::default() };
     Some((document, saved.samples()?))
 }
 

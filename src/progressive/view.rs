@@ -1,5 +1,6 @@
 //! What to show of a film: the picture itself, or a heat map of one of its properties.
 
+use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::job::render::TileOccupancy;
 use crate::numbers::heat::HeatScale;
@@ -22,6 +23,9 @@ pub enum View {
     Difference(Arc<ReferenceMeans>),
     /// How full the packets were, per tile; dark where unknown.
     Occupancy,
+    /// The denoised picture in another view, in which [`View::StandardError`] is the error of the denoised picture. Another
+    /// film is shown as it is.
+    Denoised(Arc<Denoised>, Box<View>),
 }
 
 /// A picture to compare with, linear RGB.
@@ -67,6 +71,7 @@ impl View {
             View::StandardError => Some(HeatScale::ERROR),
             View::Difference(_) => Some(HeatScale::DIFFERENCE),
             View::Occupancy => Some(HeatScale::OCCUPANCY),
+            View::Denoised(_, view) => view.scale(),
         }
     }
 
@@ -74,6 +79,9 @@ impl View {
     pub fn is_same(&self, other: &View) -> bool {
         match (self, other) {
             (View::Difference(mine), View::Difference(theirs)) => Arc::ptr_eq(mine, theirs),
+            (View::Denoised(mine, view), View::Denoised(theirs, other)) => {
+                Arc::ptr_eq(mine, theirs) && view.is_same(other)
+            }
             (mine, theirs) => mine == theirs,
         }
     }
@@ -110,6 +118,13 @@ impl View {
                 rgb8
             }
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
+            View::Denoised(denoised, view) if !denoised.is_of(film) => {
+                view.resolve(film, transfer, occupancy)
+            }
+            View::Denoised(denoised, view) if **view == View::StandardError => {
+                heat(&|pixel| f64::from(denoised.errors[pixel]))
+            }
+            View::Denoised(denoised, view) => view.resolve(&denoised.film, transfer, occupancy),
         }
     }
 }

@@ -29,9 +29,10 @@ pub enum What {
 
 impl What {
     /// All of them, with name, use and ending.
-    const ALL: [(What, &str, &str, &str); 4] = [
+    const ALL: [(What, &str, &str, &str); 5] = [
         (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
         (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
+        (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
         (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can go on later", "exr"),
         (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
     ];
@@ -411,6 +412,7 @@ fn file_bytes(format: OutputFormat, [width, height]: [u32; 2], document: &Docume
     match format {
         OutputFormat::Png => pixels,
         OutputFormat::P6 => 3 * pixels,
+        OutputFormat::Pfm => 12 * pixels,
         OutputFormat::Exr => Film::bytes(width, height, document.settings.half_count()) / 2,
     }
 }

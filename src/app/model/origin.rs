@@ -143,7 +143,7 @@ mod tests {
     fn pictures_without_chance_end_with_their_samples() {
         let stop = |id| Origin::of_stage(Stage::find(id).unwrap()).usual_stop();
         assert_eq!(stop("ppm-tiny").samples, Some(1));
-        assert_eq!(stop("book"), Stop { samples: None, seconds: None, noise: Some(Stop::NOISE) });
+        assert_eq!(stop("book"), Stop { noise: Some(Stop::NOISE), ..Stop::default() });
     }
 
     #[test]

@@ -13,13 +13,14 @@ use super::{Candidate, Source, Stop, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::denoise;
 use crate::job::render::RenderJob;
 use crate::numbers::chart;
 use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
-use figures::{BenchFigures, Kind, Row, Run, SceneFigures, Spread};
+use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -32,6 +33,9 @@ const SPREAD_LIMIT: f64 = 0.1;
 
 /// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
+
+/// Samples per pixel of the film that is denoised.
+const DENOISED_SAMPLES: u64 = 16;
 
 /// Shortest warm-up with a meaningful speed, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
@@ -108,11 +112,36 @@ impl Bench<'_> {
         self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs));
         for BenchScene { name, job, samples, .. } in scenes {
             let rows = self.rows(name, job, *samples, &mut candidates);
-            self.figures.scenes.push(SceneFigures::new(name, job, rows));
+            let mut figures = SceneFigures::new(name, job, rows);
+            figures.denoising = self.denoising(job);
+            self.figures.scenes.push(figures);
             if self.is_cancelled() {
                 break;
             }
         }
+    }
+
+    /// How long the filter takes for a film of the scene; `None` if it cannot be rendered or denoised.
+    fn denoising(&self, job: &RenderJob) -> Option<Denoising> {
+        let mut candidate = cpu(self.best_level(), self.best_level().native_lanes(), self.options.threads());
+        let film = candidate.trace(job, DENOISED_SAMPLES, self.cancel).ok()?.film;
+        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads()).build().ok()?;
+        let (mut seconds, mut error) = (Vec::new(), None);
+        for _ in 0..self.options.runs {
+            let begin = Instant::now();
+            error = Some(threads.install(|| denoise::of_film(&film)).ok()?.error);
+            seconds.push(begin.elapsed().as_secs_f64());
+        }
+        let error = error?;
+        let seconds = Spread::of(seconds.into_iter())?;
+        let [raw_rmse, rmse] = [error.raw_mse.sqrt(), error.rmse()];
+        Some(Denoising {
+            samples_per_pixel: DENOISED_SAMPLES,
+            threads: self.options.threads(),
+            seconds,
+            raw_rmse,
+            rmse,
+        })
     }
 
     /// All candidates in the table's order.

@@ -6,6 +6,9 @@ use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
+/// The path that stands for standard input or output.
+pub const STANDARD: &str = "-";
+
 /// How messages show a path.
 pub trait ShownPath {
     /// The path as part of one line that cannot control a terminal: see [`printable`]. Bytes that are not UTF-8 become

@@ -2,9 +2,9 @@
 
 use super::identity::resolved;
 use super::leftovers;
-use super::paths::ShownPath;
+use super::paths::{STANDARD, ShownPath};
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -31,8 +31,8 @@ fn remedy(reason: &io::Error) -> &'static str {
 }
 
 /// Writes a new file in the directory of `path` with `write`, then renames it over the old one. On failure the old file
-/// is unchanged and the new one is deleted. Links are followed; devices and pipes are written directly. The file gets
-/// the usual permissions, or those of the file it replaces.
+/// is unchanged and the new one is deleted. Links are followed; devices and pipes are written directly, and `-` is
+/// standard output. The file gets the usual permissions, or those of the file it replaces.
 ///
 /// # Errors
 /// [`WriteError`], from `write` or from the file system.
@@ -60,7 +60,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::Device { is_pipe: true, .. } => Ok(()),
+        Target::StandardOutput | Target::Device { is_pipe: true, .. } => Ok(()),
         Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
         Target::File { directory, old, .. } => {
             leftovers::remove_from(&directory);
@@ -83,12 +83,16 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 }
 
 enum Target {
+    StandardOutput,
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
     Device { path: PathBuf, is_pipe: bool },
 }
 
 impl Target {
     fn find(named: &Path) -> io::Result<Target> {
+        if named == Path::new(STANDARD) {
+            return Ok(Target::StandardOutput);
+        }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => {
@@ -124,12 +128,12 @@ impl Target {
 }
 
 #[cfg(unix)]
-fn is_pipe(found: &Metadata) -> bool {
+pub(super) fn is_pipe(found: &Metadata) -> bool {
     std::os::unix::fs::FileTypeExt::is_fifo(&found.file_type())
 }
 
 #[cfg(not(unix))]
-fn is_pipe(_: &Metadata) -> bool {
+pub(super) fn is_pipe(_: &Metadata) -> bool {
     false
 }
 
@@ -154,6 +158,13 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
         writer.flush()
     };
     match Target::find(path)? {
+        Target::StandardOutput => {
+            // Some formats are not written from start to end.
+            let mut file = tempfile::tempfile()?;
+            fill(&file)?;
+            file.rewind()?;
+            io::copy(&mut file, &mut io::stdout().lock()).map(drop)
+        }
         Target::Device { path, .. } => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
