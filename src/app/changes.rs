@@ -85,6 +85,11 @@ impl Changes {
         (self.has_moved, self.is_in_gesture) = (false, false);
     }
 
+    /// Whether something is being moved, or a button of the mouse is held.
+    pub fn is_in_gesture(&self) -> bool {
+        self.is_in_gesture
+    }
+
     /// Whether something is being moved.
     pub fn is_moving(&self) -> bool {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)

@@ -21,7 +21,7 @@ const COLUMN: f32 = 11.8;
 const ROWS: std::ops::RangeInclusive<f32> = 4.0..=12.0;
 
 /// Height of the heading of a timeline, points.
-const HEADING: f32 = 20.0;
+const HEADING: f32 = 24.0;
 
 /// The timelines without and with refill, recorded by a background thread while they are shown.
 #[derive(Default)]

@@ -218,11 +218,20 @@ impl Window {
         };
         let without = other.as_deref().and_then(present::pixel);
         let magnified = match (other, without, with) {
+            (Some(other), Some(without), Some(with)) if is_later(document, &tracing.second) => {
+                Magnified::two(vec![other, mine], with, without)
+            }
             (Some(other), Some(without), Some(with)) => Magnified::two(vec![other, mine], without, with),
             _ => Magnified::one(mine, inspected.map(|pixel| pixel.mean)),
         };
         magnified.paint(ui, room, pointer);
     }
+}
+
+/// Whether the other picture of a comparison is a later stage than this one.
+fn is_later(document: &Document, second: &Second) -> bool {
+    let other = second.shown().and_then(|shown| shown.document.stage());
+    other.zip(document.stage()).is_some_and(|(other, mine)| other.index() > mine.index())
 }
 
 /// The titles of the two sides of a comparison, the other one first, each from the longest to the shortest.
@@ -238,7 +247,8 @@ fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
     if facts.model.presentation.is_none() {
         return titles;
     }
-    let mut names = ["Without", "With"].into_iter();
+    let names = if is_later(facts.shown(), second) { ["With", "Without"] } else { ["Without", "With"] };
+    let mut names = names.into_iter();
     titles.map(|titles| {
         let name = names.next().unwrap_or_default();
         titles

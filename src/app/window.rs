@@ -118,7 +118,7 @@ impl Window {
             undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
             redo: self.changes.later().map(|other| self.document().difference(other)),
             is_coarse: self.tracing.main.is_coarse(),
-            is_moving: self.changes.is_moving(),
+            is_moving: self.changes.is_in_gesture(),
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost,
             checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),

@@ -5,6 +5,7 @@ use crate::app::answers::Answers;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::status::time;
+use crate::app::theme;
 use crate::app::widgets::{About, Number, hint, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
@@ -14,7 +15,7 @@ use crate::progressive::{Phase, Status};
 use crate::system::files::home_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
-use eframe::egui::{self, Align, Key, Label, Layout, RichText, TextEdit, Ui};
+use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf, is_separator};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
@@ -341,7 +342,11 @@ impl SaveBox {
                 Some(seconds) => format!(", about {}", time(seconds.ceil())),
                 None => String::new(),
             };
-            option(ui, &mut self.size, size, label, &format!("{width} × {height}{when}"));
+            let help = match size {
+                Size::Other if self.size != size => "Width and height".to_owned(),
+                _ => format!("{width} × {height}{when}"),
+            };
+            option(ui, &mut self.size, size, label, &help);
         }
         if self.size == Size::Other {
             ui.horizontal(|ui| {
@@ -359,7 +364,11 @@ impl SaveBox {
 /// A label, and what follows it over the rest of the width, from the right to the left.
 fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        ui.add_sized([64.0, 24.0], Label::new(label).halign(Align::Min));
+        let size = vec2(64.0, 24.0);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_size(size);
+            ui.label(label);
+        });
         ui.with_layout(Layout::right_to_left(Align::Center), add).inner
     })
     .inner
@@ -368,10 +377,16 @@ fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
 fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help: &str) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        let (colours, is_on) = (theme::colours(ui), *chosen == value);
+        let widgets = &mut ui.visuals_mut().widgets;
+        for widget in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+            widget.bg_stroke = Stroke::new(1.0, if is_on { colours.accent } else { colours.edge });
+        }
         ui.radio_value(chosen, value, label);
+        ui.spacing_mut().interact_size.y = 16.0;
         ui.horizontal(|ui| {
-            ui.add_space(16.0);
-            ui.label(RichText::new(help).small().weak());
+            ui.add_space(24.0);
+            small(ui, help);
         });
     });
 }
