@@ -13,7 +13,7 @@ mod mistakes;
 mod tracer;
 
 pub use answer::{Answer, AnswerKind, Section};
-pub use hypothesis::{Compared, Mistake};
+pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
 pub use judge::{Finding, judge, stages};
 pub use mine::{Damage, Mine};
 pub use mistakes::MISTAKES;
