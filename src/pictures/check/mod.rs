@@ -14,7 +14,7 @@ mod tracer;
 
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
-pub use hypothesis::{Compared, Mistake};
+pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
 pub use judge::{Finding, judge, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
