@@ -10,7 +10,7 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
-use crate::system::files::home_directory;
+use crate::system::files::{home_directory, pictures_directory};
 use crate::system::memory;
 use eframe::egui::{self, Key, RichText, TextEdit, Ui};
 use std::path::{Path, PathBuf, is_separator};
@@ -412,8 +412,7 @@ fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help
 
 /// Where pictures go unless the user has chosen another folder; it is created when needed.
 pub fn default_folder() -> Option<PathBuf> {
-    let pictures = home_directory()?.join("Pictures");
-    pictures.is_dir().then(|| pictures.join("Weekender"))
+    pictures_directory().map(|pictures| pictures.join("Weekender"))
 }
 
 /// The name for a file of this picture.
