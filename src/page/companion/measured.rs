@@ -400,7 +400,14 @@ mod tests {
 
     fn kept(json: &Value) -> Kept {
         let (file, command) = ("a.json".to_owned(), "make it".to_owned());
-        Kept { file, command, machine: None, date: Some("1 May".to_owned()), text: json.to_string() }
+        Kept {
+            file,
+            command,
+            machine: None,
+            date: Some("1 May".to_owned()),
+            text: json.to_string(),
+            kept: String::new(),
+        }
     }
 
     /// The text of each row's cells.
