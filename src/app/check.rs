@@ -7,7 +7,7 @@ use super::stage_panel::paragraph;
 use super::texture::Texture;
 use super::theme;
 use super::viewport::paint;
-use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, switch, tip};
+use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, small, switch, tip};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
 use eframe::egui::{
@@ -163,7 +163,7 @@ impl Check {
             links(ui, answer, commands);
             if pictures.is_some() {
                 ui.add_space(4.0);
-                ui.label(RichText::new("Compare").small().color(theme::colours(ui).weak));
+                small(ui, "Compare");
                 let sides = [
                     (Side::Yours, About::new("Yours", "Your picture")),
                     (Side::Wipe, About::new("Wipe", "Drag a divider between the two")),

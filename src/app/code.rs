@@ -3,7 +3,7 @@
 use super::facts::Facts;
 use super::right::scrolling;
 use super::theme;
-use super::widgets::{About, hint, switch, tip};
+use super::widgets::{About, hint, small, switch, tip};
 use crate::measure::baseline;
 use crate::page::companion::{Excerpt, excerpts_between};
 use crate::stages::Stage;
@@ -175,7 +175,7 @@ fn words_ui<'a>(ui: &mut Ui, excerpts: impl Iterator<Item = &'a Excerpt>) {
     }
     let colours = theme::colours(ui);
     ui.add_space(4.0);
-    ui.label(RichText::new("Words").small().color(colours.weak));
+    small(ui, "Words");
     let width = ui.available_width() - 120.0;
     Grid::new("words").num_columns(2).min_col_width(104.0).spacing([8.0, 4.0]).show(ui, |ui| {
         for (name, meaning) in used {
@@ -194,7 +194,7 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
     let place = format!("{}, line {}", excerpt.file, excerpt.first);
     Sides::new().shrink_left().truncate().show(
         ui,
-        |ui| ui.label(RichText::new(place).small().color(colours.weak)),
+        |ui| small(ui, place),
         |ui| {
             let copy = ui.link(RichText::new("Copy").small());
             if tip(ui, copy, "Copies these lines", None).clicked() {

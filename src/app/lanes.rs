@@ -7,7 +7,7 @@ use super::facts::Facts;
 use super::model::device::Device;
 use super::model::document::Document;
 use super::theme;
-use super::widgets::hint;
+use super::widgets::{hint, small};
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Shading;
@@ -111,7 +111,7 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
         let figures = format!("{steps} steps, {share:.0} % of the lanes at work");
         ui.horizontal(|ui| {
             ui.label(RichText::new(name).small().strong());
-            ui.label(RichText::new(&figures).small().color(ui.visuals().weak_text_color()));
+            small(ui, &figures);
         });
         let size = vec2(column * timeline.len() as f32, row * lanes as f32);
         let (place, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -5,13 +5,13 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
+use super::model::Presentation;
 use super::model::companion;
 use super::model::device::{self, Device};
 use super::model::document::Document;
 use super::model::edit::Edit;
 use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
-use super::model::presentation::Presentation;
 use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
 use super::model::show::Show;
 use super::model::sizing::Sizing;

@@ -274,7 +274,7 @@ pub fn pixel(swatch: &[Option<[u8; 3]>]) -> Option<[u8; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::presentation::Presentation;
+    use crate::app::model::Presentation;
     use crate::app::tests::{dressed, facts_of};
 
     #[test]

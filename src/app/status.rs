@@ -7,7 +7,7 @@ use super::model::sizing::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
-use super::widgets::{compact, tip};
+use super::widgets::{compact, small, tip};
 use super::wording::grouped;
 use crate::denoise::DenoisedError;
 use crate::film::Film;
@@ -208,13 +208,13 @@ fn details(ui: &mut Ui, facts: &Facts) {
                 ui.label(RichText::new("Details").strong());
                 for (name, value) in figures(facts) {
                     ui.horizontal(|ui| {
-                        ui.label(RichText::new(name).small().color(theme::colours(ui).weak));
+                        small(ui, name);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                             ui.add(Label::new(RichText::new(value).small()).truncate());
                         });
                     });
                 }
-                ui.add(Label::new(RichText::new(TERMS).small().color(theme::colours(ui).weak)).wrap());
+                small(ui, TERMS);
             });
         });
     tip(ui, response, "Speed, lanes, memory, and what these mean", None);
@@ -310,6 +310,14 @@ mod tests {
         facts.model.document.stop.noise = Some(0.002);
         assert!(sentence(&facts).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&facts));
         assert_eq!(share(&facts), Some(0.25));
+        facts.is_coarse = true;
+        assert!(sentence(&facts) == "Starting" && share(&facts).is_none());
+        facts.is_moving = true;
+        assert_eq!(sentence(&facts), "A coarse picture while you move");
+        facts.is_coarse = false;
+        (facts.model.is_paused, facts.is_held) = (true, true);
+        assert_eq!(sentence(&facts), "Paused; the picture has moved, and 100 samples show it");
+        (facts.model.is_paused, facts.is_held) = (false, false);
         facts.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(sentence(&facts).starts_with("Done: 100 samples per pixel in 10 s"), "{}", sentence(&facts));
         assert_eq!(share(&facts), None);

@@ -7,11 +7,11 @@ use super::model::show::Show;
 use super::model::tone::{Channel, Tone};
 use super::model::view::ViewState;
 use super::theme;
-use super::widgets::{About, Header, Number, check, compact, entry, fold, hint, list, row, switch, tip};
-use crate::film::Histogram;
-use eframe::egui::{
-    self, Align2, Label, Pos2, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+use super::widgets::{
+    About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
 };
+use crate::film::Histogram;
+use eframe::egui::{self, Align2, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
@@ -156,5 +156,5 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
     let help = "How many pixels are how bright, from black to white: each twentieth of the width is twice the light, \
                 and heights are square roots of counts";
     tip(ui, response, help, None);
-    ui.add(Label::new(RichText::new(words).small().color(colours.weak)).wrap());
+    small(ui, words);
 }

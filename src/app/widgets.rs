@@ -561,8 +561,7 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
             if !is_open && !header.summary.is_empty() {
-                let color = ui.visuals().weak_text_color();
-                ui.label(RichText::new(header.summary).small().color(color));
+                small(ui, header.summary);
             }
         },
     );

@@ -11,7 +11,6 @@ pub mod first_steps;
 pub mod further;
 pub mod kept;
 pub mod origin;
-pub mod presentation;
 pub mod reload;
 pub mod remembered;
 pub mod show;
@@ -24,9 +23,19 @@ use crate::backends::BackendChoice;
 use crate::progressive::Stop;
 use device::DeviceOptions;
 use document::Document;
-use presentation::Presentation;
 use remembered::{Remembered, Tab};
 use view::ViewState;
+
+/// A presentation: full screen, the picture with large captions, no panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Presentation {
+    /// The window was in full-screen mode before, and stays in it.
+    pub was_full_screen: bool,
+    /// Whether titles and texts are shown.
+    pub has_captions: bool,
+    /// Whether the screen is black.
+    pub is_blank: bool,
+}
 
 /// Everything that the user has chosen.
 #[derive(Clone, Debug)]
