@@ -1,5 +1,7 @@
 //! The filter, tile by tile: no pixel depends on others further away than [`HALO`].
 
+#![expect(clippy::needless_range_loop, reason = "several arrays have the same index")]
+
 use bytemuck::Zeroable;
 use std::array::from_fn;
 
