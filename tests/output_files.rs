@@ -106,7 +106,8 @@ fn descriptions_are_read_back() {
     for (case, description) in
         [description(), foreign, latin, mixed, large, Description::new("")].iter().enumerate()
     {
-        for format in OutputFormat::ALL {
+        // A PFM has no place for a description.
+        for format in OutputFormat::ALL.into_iter().filter(|format| *format != OutputFormat::Pfm) {
             let path = directory.path().join(format!("a{}", format.ending()));
             write_image(&path, &film(), Transfer::Gamma2, description).unwrap();
             let read = read_description(&path).unwrap();

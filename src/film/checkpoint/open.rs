@@ -102,7 +102,7 @@ pub(crate) fn read_description(
 /// Turns damage into [`CheckpointError::Resaved`] if the file has attributes that this program doesn't write.
 pub(super) fn resaved_or(error: CheckpointError, header: &Header) -> CheckpointError {
     let (own, shared) = (&header.own_attributes, &header.shared_attributes);
-    let is_ours = own.other.len() == 1 && shared.other.len() == 1 && own.capture_date.is_none();
+    let is_ours = own.other.len() + shared.other.len() == 2 && own.capture_date.is_none();
     match error {
         CheckpointError::Damaged { path, what } if !is_ours => CheckpointError::Resaved { path, what },
         error => error,

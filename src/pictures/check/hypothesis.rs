@@ -247,7 +247,7 @@ impl Studio {
         };
         let linear = match &hypothesis.making {
             Making::Plain(steps) => {
-                Tracer::new(&self.recipe, *steps).means(count((samples / 8).min(16)) as u32)
+                Tracer::new(&self.recipe, *steps).means(count((samples / 8).clamp(1, 16)) as u32)
             }
             Making::Fast(recipe) => means(&mut self.fast, recipe, count(samples))?,
             Making::Right => {

@@ -27,7 +27,7 @@ const HOPELESS: f64 = 0.7;
 const EXPLAINED: f64 = 0.3;
 
 /// Stages judged when the stage is unknown.
-const CANDIDATES: usize = 4;
+const CANDIDATES: usize = 3;
 
 /// Width of the thumbnails compared with all stages, pixels.
 const SMALL_WIDTH: u32 = 64;
