@@ -146,7 +146,7 @@ fn planted(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) 
 /// What is found in a picture, and in how many seconds.
 fn found(mine: &Mine, stage: Option<&str>) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
-    let finding = judge(mine, stage.map(Stage::find).transpose()?)?;
+    let finding = judge(mine, stage.map(Stage::find).transpose()?, |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
     let found = match finding.named() {
         Some(mistake) => mistake.id.to_owned(),

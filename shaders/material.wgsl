@@ -66,7 +66,6 @@ fn scatter(
         along = select(0.0, 1.0, is_metal);
         across = select(1.0, cosine + cosine, is_metal);
     }
-    // ANCHOR: scatter_glass
     if GLASS {
         let is_glass = surface.refraction_index > 0.0;
         ratio = select(surface.refraction_index, surface.inverse_index, front);
@@ -84,7 +83,6 @@ fn scatter(
         across = select(across, fma(ratio, cosine, -inner_cosine), refracts);
         is_metal = is_metal && !is_glass;
     }
-    // ANCHOR_END: scatter_glass
     var sent = normal * across;
     if METAL || GLASS {
         sent = mul_add3(direction, along, sent);

@@ -154,8 +154,20 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
     assert!(said("quiet.png").unwrap().contains("RMSE"));
     assert_ne!(std::fs::read(at("quiet.png")).unwrap(), std::fs::read(at("plain.png")).unwrap());
 
-    // A film with a layer is a film: it is resumed and merged like any other.
+    // It is never taken for a picture whose only error is noise.
+    let compare = |other: &str| {
+        let output = weekender(directory.path(), &["compare", "plain.exr", other]).output().unwrap();
+        text(&output.stdout) + &text(&output.stderr)
+    };
+    assert!(compare("quiet.png").contains("denoised"), "{}", compare("quiet.png"));
     run("--size 64x36 --samples 16 --out layer.exr --denoise");
+    let (film_of_layer, layer) = (compare("layer.exr"), compare("layer.exr:denoised"));
+    assert!(
+        film_of_layer.contains("equal to the bit") && layer.contains("it is denoised"),
+        "{film_of_layer}{layer}"
+    );
+
+    // A film with a layer is a film: it is resumed and merged like any other.
     assert_eq!(film("layer.exr"), film("plain.exr"));
     let layer = exr_layer(&at("layer.exr"));
     let expected = denoise::of_film(&film("plain.exr")).unwrap().film.means();

@@ -220,7 +220,7 @@ fn page_is_complete_and_offline() {
         };
         assert!(is_kept, "{link} leads nowhere");
     }
-    for figure in Figure::ALL {
+    for figure in Figure::all() {
         assert!(ids.contains(&format!("figure-{}", figure.id).as_str()), "{}", figure.id);
     }
     assert_eq!(values(&page, "alt").len(), values(&page, "src").len());

@@ -42,30 +42,103 @@
   });
   document.querySelector("main").addEventListener("click", close);
 
-  const seen = new Set();
-  const mark = () => {
-    const chapters = [...document.querySelectorAll(".chapter h2")];
-    const current = chapters.findLast((heading) => seen.has(heading.id));
-    for (const [id, link] of links) {
-      if (id === current?.id) link.setAttribute("aria-current", "true");
-      else link.removeAttribute("aria-current");
-    }
-    const link = links.get(current?.id);
-    now.textContent = link ? link.textContent.trim() : "Chapters";
-    if (hasRoom.matches) link?.scrollIntoView({ block: "nearest" });
+  // A search in headings and terms, and the way back to where the reader was.
+  const make = (name, properties) => Object.assign(document.createElement(name), properties);
+  const words = (heading) => {
+    const copy = heading.cloneNode(true);
+    copy.querySelectorAll(".anchor, .book").forEach((link) => link.remove());
+    return copy.textContent.trim();
   };
-  const observer = new IntersectionObserver(
-    (entries) => {
-      for (const { target, isIntersecting } of entries) {
-        const { id } = target.querySelector("h2");
-        if (isIntersecting) seen.add(id);
-        else seen.delete(id);
+  const entry = (target) => {
+    const item = make("li");
+    item.append(make("a", { href: `#${target.id}`, textContent: words(target) }));
+    return item;
+  };
+  const placeholder = "Find a heading or a term";
+  const field = make("input", { type: "search", className: "find", placeholder, ariaLabel: placeholder });
+  const found = make("ul", { className: "found" });
+  const targets = [...document.querySelectorAll("main :is(h2, h3, dt)[id]")];
+  field.addEventListener("input", () => {
+    const wanted = field.value.trim().toLowerCase();
+    const hits = targets.filter((target) => wanted.length > 1 && words(target).toLowerCase().includes(wanted));
+    found.replaceChildren(...hits.slice(0, 12).map(entry));
+  });
+  details.querySelector(".home").after(field, found);
+  const remember = (value) => {
+    try {
+      if (value) localStorage.setItem("place", value);
+      return localStorage.getItem("place");
+    } catch {
+      // A browser may keep nothing for pages from disk.
+      return null;
+    }
+  };
+  const left = document.getElementById(remember() ?? "");
+  if (left && !location.hash) {
+    found.after(make("a", { className: "back", href: `#${left.id}`, textContent: `Continue at ${words(left)}` }));
+  }
+
+  // The current chapter's sections are in the list, and the address follows the reader.
+  const headings = [...document.querySelectorAll(".chapter :is(h2, h3)[id]")];
+  const chapterOf = (heading) => heading?.closest(".chapter").querySelector("h2");
+  const point = (link, isCurrent) => {
+    if (isCurrent) link.setAttribute("aria-current", "true");
+    else link.removeAttribute("aria-current");
+  };
+  let current;
+  const mark = () => {
+    const passed = headings.findLast((heading) => heading.getBoundingClientRect().top < innerHeight * 0.3);
+    if (passed === current) return;
+    const chapter = chapterOf(passed);
+    if (chapter !== chapterOf(current) || current === undefined) {
+      const link = links.get(chapter?.id);
+      links.forEach((other) => point(other, other === link));
+      details.querySelector("ol ul")?.remove();
+      const inside = make("ul");
+      inside.append(...headings.filter((heading) => heading !== chapter && chapterOf(heading) === chapter).map(entry));
+      if (inside.children.length) link?.after(inside);
+      now.textContent = link ? link.textContent.trim() : "Chapters";
+      if (hasRoom.matches) link?.scrollIntoView({ block: "nearest" });
+    }
+    for (const link of details.querySelectorAll("ol ul a")) point(link, link.hash === `#${passed?.id}`);
+    if (passed && current !== undefined) {
+      remember(passed.id);
+      history.replaceState(history.state, "", `#${passed.id}`);
+    }
+    current = passed ?? null;
+  };
+  let waiting = 0;
+  addEventListener("scroll", () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(mark, 150);
+  }, { passive: true });
+  mark();
+  // [ and ] lead to the chapter before and after.
+  addEventListener("keydown", (event) => {
+    const step = { "[": -1, "]": 1 }[event.key];
+    if (!step || event.ctrlKey || event.metaKey || event.target.matches("input")) return;
+    const chapters = [...links.keys()];
+    document.getElementById(chapters[Math.max(0, chapters.indexOf(chapterOf(current)?.id) + step)])?.scrollIntoView();
+  });
+})();
+
+// The languages of code. A choice holds for all pieces, and what the reader looks at stays where it is.
+(() => {
+  const choose = (language) => {
+    for (const box of document.querySelectorAll(`.tabbed:has([data-language="${language}"])`)) {
+      for (const code of box.querySelectorAll(".code")) code.classList.toggle("shown", code.dataset.language === language);
+      for (const button of box.querySelectorAll("button")) {
+        button.setAttribute("aria-pressed", button.dataset.language === language);
       }
-      mark();
-    },
-    { rootMargin: "0px 0px -70% 0px" },
-  );
-  document.querySelectorAll(".chapter").forEach((chapter) => observer.observe(chapter));
+    }
+  };
+  for (const button of document.querySelectorAll(".tabs button")) {
+    button.addEventListener("click", () => {
+      const before = button.getBoundingClientRect().top;
+      choose(button.dataset.language);
+      scrollBy({ top: button.getBoundingClientRect().top - before, behavior: "instant" });
+    });
+  }
 })();
 
 // The definition of a term, beside its link, for the pointer and the keyboard. Escape hides it.

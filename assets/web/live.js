@@ -19,13 +19,13 @@ function theGpu() {
       panels.filter((panel) => panel.session?.gpu === gpu).forEach((panel) => panel.stop(reason));
       gpu.device.destroy();
     };
-    gpu.device.lost.then(() => fail("The graphics device was lost. Press Live to start again."));
+    gpu.device.lost.then(() => fail("The graphics device was lost. Press Run to start again."));
     gpu.device.addEventListener("uncapturederror", ({ error }) => fail(error.message));
   }, forget);
   return opening;
 }
 
-// What one press of Live starts: the reader's settings, and the film that is made of them. A loop belongs to one
+// What one press of Run starts: the reader's settings, and the film that is made of them. A loop belongs to one
 // session; when that has ended, the loop touches nothing any more.
 export class Session {
   constructor(panel, stage) {
@@ -152,11 +152,12 @@ class Panel {
     this.canvas.setAttribute("aria-label", still.alt);
     const { imageRendering, borderRadius } = getComputedStyle(still);
     Object.assign(this.canvas.style, { imageRendering, borderRadius });
+    this.hint = element("span", { className: "live-hint", textContent: "drag to turn", hidden: true });
     this.frame = element("div", { className: "live-frame" });
     still.replaceWith(this.frame);
-    this.frame.append(still, this.canvas);
+    this.frame.append(still, this.canvas, this.hint);
 
-    this.button = this.toggle("Live", () => (this.session ? this.stop("") : this.start()));
+    this.button = this.toggle("Run", () => (this.session ? this.stop("") : this.start()));
     const button = (textContent, onclick) => element("button", { type: "button", textContent, onclick });
     this.adjust = button("Adjust", () => this.open(this.sliders.hidden));
     this.reset = button("Reset", () => {
@@ -175,10 +176,7 @@ class Panel {
     root.append(element("div", { className: "live-controls" }, this.bar, this.sliders));
     this.open(false);
     this.update();
-    if (!navigator.gpu) {
-      this.button.hidden = true;
-      this.said.textContent = "In a browser with WebGPU, this picture can be turned and changed.";
-    }
+    if (!navigator.gpu) this.bar.hidden = true;
     if (stage.has_rays) this.listen();
     const watcher = new IntersectionObserver((entries) => {
       this.isInView = entries.at(-1).isIntersecting;
@@ -239,7 +237,7 @@ class Panel {
   stop(reason) {
     this.session?.end();
     this.session = null;
-    this.canvas.hidden = true;
+    this.canvas.hidden = this.hint.hidden = true;
     this.tell("");
     this.said.textContent = reason;
     this.open(false);
@@ -253,6 +251,7 @@ class Panel {
     }
     canvas.getContext("2d").putImageData(image, 0, 0);
     canvas.hidden = false;
+    this.hint.hidden = this.hasMoved || !this.stage.has_rays;
     this.tell(`${done} of ${wanted} samples, ${seconds.toFixed(1)} s`);
   }
 
@@ -260,7 +259,21 @@ class Panel {
     this.told.textContent = text;
   }
 
+  // Starts the picture with these settings, such as `fuzz=1` or `fuzz.left=0&depth=2`, as the text asks for them.
+  try(settings) {
+    if (this.session) this.session.reset();
+    else this.start();
+    for (const [wanted, value] of new URLSearchParams(settings)) {
+      const [key, name = ""] = wanted.split(".");
+      const isWanted = (slider) => slider.key === key && slider.label.includes(name);
+      this.stage.sliders.filter(isWanted).forEach((slider) => this.session.set(slider, Number(value)));
+    }
+    this.open(true);
+    this.update();
+  }
+
   move(...moves) {
+    this.hasMoved = this.hint.hidden = true;
     for (const panel of this.linked) {
       if (panel.session?.move(...moves)) panel.update();
     }
@@ -332,6 +345,13 @@ function addWipe(root, [first, second]) {
     root.classList.toggle("live-wiping", isOn);
     button.setAttribute("aria-pressed", isOn);
     for (const panel of [first, second]) panel.linked = isOn ? [first, second] : [panel];
+    // A still beside a picture that was turned would show another view.
+    const running = [first, second].find((panel) => panel.session);
+    if (!isOn || !running) return;
+    for (const panel of [first, second]) {
+      if (!panel.session) panel.start();
+      if (panel !== running) panel.session.move(() => running.session.settings.camera);
+    }
   });
   second.button.after(button);
   root.append(slider);
@@ -346,6 +366,20 @@ function start() {
       .map((panel) => (panel.live = new Panel(panel, data.stages[panel.dataset.stage])));
     panels.push(...made);
     if (made.length === 2) addWipe(root, made);
+  }
+  if (!navigator.gpu && panels.length > 0) {
+    const textContent = "In a browser with WebGPU, the pictures of this page can be turned and changed.";
+    panels[0].root.after(element("p", { className: "live-notice", textContent }));
+  }
+  for (const link of document.querySelectorAll("a.try")) {
+    link.addEventListener("click", (event) => {
+      const figure = document.querySelector(link.hash);
+      const panel = figure.querySelector(`[data-stage="${link.dataset.stage}"]`).live;
+      if (!navigator.gpu || !panel) return;
+      event.preventDefault();
+      panel.try(link.dataset.set);
+      figure.scrollIntoView({ block: "nearest" });
+    });
   }
   document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));
 }

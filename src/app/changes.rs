@@ -169,7 +169,7 @@ mod tests {
         }
         changes.undo(&mut document);
         assert_eq!(document.camera, first);
-        assert!(!changes.earlier(&document).is_some());
+        assert!(changes.earlier(&document).is_none());
     }
 
     /// A document of which something was changed, so that its film is another one.
@@ -192,19 +192,19 @@ mod tests {
             })
             .collect();
         let last = document.camera;
-        assert!(changes.earlier(&document).is_some() && !changes.later().is_some());
+        assert!(changes.earlier(&document).is_some() && changes.later().is_none());
         for camera in cameras.into_iter().rev() {
             changes.undo(&mut document);
             assert_eq!(document.camera, camera);
             assert!(changes.follow(&context, &document));
         }
-        assert!(!changes.earlier(&document).is_some() && changes.later().is_some());
+        assert!(changes.earlier(&document).is_none() && changes.later().is_some());
         for _ in 0..3 {
             changes.redo(&mut document);
             changes.follow(&context, &document);
         }
         assert_eq!(document.camera, last);
-        assert!(!changes.later().is_some());
+        assert!(changes.later().is_none());
     }
 
     #[test]
@@ -225,7 +225,7 @@ mod tests {
         let first = document.camera;
         change(&mut document);
         changes.adopt(&document);
-        assert!(!changes.follow(&context, &document) && !changes.earlier(&document).is_some());
+        assert!(!changes.follow(&context, &document) && changes.earlier(&document).is_none());
         let second = document.camera;
         change(&mut document);
         changes.step_to(&document);
@@ -262,6 +262,6 @@ mod tests {
             changes.follow(&context, &document);
             assert_eq!(document.stop.seconds, expected);
         }
-        assert!(!changes.earlier(&document).is_some());
+        assert!(changes.earlier(&document).is_none());
     }
 }

@@ -57,7 +57,7 @@ impl Check {
         let (number, checked) = (self.number, path.to_owned());
         let work = move || {
             let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
-            let found = mine.and_then(|mine| judge(&mine, stage).map(|finding| (mine, finding)));
+            let found = mine.and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
             match found {
                 Ok((mine, finding)) => {
                     let views =

@@ -93,6 +93,7 @@ pub enum Command {
     ZoomIn,
     ZoomOut,
     Channel(Channel),
+    Denoise,
     ViewFrom(Viewpoint),
     NextSphere,
     PreviousSphere,
@@ -485,6 +486,10 @@ fn rows() -> Vec<Row> {
         |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket)}
     row! {C::ZoomOut, "Zoom out", "Ctrl and the wheel zoom at the pointer",
         |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket)}
+    row! {C::Denoise, "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
+        |w, _| w.model.view.is_denoised ^= true, key(Key::V),
+        needs(|f| f.document().settings.estimate_error, "The film has one half; denoising compares two"),
+        on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn")}
     for channel in Channel::ALL {
         row! {C::Channel(channel), channel.name(), "Shows one channel alone, as grey; again shows all",
             move |w, _| w.model.view.tone.toggle(channel), keys(SHIFT, channel.key()),

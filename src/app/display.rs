@@ -1,7 +1,8 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
 use super::command::Command;
-use super::kept::{KeptActions, Subject};
+use super::denoising::Denoising;
+use super::kept::{FilmId, KeptActions, Subject};
 use super::layers::Layers;
 use super::model::Model;
 use super::model::checked::CheckedScene;
@@ -24,6 +25,7 @@ pub struct Display {
     pub layers: Layers,
     pub tone: ToneUi,
     pub values: PixelValues,
+    pub denoising: Denoising,
     pub kept: KeptActions,
     /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
     pub is_lost: bool,
@@ -71,7 +73,8 @@ impl Display {
         }
         let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
         if let Some(kept) = view.kept.shown().or_else(other) {
-            self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));
+            let shown = view.of_shown(FilmId::Kept(kept.number()), tracing.second.film());
+            self.kept.picture.follow(context, kept, &shown);
         }
         let live = (document, &tracing.main);
         let subject = Subject::new(view, live, tracing.seconds_before);

@@ -14,6 +14,7 @@ mod check;
 mod code;
 mod command;
 mod controls;
+mod denoising;
 mod dialogs;
 mod display;
 mod dock;

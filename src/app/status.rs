@@ -2,12 +2,14 @@
 
 use super::command::Command;
 use super::facts::Facts;
+use super::kept::FilmId;
 use super::model::sizing::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
 use super::widgets::{compact, small, tip};
 use super::wording::grouped;
+use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::progressive::{EndReason, Phase, Status};
@@ -121,7 +123,15 @@ pub fn sentence(facts: &Facts) -> String {
         return checked.clone();
     }
     let count = status.samples_per_pixel;
-    let error = status.error.map_or_else(String::new, |error| format!(", error {}", percent(error.rmse)));
+    let error = match (status.error, denoised_error(facts)) {
+        (Some(raw), Some(Ok(error))) => {
+            let [rmse, deviation, raw] = [error.rmse(), error.rmse_deviation(), raw.rmse].map(percent);
+            format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
+        }
+        (Some(raw), Some(Err(reason))) => format!(", error {} (not denoised: {reason})", percent(raw.rmse)),
+        (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
+        (None, _) => String::new(),
+    };
     let samples = format!("{} samples per pixel", grouped(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
@@ -150,6 +160,14 @@ pub fn sentence(facts: &Facts) -> String {
             None => format!("{samples}{error}{}", ending(facts)),
         },
     }
+}
+
+/// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
+fn denoised_error(facts: &Facts) -> Option<Result<DenoisedError, &str>> {
+    let view = &facts.model.view;
+    let (film, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
+    (*film == FilmId::Live(facts.status.run) && outcome != Err("")).then_some(outcome)
 }
 
 /// When a render without a number of samples will end.

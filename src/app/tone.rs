@@ -7,7 +7,9 @@ use super::model::show::Show;
 use super::model::tone::{Channel, Tone};
 use super::model::view::ViewState;
 use super::theme;
-use super::widgets::{About, Header, Number, compact, entry, fold, hint, list, row, small, switch, tip};
+use super::widgets::{
+    About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
+};
 use crate::film::Histogram;
 use eframe::egui::{self, Align2, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::time::{Duration, Instant};
@@ -69,6 +71,13 @@ impl ToneUi {
                     }
                 }
             });
+            let mut is_denoised = view.is_denoised;
+            let reason = facts.disabled_reason(Command::Denoise);
+            let (name, help) = (Command::Denoise.name(), Command::Denoise.help());
+            let about = About::new(&name, help);
+            if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
+                commands.push(Command::Denoise);
+            }
             if show == Show::Luminance {
                 range_ui(ui, &mut view.tone);
             } else {

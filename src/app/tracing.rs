@@ -1,6 +1,7 @@
 //! What traces: the render on the screen, the one that it is compared with, and their size.
 
 use super::changes::Changes;
+use super::kept::FilmId;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::show::Show;
@@ -109,7 +110,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_film(self.second.film()),
+            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film()),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };

@@ -8,6 +8,7 @@ use super::display::Display;
 use super::facts::Facts;
 use super::files::Files;
 use super::input;
+use super::kept::Subject;
 use super::model::Model;
 use super::model::device::{Device, DeviceOptions};
 use super::model::document::Document;
@@ -242,6 +243,10 @@ impl Window {
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
+        let subject = Subject::new(&model.view, (&model.document, &tracing.main), None);
+        if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
+            model.view.denoised = Some(found);
+        }
         let subject = display.subject(model, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);

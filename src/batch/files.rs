@@ -2,7 +2,7 @@
 
 use crate::cli::RenderOptions;
 use crate::denoise::{self, DenoisedError};
-use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
+use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
 use crate::job::output::{Forms, OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::render::panic_text;
@@ -147,9 +147,15 @@ impl Files {
             say(&render.out);
             let forms = Forms { ppm: render.ppm, format: Some(render.format), ..Forms::default() };
             let transfer = render.job.rules().transfer;
-            let write =
-                || write_image_as(&render.out, picture.unwrap_or(film), transfer, &description, forms);
-            match caught(&render.out, || write().map_err(|error| error.to_string())) {
+            let write = || match render.format {
+                OutputFormat::Exr => {
+                    checkpoint::save_with(&render.out, film, picture, &self.described(film, status))
+                        .map_err(|error| error.to_string())
+                }
+                _ => write_image_as(&render.out, picture.unwrap_or(film), transfer, &description, forms)
+                    .map_err(|error| error.to_string()),
+            };
+            match caught(&render.out, write) {
                 Ok(()) => written.files.push(render.out.clone()),
                 Err(reason) => written.failures.push(reason),
             }
@@ -210,7 +216,6 @@ pub(super) fn is_film(path: &Path) -> bool {
 mod tests {
     use super::*;
     use crate::batch::tests::options;
-    use crate::film::checkpoint;
     use std::ops::Range;
 
     /// Writes a film of `render` with these samples to `path`.

@@ -76,13 +76,13 @@ pub(super) struct FileFlags {
     /// directory; with --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
+    /// The format of --out, if its name does not tell it
+    #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
+    format: Option<OutputFormat>,
     /// Write the denoised picture, with an estimate of its error; the film of a .exr gets it as a layer and stays as it
     /// is; --noise-target is then for the denoised picture
     #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
     denoise: bool,
-    /// The format of --out, if its name does not tell it
-    #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
-    format: Option<OutputFormat>,
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
     #[arg(long, value_enum, requires = "batch", conflicts_with = "AnimationFlags")]
     ppm: Option<PpmForm>,

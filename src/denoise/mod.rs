@@ -41,6 +41,8 @@ pub struct Halves {
     pixels: [Vec<[f32; 3]>; 2],
     /// Samples per pixel of each.
     counts: [u64; 2],
+    /// Mean squared error of the film, as estimated.
+    raw_mse: f64,
     /// A place for the denoised picture.
     picture: Film,
 }
@@ -54,7 +56,7 @@ impl Halves {
             return Err(DenoiseError::Small { pixels });
         }
         let counts = [0, 1].map(|half| film.half_sample_count(half));
-        let (Some(_), [a, b]) = (film.error(), film.halves()) else {
+        let (Some(error), [a, b]) = (film.error(), film.halves()) else {
             return Err(DenoiseError::Halves(film.why_no_error()));
         };
         let what = || format!("denoising {}x{} pixels", film.width(), film.height());
@@ -65,7 +67,7 @@ impl Halves {
             half.par_iter().map(|sum| sum.0.map(|k| (k as f64 / unit) as f32)).collect()
         };
         let pixels = [means(a, counts[0]), means(b, counts[1])];
-        Ok(Halves { pixels, counts, picture: film.try_blank()? })
+        Ok(Halves { pixels, counts, raw_mse: error.rmse * error.rmse, picture: film.try_blank()? })
     }
 }
 
@@ -95,8 +97,6 @@ pub struct DenoisedError {
     pub mse: f64,
     /// One standard deviation of `mse`.
     pub mse_deviation: f64,
-    /// `mean(error^2 / (mean^2 + 0.01))`.
-    pub rel_mse: f64,
     /// Mean squared error of the picture that was not filtered.
     pub raw_mse: f64,
 }
@@ -160,42 +160,6 @@ fn local(width: usize, squared_errors: &[f32]) -> Vec<f32> {
     errors
 }
 
-/// Sums over the even fields of a band of rows.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    count: f64,
-    error: f64,
-    error_squared: f64,
-    relative: f64,
-    raw: f64,
-}
-
-impl Sums {
-    /// Adds a pixel: its mean and squared errors, the weights of the halves and their means.
-    fn add(&mut self, mean: [f32; 3], squares: [f32; 3], weights: [f32; 2], a: [f32; 3], b: [f32; 3]) {
-        let of_channels = |of: &dyn Fn(usize) -> f32| (0..3).map(|c| f64::from(of(c))).sum::<f64>() / 3.0;
-        let error = of_channels(&|c| squares[c]);
-        self.count += 1.0;
-        self.error += error;
-        self.error_squared += error * error;
-        self.relative += of_channels(&|c| squares[c] / (mean[c] * mean[c] + 1e-2));
-        self.raw += of_channels(&|c| weights[0] * weights[1] * (a[c] - b[c]) * (a[c] - b[c]));
-    }
-
-    fn total(bands: &[Sums]) -> DenoisedError {
-        let sum = |of: fn(&Sums) -> f64| bands.iter().map(of).sum::<f64>();
-        let count = sum(|band| band.count);
-        let mse = sum(|band| band.error) / count;
-        let spread = (sum(|band| band.error_squared) / count - mse * mse).max(0.0);
-        DenoisedError {
-            mse,
-            mse_deviation: (spread / (count - 1.0)).sqrt(),
-            rel_mse: sum(|band| band.relative) / count,
-            raw_mse: sum(|band| band.raw) / count,
-        }
-    }
-}
-
 /// Denoises a film.
 ///
 /// # Errors
@@ -213,7 +177,7 @@ pub fn denoise(halves: Halves, stop: &AtomicBool) -> Option<Denoised> {
 /// Filters a picture, on all threads of the current pool. The result does not depend on the processor or the number of
 /// threads. It is incomplete if `stop` is set.
 fn filtered(halves: Halves, level: Level, stop: &AtomicBool) -> Denoised {
-    let Halves { pixels, counts, picture: mut film } = halves;
+    let Halves { pixels, counts, raw_mse, picture: mut film } = halves;
     let size = [film.width() as usize, film.height() as usize];
     let count = film.sample_count() as f64;
     // The weights of the halves in the picture. The variance of a half is inverse to its samples.
@@ -224,36 +188,32 @@ fn filtered(halves: Halves, level: Level, stop: &AtomicBool) -> Denoised {
     let picture = film.halves_mut()[0].as_mut_slice();
     let rows = HIGH * size[0];
     let bands = picture.par_chunks_mut(rows).zip(squared_errors.par_chunks_mut(rows)).enumerate();
-    let sums: Vec<Sums> = bands
-        .map_init(bytemuck::zeroed_box::<Scratch>, |scratch, (band, (picture, errors))| {
-            let mut sums = Sums::default();
-            for first in (0..size[0]).step_by(WIDE) {
-                if stop.load(Ordering::Relaxed) {
-                    break;
-                }
-                let place = Place { first: [first, band * HIGH], size };
-                dispatch!(level, simd => simd.vectorize(#[inline(always)] || filter::filter(&inputs, place, scratch)));
-                let lines = picture.chunks_mut(size[0]).zip(errors.chunks_mut(size[0])).enumerate();
-                for (y, (picture, errors)) in lines {
-                    for column in 0..WIDE.min(size[0] - first) {
-                        let x = first + column;
-                        let [a, b] = from_fn(|half| pixels[half][band * rows + y * size[0] + x]);
-                        let [fa, fb]: [[f32; 3]; 2] =
-                            from_fn(|half| from_fn(|c| scratch.filtered[half][y][c][column]));
-                        let mean = from_fn(|c| weights[0] * fa[c] + weights[1] * fb[c]);
-                        picture[x] = PixelSum(mean.map(|x: f32| (f64::from(x) * unit).clamp(0.0, most) as u64));
-                        let squares = from_fn(|c| squared_error(weights, [a[c], b[c]], [fa[c], fb[c]]));
-                        errors[x] = squares.iter().sum::<f32>() / 3.0;
-                        if !is_odd(x, band * HIGH + y) {
-                            sums.add(mean, squares, weights, a, b);
-                        }
-                    }
+    bands.for_each_init(bytemuck::zeroed_box::<Scratch>, |scratch, (band, (picture, errors))| {
+        for first in (0..size[0]).step_by(WIDE).take_while(|_| !stop.load(Ordering::Relaxed)) {
+            let place = Place { first: [first, band * HIGH], size };
+            dispatch!(level, simd => simd.vectorize(#[inline(always)] || filter::filter(&inputs, place, scratch)));
+            let lines = picture.chunks_mut(size[0]).zip(errors.chunks_mut(size[0])).enumerate();
+            for (y, (picture, errors)) in lines {
+                for column in 0..WIDE.min(size[0] - first) {
+                    let x = first + column;
+                    let [a, b] = from_fn(|half| pixels[half][band * rows + y * size[0] + x]);
+                    let [fa, fb]: [[f32; 3]; 2] =
+                        from_fn(|half| from_fn(|c| scratch.filtered[half][y][c][column]));
+                    let mean = [0, 1, 2].map(|c| f64::from(weights[0] * fa[c] + weights[1] * fb[c]));
+                    picture[x] = PixelSum(mean.map(|x| (x * unit).clamp(0.0, most) as u64));
+                    let square = |c| squared_error(weights, [a[c], b[c]], [fa[c], fb[c]]);
+                    errors[x] = (0..3).map(square).sum::<f32>() / 3.0;
                 }
             }
-            sums
-        })
-        .collect();
-    Denoised { film, errors: local(size[0], &squared_errors), error: Sums::total(&sums) }
+        }
+    });
+    let even = squared_errors.iter().enumerate().filter(|(i, _)| !is_odd(i % size[0], i / size[0]));
+    let even: Vec<f64> = even.map(|(_, error)| f64::from(*error)).collect();
+    let mean = |of: fn(f64) -> f64| even.iter().map(|error| of(*error)).sum::<f64>() / even.len() as f64;
+    let (mse, of_squares) = (mean(|error| error), mean(|error| error * error));
+    let mse_deviation = ((of_squares - mse * mse).max(0.0) / (even.len() - 1) as f64).sqrt();
+    let error = DenoisedError { mse, mse_deviation, raw_mse };
+    Denoised { film, errors: local(size[0], &squared_errors), error }
 }
 
 #[cfg(test)]

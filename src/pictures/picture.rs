@@ -1,5 +1,6 @@
 //! A picture in linear radiance, from a film, any program's file, or a backend.
 
+use crate::film::checkpoint::DENOISED_LAYER;
 use crate::film::{Film, key};
 use crate::job::output::{Encoding, Linear, Values, read_picture};
 use crate::job::recipe::Recipe;
@@ -41,7 +42,8 @@ impl Picture {
             }
             _ => (path, None),
         };
-        let saved = match Saved::read(path) {
+        // A film's layers are pictures.
+        let saved = match if layer.is_some() { Saved::describe(path) } else { Saved::read(path) } {
             Ok(saved) => Some(saved),
             // Most pictures have no description. Reading the picture below reports its own errors.
             Err(OpenError::Picture(_)) => None,
@@ -51,6 +53,9 @@ impl Picture {
         let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
         let samples = saved.as_ref().and_then(|saved| saved.description.get(key::SAMPLES));
         let samples = samples.map_or_else(String::new, |samples| format!(", {samples} samples"));
+        let denoised =
+            saved.as_ref().and_then(|saved| saved.description.get(key::DENOISED)).map(str::to_owned);
+        let denoised = denoised.or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         if let Some(film) = saved.and_then(|saved| saved.film) {
             check_memory(film.width(), film.height(), 0)?;
             let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
@@ -66,15 +71,20 @@ impl Picture {
         };
         let Linear { pixels, steps, limit } = read.linear(encoding);
         let damages = read.damages.into_iter().map(|damage| damage.title);
+        let bias = denoised.as_ref().map(|error| {
+            let error = if error.is_empty() { String::new() } else { format!(", estimated as {error}") };
+            format!("it is denoised: besides noise it has an error of its own{error}")
+        });
+        let what = if denoised.is_some() { "denoised picture" } else { "picture" };
         Ok(Picture {
-            about: format!("picture, {}x{}, {kind}{samples}", read.width, read.height),
+            about: format!("{what}, {}x{}, {kind}{samples}", read.width, read.height),
             name,
             width: read.width,
             height: read.height,
             pixels,
             steps,
             limit,
-            notes: damages.chain(read.notes).collect(),
+            notes: damages.chain(read.notes).chain(bias).collect(),
             film: None,
             job: None,
         })

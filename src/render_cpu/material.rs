@@ -94,7 +94,6 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     let mut refracts = l.mask(0);
     let mut is_metal = reflects;
     let mut ratio = one;
-    // ANCHOR: scatter_glass
     let is_glass = zero.lt(surface.refraction_index);
     if GLASS && !is_idle::<L>(is_glass) {
         ratio = front.select(surface.inverse_index, surface.refraction_index);
@@ -113,7 +112,6 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
         across = refracts.select(ratio.mul_add(cosine, -inner_cosine), across);
         is_metal = is_metal & !is_glass;
     }
-    // ANCHOR_END: scatter_glass
     let smooth = direction.mul_add(along, normal.scale(across));
     Scatter { direction: unit.mul_add(surface.weight.abs(), smooth), refracts, is_metal, ratio }
 }

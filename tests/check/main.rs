@@ -20,7 +20,7 @@ fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> 
 /// The id of the mistake found, or "right".
 fn found(mine: &Mine, stage: Option<&str>) -> &'static str {
     let stage = stage.map(|id| Stage::find(id).unwrap());
-    let finding = judge(mine, stage).unwrap();
+    let finding = judge(mine, stage, |_| {}).unwrap();
     match finding.named() {
         Some(mistake) => mistake.id,
         None if finding.is_right() => "right",
@@ -82,7 +82,7 @@ fn other_scene_matches_no_mistake() {
 fn the_stage_is_found() {
     for (stage, mistake) in [("metal-fuzzy", "right"), ("lambertian-gamma", "flipped-rows")] {
         let mine = mine(stage, mistake, 30, 5);
-        let finding = judge(&mine, None).unwrap();
+        let finding = judge(&mine, None, |_| {}).unwrap();
         assert_eq!((finding.stage.id, found(&mine, None)), (stage, mistake));
     }
 }

@@ -20,7 +20,7 @@ fn copy(from: &Path, to: &Path) {
 /// A checkout with the page's files.
 fn texts() -> TempDir {
     let directory = TempDir::new().unwrap();
-    for folder in ["docs/companion", "src", "shaders", "reference"] {
+    for folder in ["assets", "docs/companion", "examples", "src", "shaders", "reference"] {
         copy(&checkout().join(folder), &directory.path().join(folder));
     }
     directory
@@ -49,7 +49,11 @@ fn chapter_errors_name_line() {
     for (added, message) in [
         ("{{figure spehre}}", "there is no figure \"spehre\""),
         ("{{figure red-sphere}}", "on the page already"),
-        ("{{excerpt no-such}}", "no excerpt \"no-such\""),
+        ("{{code\nsrc/lib.rs: mod nothing\n}}", "no line begins with \"mod nothing\""),
+        ("{{code\nsrc/nothing.rs: fn a\n}}", "src/nothing.rs"),
+        ("{{mistakes sky\nno-such\n}}", "no mistake \"no-such\""),
+        ("{{value 2 speed/no-such}}", "speed/no-such is no number"),
+        ("[x](live:no-such?fuzz=1)", "no figure shows the stage \"no-such\""),
         ("{{table no-such}}", "no measurement \"no-such\""),
         ("{{diagram no-such}}", "diagrams/no-such.svg"),
         ("{{picture sky}}", "is no directive"),
@@ -78,28 +82,10 @@ fn chapter_errors_name_line() {
 #[test]
 fn other_errors_name_file() {
     let texts = texts();
-    for (file, added, message) in [
-        (
-            "excerpts.toml",
-            "file = \"src/lib.rs\"\nitem = \"mod nothing\"",
-            "no line begins with \"mod nothing\"",
-        ),
-        (
-            "excerpts.toml",
-            "file = \"src/main.rs\"\nitem = \"fn main\"",
-            "no chapter shows the excerpt \"extra\"",
-        ),
-        ("excerpts.toml", "file = \"src/nothing.rs\"\nitem = \"fn a\"", "src/nothing.rs"),
-        (
-            "glossary.toml",
-            "term = \"x\"\narea = \"rendering\"\ntext = \"x\"",
-            "no chapter links the term \"extra\"",
-        ),
-    ] {
-        let path = format!("docs/companion/{file}");
-        let stderr = refused(&texts, &path, &|text| format!("{text}\n[extra]\n{added}\n"));
-        assert!(stderr.contains(&path) && stderr.contains(message), "{added}: {stderr}");
-    }
+    let path = "docs/companion/glossary.toml";
+    let added = "[extra]\nterm = \"x\"\narea = \"rendering\"\ntext = \"x\"";
+    let stderr = refused(&texts, path, &|text| format!("{text}\n{added}\n"));
+    assert!(stderr.contains(path) && stderr.contains("no chapter links the term \"extra\""), "{stderr}");
     let stderr = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
     assert!(stderr.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{stderr}");
     let stderr = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));

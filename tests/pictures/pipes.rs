@@ -54,6 +54,20 @@ fn pictures_and_scenes_go_through_pipes() {
             text(&compared.stderr)
         );
     }
+    // A film through a pipe keeps its sums beside a denoised layer.
+    let piped = weekender(at, &format!("{render} - --format exr --scene metals --denoise"), b"");
+    std::fs::write(at.join("denoised.exr"), &piped.stdout).unwrap();
+    for (side, said) in
+        [("denoised.exr", "equal to the bit"), ("denoised.exr:denoised", "picture, 48x27, floats")]
+    {
+        let compared = weekender(at, &format!("compare {side} a.exr"), b"");
+        assert!(
+            text(&compared.stdout).contains(said),
+            "{}{}",
+            text(&compared.stdout),
+            text(&compared.stderr)
+        );
+    }
     let film = std::fs::read(at.join("a.exr")).unwrap();
     assert!(text(&weekender(at, "info -", &film).stdout).contains("16 per pixel"));
     for (arguments, part) in [

@@ -115,11 +115,14 @@ fn a_browser_renders_the_films_of_the_program() {
         assert_eq!(seen[key], false, "{key}");
     }
     for panel in seen["lost"].as_array().unwrap() {
-        assert!(panel[0].as_str().unwrap().contains("The graphics device was lost. Press Live"), "{panel}");
+        assert!(panel[0].as_str().unwrap().contains("The graphics device was lost. Press Run"), "{panel}");
         assert_eq!((&panel[1], &panel[2]), (&json!("false"), &json!(false)), "a still again: {panel}");
     }
     assert!(seen["afterLoss"].as_str().unwrap().contains("16 of 16 samples"), "{}", seen["afterLoss"]);
-    assert_eq!(seen["without"], "In a browser with WebGPU, this picture can be turned and changed.");
+    assert_eq!(
+        seen["without"],
+        "In a browser with WebGPU, the pictures of this page can be turned and changed."
+    );
     compare_films(&directory, &stages, seen["films"].as_object().unwrap());
 }
 

@@ -12,7 +12,7 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
-use crate::system::files::home_directory;
+use crate::system::files::{home_directory, pictures_directory};
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
@@ -393,8 +393,7 @@ fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help
 
 /// Where pictures go unless the user has chosen another folder; it is created when needed.
 pub fn default_folder() -> Option<PathBuf> {
-    let pictures = home_directory()?.join("Pictures");
-    pictures.is_dir().then(|| pictures.join("Weekender"))
+    pictures_directory().map(|pictures| pictures.join("Weekender"))
 }
 
 /// The name for a file of this picture.

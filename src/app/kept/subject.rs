@@ -5,6 +5,7 @@ use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::ViewState;
 use crate::app::tracer::Tracer;
+use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::progressive::Status;
 use eframe::egui::Context;
@@ -17,6 +18,8 @@ pub enum FilmId {
     Live(u64),
     /// The film of a kept picture.
     Kept(u64),
+    /// The denoised picture of a film, by its samples.
+    Denoised(u64),
 }
 
 /// The film on the screen.
@@ -25,6 +28,7 @@ pub struct Subject<'a> {
     live: &'a Document,
     main: &'a Tracer,
     kept: Option<&'a Arc<Kept>>,
+    denoised: Option<&'a Arc<Denoised>>,
     seconds_before: Option<f64>,
 }
 
@@ -36,7 +40,13 @@ impl<'a> Subject<'a> {
         (live, main): (&'a Document, &'a Tracer),
         seconds_before: Option<f64>,
     ) -> Self {
-        Subject { live, main, kept: view.kept.shown(), seconds_before }
+        let subject = Subject { live, main, kept: view.kept.shown(), denoised: None, seconds_before };
+        Subject { denoised: view.denoised_of(subject.raw_id()), ..subject }
+    }
+
+    /// The denoised picture that is shown instead of the film.
+    pub fn denoised(&self) -> Option<&'a Arc<Denoised>> {
+        self.denoised
     }
 
     /// Whether it is a kept film.
@@ -49,8 +59,13 @@ impl<'a> Subject<'a> {
         self.kept.map_or(self.live, |kept| &kept.document)
     }
 
-    /// Which film it is.
+    /// Which picture it is.
     pub fn film_id(&self) -> FilmId {
+        self.denoised.map_or(self.raw_id(), |denoised| FilmId::Denoised(denoised.film.sample_count()))
+    }
+
+    /// Which film it is, denoised or not.
+    pub fn raw_id(&self) -> FilmId {
         self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number()))
     }
 
@@ -84,6 +99,14 @@ impl<'a> Subject<'a> {
     /// Whether it is the film of its document at full size, and has samples.
     pub fn has_samples(&self) -> bool {
         self.kept.is_some() || self.main.has_samples(self.live)
+    }
+
+    /// Runs `look` with what is shown, the film or its denoised picture, on another thread.
+    pub fn inspect_shown(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self.denoised.map(Arc::clone) {
+            Some(denoised) => super::run(move || look(&denoised.film)),
+            None => self.inspect(look),
+        }
     }
 
     /// Runs `look` with the film on another thread.
@@ -138,7 +161,7 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
         let question = Arc::new(());
         (self.waiting, self.asked) = (Arc::downgrade(&question), Some(key));
         let answer = self.answers.answer(context);
-        subject.inspect(move |film| {
+        subject.inspect_shown(move |film| {
             let found = look(film);
             // Dropped first: the answer wakes a frame, which may ask the next question.
             drop(question);

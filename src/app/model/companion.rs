@@ -8,7 +8,7 @@ use std::path::Path;
 pub fn url(page: &Path, stage: Option<&Stage>) -> String {
     let shows = |stage: &Stage| {
         let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage() == stage);
-        Figure::ALL.iter().find(has_stage)
+        Figure::all().iter().find(has_stage)
     };
     let anchor = stage.and_then(shows).map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
     format!("{}{anchor}", file_url(page))
@@ -33,7 +33,7 @@ mod tests {
         for stage in Stage::ALL {
             let url = url(page, Some(stage));
             let id = url.strip_prefix(begin).unwrap().strip_prefix("#figure-").unwrap();
-            let figure = Figure::ALL.iter().find(|figure| figure.id == id).unwrap();
+            let figure = Figure::all().iter().find(|figure| figure.id == id).unwrap();
             assert!(figure.panels.iter().any(|panel| panel.stage().id == stage.id), "{url}: {}", stage.id);
         }
     }

@@ -6,6 +6,9 @@ use super::kept::{Kept, KeptList};
 use super::origin::Origin;
 use super::show::Show;
 use super::tone::Tone;
+use crate::app::denoising::Found;
+use crate::app::kept::FilmId;
+use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
 use crate::stages::Stage;
@@ -81,6 +84,11 @@ pub struct ViewState {
     /// A loaded film to compare with.
     #[serde(skip)]
     pub reference: Option<Arc<ReferenceMeans>>,
+    /// Whether the picture is denoised.
+    pub is_denoised: bool,
+    /// The latest denoised picture.
+    #[serde(skip)]
+    pub denoised: Option<Found>,
     /// Pictures that are kept; one of them can be shown instead of the traced one.
     #[serde(skip)]
     pub kept: KeptList,
@@ -95,6 +103,8 @@ impl Default for ViewState {
             divider: 0.5,
             tone: Tone::default(),
             reference: None,
+            is_denoised: false,
+            denoised: None,
             kept: KeptList::default(),
         }
     }
@@ -198,6 +208,23 @@ impl ViewState {
         match (self.mode, other) {
             (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
             _ => self.show.of_film(self.reference.as_ref(), &self.tone),
+        }
+    }
+
+    /// As [`ViewState::of_film`], of the denoised picture of this film, if it is to be shown.
+    pub fn of_shown(&self, film: FilmId, other: Option<&Arc<ReferenceMeans>>) -> View {
+        match (self.of_film(other), self.denoised_of(film)) {
+            (View::Occupancy, _) => View::Occupancy,
+            (view, Some(denoised)) => View::Denoised(Arc::clone(denoised), Box::new(view)),
+            (view, None) => view,
+        }
+    }
+
+    /// The denoised picture of a film, if it is to be shown.
+    pub fn denoised_of(&self, film: FilmId) -> Option<&Arc<Denoised>> {
+        match &self.denoised {
+            Some((of, Ok(denoised))) if self.is_denoised && *of == film => Some(denoised),
+            _ => None,
         }
     }
 

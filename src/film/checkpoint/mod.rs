@@ -43,6 +43,9 @@ pub const SAMPLE_VERSION: u32 = 3;
 /// The first bytes of an OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
+/// The layer of a film file that has the denoised picture.
+pub const DENOISED_LAYER: &str = "denoised";
+
 const FILM_ATTRIBUTE: &str = "weekenderFilm";
 const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
 

@@ -1,7 +1,7 @@
 //! What the channels of a film file hold, and how sums become words and back.
 
 use super::head::Head;
-use super::{Film, PixelSum};
+use super::{DENOISED_LAYER, Film, PixelSum};
 use crate::film::SIZE_LIMIT;
 use exr::block::UncompressedBlock;
 use exr::meta::BlockDescription;
@@ -32,7 +32,7 @@ pub(super) fn channels(half_count: usize, is_denoised: bool) -> Vec<(ChannelDesc
     for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
         add(name, SampleType::F32, Plane::Mean { colour });
         if is_denoised {
-            add(&format!("denoised.{name}"), SampleType::F32, Plane::Denoised { colour });
+            add(&format!("{DENOISED_LAYER}.{name}"), SampleType::F32, Plane::Denoised { colour });
         }
         for (shift, word) in [(0, "lo"), (32, "hi")] {
             add(&format!("rest.{name}.{word}"), SampleType::U32, Plane::Rest { colour, shift });
@@ -59,7 +59,8 @@ pub(super) fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
         return Err("its pixels are not stored as those of a film".to_owned());
     }
     let list = &header.channels.list;
-    let is_denoised = list.iter().any(|channel| channel.name.as_slice().starts_with(b"denoised."));
+    let is_denoised =
+        list.iter().any(|channel| channel.name.as_slice().starts_with(DENOISED_LAYER.as_bytes()));
     let known = channels(head.halves, is_denoised);
     let is_known = |(found, (known, _)): (&ChannelDescription, &(ChannelDescription, Plane))| {
         (&found.name, found.sample_type) == (&known.name, known.sample_type)

@@ -3,23 +3,20 @@
 use super::limits::{check_memory, invalid, pixel_count};
 use super::read::{ReadPicture, Values};
 use crate::film::checkpoint;
-use exr::block::lines::LineRef;
-use exr::block::reader::{ChunksReader, Reader};
-use exr::error::Error;
-use exr::meta::header::Header;
-use exr::prelude::{Compression, SampleType, Vec2, f16};
+use exr::error::{Error, Result};
+use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
+use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
 use std::collections::BTreeMap;
 use std::io::{self, BufRead, Seek};
 
 /// Three channels that make a picture.
-struct Layer {
-    /// Index of the part that has it.
-    part: usize,
+struct Layer<'a> {
+    part: &'a Part<AnyChannels<FlatSamples>>,
     /// The part's name, if there are several, and what comes before the names of the channels; empty for the usual layer.
     name: String,
-    /// Indices of red, green and blue; of grey, three times the same.
-    channels: [usize; 3],
-    alpha: Option<usize>,
+    /// Red, green and blue; of grey, three times the same.
+    channels: [&'a FlatSamples; 3],
+    alpha: Option<&'a FlatSamples>,
 }
 
 /// Reads the layer with this name, or the only one.
@@ -28,120 +25,72 @@ pub(super) fn read(
     length: u64,
     layer: Option<&str>,
 ) -> io::Result<ReadPicture> {
-    // Each of the two ways refuses files that the other reads: this one those with a wrong number of chunks, the pedantic
-    // one those with an odd header.
-    let is_pedantic = match Reader::read_from_buffered(&mut reader, false) {
-        Ok(_) => false,
-        Err(error) => {
-            reader.rewind()?;
-            Reader::read_from_buffered(&mut reader, true).map_err(|_| unreadable(&error))?;
-            true
-        }
+    let meta = MetaData::read_from_buffered(&mut reader, false).map_err(|error| unreadable(&error))?;
+    for header in &meta.headers {
+        checkpoint::check_length(header, length).map_err(invalid)?;
+        size(header.layer_size, header.channels.bytes_per_pixel)?;
+    }
+    // Each of the two ways refuses files that the other reads: the first those with a wrong number of chunks, the second
+    // those with an odd header.
+    let mut decoded = |is_pedantic: bool| -> Result<FlatImage> {
+        reader.rewind()?;
+        let builder =
+            reading().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        let builder = if is_pedantic { builder.pedantic() } else { builder };
+        builder.non_parallel().from_buffered(&mut reader)
     };
-    reader.rewind()?;
-    let reader = Reader::read_from_buffered(reader, is_pedantic).map_err(|error| unreadable(&error))?;
-    let layers = layers(reader.headers());
-    let chosen = choose(&layers, reader.headers(), layer)?;
-    let header = reader.headers()[chosen.part].clone();
-    checkpoint::check_length(&header, length).map_err(invalid)?;
-    let mut notes = notes(&header);
+    let image = decoded(false).or_else(|error| decoded(true).map_err(|_| error));
+    let image = image.map_err(|error| unreadable(&error))?;
+    let layers = layers(&image);
+    let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
+    let mut notes = notes(&image, part.encoding.compression);
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
-    let data = read_layer(reader, chosen, &header)?;
-    if data.translucent > 0 {
-        notes
-            .push(format!("{} of its pixels have an alpha other than 1, which is ignored", data.translucent));
+    let translucent = alpha.map_or(0, |alpha| alpha.values_as_f32().filter(|alpha| *alpha != 1.0).count());
+    if translucent > 0 {
+        notes.push(format!("{translucent} of its pixels have an alpha other than 1, which is ignored"));
     }
-    let window = header.shared_attributes.display_window;
-    let Vec2(columns, rows) = header.layer_size;
-    let Vec2(left, top) = header.own_attributes.layer_position - window.position;
-    let (width, height) = size(window.size)?;
-    let rgb = if (left, top, width as usize, height as usize) == (0, 0, columns, rows) {
-        data.rgb
-    } else {
-        let mut rgb = vec![[0.0; 3]; width as usize * height as usize];
-        for (y, row) in (i64::from(top)..).zip(data.rgb.chunks_exact(columns)) {
-            for (x, pixel) in (i64::from(left)..).zip(row) {
-                if (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y) {
-                    rgb[(y * i64::from(width) + x) as usize] = *pixel;
-                }
-            }
-        }
+    let window = image.attributes.display_window;
+    let Vec2(columns, rows) = part.size;
+    let Vec2(left, top) = part.attributes.layer_position - window.position;
+    let (width, height) = size(window.size, 0)?;
+    let is_whole = (left, top, width as usize, height as usize) == (0, 0, columns, rows);
+    if !is_whole {
         notes.push(format!(
             "it has data for {columns}x{rows} pixels at {left},{top} of {width}x{height}; the others are black"
         ));
-        rgb
-    };
-    let halves = chosen.channels.map(|channel| header.channels.list[channel].sample_type == SampleType::F16);
-    let values = Values::Floats { rgb, halves };
-    Ok(ReadPicture { width, height, format: "EXR", values, damages: Vec::new(), notes })
-}
-
-/// What a layer holds.
-struct Data {
-    rgb: Vec<[f32; 3]>,
-    /// Pixels whose alpha is not 1.
-    translucent: usize,
-}
-
-fn read_layer<R: BufRead + Seek>(reader: Reader<R>, layer: &Layer, header: &Header) -> io::Result<Data> {
-    let (width, height) = size(header.layer_size)?;
-    let width = width as usize;
-    let mut data = Data { rgb: vec![[0.0; 3]; width * height as usize], translucent: 0 };
-    let is_wanted = |part: usize, level: Vec2<usize>| part == layer.part && level == Vec2(0, 0);
-    let chunks = reader.filter_chunks(false, |_, _, block| is_wanted(block.layer, block.level));
-    let mut blocks = chunks.map_err(|error| unreadable(&error))?.sequential_decompressor(false);
-    while let Some(block) = blocks.decompress_next_block() {
-        let block = block.map_err(|error| unreadable(&error))?;
-        for line in block.lines(&header.channels) {
-            let at = line.location;
-            let of_alpha = layer.alpha == Some(at.channel);
-            if !of_alpha && !layer.channels.contains(&at.channel) {
-                continue;
-            }
-            let samples = samples(&line, header.channels.list[at.channel].sample_type)?;
-            if of_alpha {
-                data.translucent += samples.iter().filter(|alpha| **alpha != 1.0).count();
-            }
-            let begin = at.position.y() * width + at.position.x();
-            for (pixel, sample) in data.rgb[begin..begin + samples.len()].iter_mut().zip(samples) {
-                for (value, channel) in pixel.iter_mut().zip(layer.channels) {
-                    if channel == at.channel {
-                        *value = sample;
-                    }
-                }
+    }
+    let mut rgb = vec![[0.0; 3]; width as usize * height as usize];
+    for (colour, channel) in channels.iter().enumerate() {
+        for (place, value) in (0..).zip(channel.values_as_f32()) {
+            let (x, y) = (i64::from(left) + place % columns as i64, i64::from(top) + place / columns as i64);
+            if (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y) {
+                rgb[(y * i64::from(width) + x) as usize][colour] = value;
             }
         }
     }
-    Ok(data)
-}
-
-fn samples(line: &LineRef, kind: SampleType) -> io::Result<Vec<f32>> {
-    let samples: exr::error::Result<Vec<f32>> = match kind {
-        SampleType::F16 => line.read_samples::<f16>().map(|sample| Ok(sample?.to_f32())).collect(),
-        SampleType::F32 => line.read_samples::<f32>().collect(),
-        SampleType::U32 => line.read_samples::<u32>().map(|sample| Ok(sample? as f32)).collect(),
-    };
-    samples.map_err(|error| unreadable(&error))
+    let values =
+        Values::Floats { rgb, halves: channels.map(|channel| matches!(channel, FlatSamples::F16(_))) };
+    Ok(ReadPicture { width, height, format: "EXR", values, damages: Vec::new(), notes })
 }
 
 /// All layers with red, green and blue; if there are none, all with luminance.
-fn layers(headers: &[Header]) -> Vec<Layer> {
+fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
     let (mut colour, mut grey) = (Vec::new(), Vec::new());
-    for (part, header) in headers.iter().enumerate() {
-        let mut groups: BTreeMap<String, [Option<usize>; 5]> = BTreeMap::new();
-        for (index, channel) in header.channels.list.iter().enumerate() {
+    for part in &image.layer_data {
+        let mut groups: BTreeMap<String, [Option<&FlatSamples>; 5]> = BTreeMap::new();
+        for channel in &part.channel_data.list {
             let name = channel.name.to_string();
             let (group, own) = name.rsplit_once('.').unwrap_or(("", &name));
             let own = own.to_ascii_lowercase();
             let names = [["r", "red"], ["g", "green"], ["b", "blue"], ["a", "alpha"], ["y", "y"]];
             if let Some(place) = names.iter().position(|names| names.contains(&own.as_str())) {
-                groups.entry(group.to_owned()).or_default()[place] = Some(index);
+                groups.entry(group.to_owned()).or_default()[place] = Some(&channel.sample_data);
             }
         }
-        let own = header.own_attributes.layer_name.as_ref().map_or_else(String::new, ToString::to_string);
-        let own = if headers.len() > 1 { own } else { String::new() };
+        let own = part.attributes.layer_name.as_ref().filter(|_| image.layer_data.len() > 1);
+        let own = own.map_or_else(String::new, ToString::to_string);
         for (group, [r, g, b, alpha, y]) in groups {
             let name = match (own.is_empty(), group.is_empty()) {
                 (false, false) if !group.starts_with(&own) => format!("{own}.{group}"),
@@ -160,7 +109,7 @@ fn layers(headers: &[Header]) -> Vec<Layer> {
     if colour.is_empty() { grey } else { colour }
 }
 
-fn choose<'a>(layers: &'a [Layer], headers: &[Header], name: Option<&str>) -> io::Result<&'a Layer> {
+fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
     if let Some(name) = name {
         let found = layers.iter().find(|layer| layer.name == name);
         return found.ok_or_else(|| {
@@ -172,7 +121,7 @@ fn choose<'a>(layers: &'a [Layer], headers: &[Header], name: Option<&str>) -> io
         ([only], _) => Ok(only),
         (_, [usual]) => Ok(usual),
         ([], _) => {
-            let channels = headers.iter().flat_map(|header| &header.channels.list);
+            let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
             let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
             Err(invalid(format!(
                 "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
@@ -189,9 +138,9 @@ fn names(layers: &[Layer]) -> String {
 }
 
 /// What makes the numbers of a picture mean something else than usual.
-fn notes(header: &Header) -> Vec<String> {
+fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
     let mut notes = Vec::new();
-    if let Some(space) = &header.shared_attributes.chromaticities {
+    if let Some(space) = &image.attributes.chromaticities {
         let found = [space.red, space.green, space.blue, space.white];
         let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
         let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
@@ -207,20 +156,20 @@ fn notes(header: &Header) -> Vec<String> {
         }
     }
     let is_lossy = matches!(
-        header.compression,
+        compression,
         Compression::B44 | Compression::B44A | Compression::DWAA(_) | Compression::DWAB(_)
     );
     if is_lossy {
-        notes.push(format!("its {} changes the values", header.compression));
+        notes.push(format!("its {compression} changes the values"));
     }
     notes
 }
 
-fn size(Vec2(width, height): Vec2<usize>) -> io::Result<(u32, u32)> {
-    let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
-    let (width, height) = (side(width), side(height));
+/// Width and height, if there is memory for a picture and as many more bytes for each pixel.
+fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> io::Result<(u32, u32)> {
+    let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     pixel_count(width, height)?;
-    check_memory(width, height)?;
+    check_memory(width, height, bytes as u64)?;
     Ok((width, height))
 }
 

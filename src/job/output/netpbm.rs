@@ -101,7 +101,7 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
         }
         notes.push(format!("{} bytes after the pixels are ignored", rest.len()));
     }
-    check_memory(width, height)?;
+    check_memory(width, height, 0)?;
     let data = &data[..needed];
     let values: Vec<u16> = match bytes_per_value {
         1 => data.iter().copied().map(u16::from).collect(),
@@ -217,7 +217,7 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
             "let the loops run to image_width - 1 and image_height - 1, and write the same sizes to the header",
         ));
     }
-    check_memory(width, height)?;
+    check_memory(width, height, 0)?;
     values.truncate(needed);
     outside(values.iter().filter(|value| !(0..=most.into()).contains(*value)).count(), most, damages);
     let values = values.iter().map(|value| (*value).clamp(0, most.into()) as u16).collect();
@@ -245,7 +245,7 @@ fn floats(mut words: Words, channels: usize) -> io::Result<ReadPicture> {
             4 * count
         )));
     };
-    check_memory(width, height)?;
+    check_memory(width, height, 0)?;
     let (numbers, _) = pixels.as_chunks::<4>();
     let value = |is_little: bool, bytes: &[u8; 4]| {
         if is_little { f32::from_le_bytes(*bytes) } else { f32::from_be_bytes(*bytes) }

@@ -154,7 +154,7 @@ fn read_png(reader: impl BufRead + Seek, length: u64) -> io::Result<ReadPicture>
             "it has {length} bytes, but {width}x{height} pixels need at least {least}; check whether the file is complete"
         )));
     }
-    check_memory(width, height)?;
+    check_memory(width, height, 0)?;
     let image = DynamicImage::from_decoder(decoder).map_err(incomplete)?;
     let mut notes = Vec::new();
     if image.color().has_alpha() {

@@ -32,14 +32,14 @@ pub struct SceneFigures {
     pub denoising: Option<Denoising>,
 }
 
-/// The filter's time for a film of a scene, and the estimated error before and after it.
+/// The filter's time for a film of a scene.
 #[derive(Serialize)]
 pub struct Denoising {
     pub samples_per_pixel: u64,
     pub threads: usize,
     pub seconds: Spread,
-    pub raw_rmse: f64,
-    pub rmse: f64,
+    /// By what factor the squared error falls, as estimated.
+    pub gain: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]

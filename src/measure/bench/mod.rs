@@ -123,25 +123,18 @@ impl Bench<'_> {
 
     /// How long the filter takes for a film of the scene; `None` if it cannot be rendered or denoised.
     fn denoising(&self, job: &RenderJob) -> Option<Denoising> {
-        let mut candidate = cpu(self.best_level(), self.best_level().native_lanes(), self.options.threads());
-        let film = candidate.trace(job, DENOISED_SAMPLES, self.cancel).ok()?.film;
-        let threads = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads()).build().ok()?;
-        let (mut seconds, mut error) = (Vec::new(), None);
-        for _ in 0..self.options.runs {
+        let (level, threads) = (self.best_level(), self.options.threads());
+        let traced =
+            cpu(level, level.native_lanes(), threads).trace(job, DENOISED_SAMPLES, self.cancel).ok()?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;
+        let run = |_| {
             let begin = Instant::now();
-            error = Some(threads.install(|| denoise::of_film(&film)).ok()?.error);
-            seconds.push(begin.elapsed().as_secs_f64());
-        }
-        let error = error?;
-        let seconds = Spread::of(seconds.into_iter())?;
-        let [raw_rmse, rmse] = [error.raw_mse.sqrt(), error.rmse()];
-        Some(Denoising {
-            samples_per_pixel: DENOISED_SAMPLES,
-            threads: self.options.threads(),
-            seconds,
-            raw_rmse,
-            rmse,
-        })
+            let error = pool.install(|| denoise::of_film(&traced.film)).ok()?.error;
+            Some((begin.elapsed().as_secs_f64(), error.raw_mse / error.mse))
+        };
+        let runs = (0..self.options.runs).map(run).collect::<Option<Vec<_>>>()?;
+        let seconds = Spread::of(runs.iter().map(|(seconds, _)| *seconds))?;
+        Some(Denoising { samples_per_pixel: DENOISED_SAMPLES, threads, seconds, gain: runs[0].1 })
     }
 
     /// All candidates in the table's order.

@@ -42,13 +42,11 @@ fn scene(scene: &SceneFigures) -> String {
     )
 }
 
-fn denoising_line(denoising: &Denoising) -> String {
-    let Denoising { samples_per_pixel, threads, seconds: Spread { median, min, max }, raw_rmse, rmse } =
-        denoising;
-    let [median, min, max] = [median, min, max].map(|seconds| 1e3 * seconds);
+fn denoising_line(Denoising { samples_per_pixel, threads, seconds, gain }: &Denoising) -> String {
+    let [median, min, max] = [seconds.median, seconds.min, seconds.max].map(|seconds| 1e3 * seconds);
     let threads = counted(*threads, "thread");
     format!(
-        "denoising {samples_per_pixel} spp on {threads}: {median:.0} ms ({min:.0} to {max:.0}), estimated RMSE {raw_rmse:.2e} -> {rmse:.2e}\n"
+        "denoising {samples_per_pixel} spp, {threads}: {median:.0} ms ({min:.0} to {max:.0}), 1/{gain:.1} of the MSE\n"
     )
 }
 

@@ -25,8 +25,12 @@ pub fn fill(html: &str, site: &Site, uses: &mut Uses) -> Result<String, Fault> {
 }
 
 fn glossary(site: &Site, uses: &mut Uses) -> Result<Markup, Fault> {
-    let areas =
-        [("Rendering", Area::Rendering), ("Parallelism", Area::Parallelism), ("Numbers", Area::Numbers)];
+    let areas = [
+        ("Rendering", Area::Rendering),
+        ("Parallelism", Area::Parallelism),
+        ("Numbers", Area::Numbers),
+        ("Languages", Area::Languages),
+    ];
     Ok(html! {
         @for (title, area) in areas {
             h3 id={ "glossary-of-" (title.to_lowercase()) } { (title) }

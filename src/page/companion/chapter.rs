@@ -3,6 +3,7 @@
 use super::fault::{Fault, line_of};
 use super::library::Library;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A chapter, not yet rendered.
 #[derive(Clone, Debug)]
@@ -31,10 +32,13 @@ pub struct Facts {
     pub book: Option<String>,
     /// Heading of the book's chapter.
     pub book_title: Option<String>,
+    /// Symbols of formulas and names in code, with the number of their colour.
+    #[serde(default)]
+    pub colours: BTreeMap<String, u8>,
 }
 
-/// Number of the last of the book's chapters that the page covers.
-const LAST_OF_BOOK: u8 = 14;
+/// Number in the file's name of the first chapter that is not the book's.
+const FIRST_BEYOND_BOOK: u8 = 20;
 
 impl Chapter {
     /// Reads all chapters, by number.
@@ -46,15 +50,18 @@ impl Chapter {
         self.facts.short.as_deref().unwrap_or(&self.facts.title)
     }
 
-    /// The number to show; `None` where it could be mistaken for that of one of the book's chapters.
-    pub fn shown_number(&self) -> Option<u8> {
+    /// The number to show: the book's or, beyond the book, a letter. `None` where it could be mistaken for that of one
+    /// of the book's chapters.
+    pub fn shown_number(&self) -> Option<String> {
         let is_of_book = self.facts.book.as_deref() == Some(self.number.to_string().as_str());
-        (is_of_book || self.number > LAST_OF_BOOK).then_some(self.number)
+        let letter =
+            self.number.checked_sub(FIRST_BEYOND_BOOK).map(|place| char::from(b'A' + place).to_string());
+        if is_of_book { Some(self.number.to_string()) } else { letter }
     }
 
     /// The number to show and a space, or nothing.
     pub fn number_prefix(&self) -> String {
-        self.shown_number().map_or_else(String::new, |number| format!("{number} "))
+        self.shown_number().map_or_else(String::new, |number| number + " ")
     }
 
     /// Splits a file into facts and Markdown.
@@ -92,12 +99,15 @@ mod tests {
         let chapter = Chapter::parse(FILE, text).unwrap();
         assert_eq!((chapter.number, chapter.id.as_str(), chapter.short()), (6, "normals", "Normals"));
         assert_eq!((chapter.body.as_str(), chapter.lines_before), ("\nText\n", 5));
-        assert_eq!(chapter.shown_number(), Some(6));
+        assert_eq!(chapter.shown_number().as_deref(), Some("6"));
         let shown = |number, book: Option<&str>| {
             let facts = Facts { book: book.map(str::to_owned), ..chapter.facts.clone() };
             Chapter { number, facts, ..chapter.clone() }.shown_number()
         };
-        assert_eq!([shown(20, None), shown(0, Some("1")), shown(14, None)], [Some(20), None, None]);
+        assert_eq!(
+            [shown(21, None), shown(0, Some("1")), shown(14, None)],
+            [Some("B".to_owned()), None, None]
+        );
     }
 
     #[test]

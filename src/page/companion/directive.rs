@@ -1,16 +1,19 @@
 //! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
 
-use super::excerpt::Excerpt;
+use super::excerpt::{self, Excerpt};
 use super::library::FOLDER;
+use super::mistakes;
+use super::prose::Place;
 use super::site::{Site, Uses};
 use super::timeline;
 use crate::page::gallery::{Figure, is_about_pixels};
+use crate::stages::Stage;
 use crate::system::suggest::similar_names;
 use anyhow::{Context, Result, bail};
 use maud::{Markup, PreEscaped, html};
 
-/// The directives and their arguments.
-const KNOWN: &str = "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+/// The directives and their arguments. More lines hold a caption, or what to quote.
+const KNOWN: &str = "figure ID, code, mistakes STAGE, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
 /// Marks the glossary's place until all chapters are rendered.
 pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
@@ -24,18 +27,22 @@ pub fn typographic(text: &str) -> String {
 }
 
 /// The HTML of a directive, given without its braces.
-pub fn html(site: &Site, directive: &str, uses: &mut Uses) -> Result<Markup> {
-    let words: Vec<&str> = directive.split_whitespace().collect();
+pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) -> Result<Markup> {
+    let (head, more) = directive.split_once('\n').unwrap_or((directive, ""));
+    let words: Vec<&str> = head.split_whitespace().collect();
+    // A caption is Markdown.
+    let mut caption = || match more {
+        "" => Ok(None),
+        text => place.inside(site, text, uses).map(Some),
+    };
     match words.as_slice() {
-        ["figure", id] => figure(id, uses),
-        ["excerpt", name] => excerpt(site, name, uses),
-        ["pair", first, second] => {
-            let pair = [excerpt(site, first, uses)?, excerpt(site, second, uses)?];
-            Ok(html! { div .pair { @for side in pair { (side) } } })
-        }
+        ["figure", id] => figure(id, caption()?, None, uses),
+        ["figure", id, "crop", crop @ ..] => figure(id, caption()?, Some(&crop.join(" ")), uses),
+        ["code"] => code(site, place, more),
+        ["mistakes", stage] => mistakes::strip(stage, more, uses),
         ["table", name] => site.measured.table(name),
         ["chart", name] => site.measured.chart(name),
-        ["diagram", name] => diagram(site, name),
+        ["diagram", name] => diagram(site, name, caption()?),
         ["timeline", stage] => timeline::figure(stage),
         ["glossary"] => Ok(PreEscaped(GLOSSARY_MARK.to_owned())),
         ["references"] => Ok(PreEscaped(REFERENCES_MARK.to_owned())),
@@ -43,9 +50,28 @@ pub fn html(site: &Site, directive: &str, uses: &mut Uses) -> Result<Markup> {
     }
 }
 
-fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
+/// A panel's picture with the switch and the sliders that the script adds.
+pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<&str>, is_first: bool) -> Markup {
+    let (file, [width, height]) =
+        (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
+    html! {
+        div .panel data-stage=(stage.id) {
+            img .pixels[is_about_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
+                loading=[(!is_first).then_some("lazy")] fetchpriority=[is_first.then_some("high")];
+            @if let Some(crop) = crop {
+                svg .crop viewBox=(crop) role="img" aria-label={ "A part of the picture, enlarged" } {
+                    image href=(file) width=(width) height=(height) {}
+                }
+            }
+            @if let Some(label) = label { p .label { (typographic(label)) } }
+        }
+    }
+}
+
+/// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
+fn figure(id: &str, caption: Option<Markup>, crop: Option<&str>, uses: &mut Uses) -> Result<Markup> {
     let figure = Figure::find(id).with_context(|| {
-        let near = similar_names(id, Figure::ALL.iter().map(|figure| figure.id));
+        let near = similar_names(id, Figure::all().iter().map(|figure| figure.id.as_str()));
         format!("there is no figure {id:?}; near: {}", near.join(", "))
     })?;
     if !uses.anchors.insert(format!("figure-{id}")) {
@@ -56,48 +82,63 @@ fn figure(id: &str, uses: &mut Uses) -> Result<Markup> {
     Ok(html! {
         figure .figure .wide[is_wide] id={ "figure-" (id) } {
             div .panels .{ "of-" (figure.panels.len()) } {
-                @for panel in figure.panels {
-                    @let stage = panel.stage();
-                    div .panel data-stage=(stage.id) {
-                        img .pixels[is_about_pixels(stage)] src={ "figures/" (stage.id) ".png" }
-                            width=(stage.setup.width) height=(stage.setup.height)
-                            alt=(stage.alt) loading="lazy";
-                        @if is_wide { p .label { (typographic(panel.label)) } }
+                @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, false)) }
+            }
+            figcaption {
+                strong { (typographic(&figure.title)) "." } " "
+                (caption.unwrap_or_else(|| html! { (typographic(&figure.caption)) }))
+            }
+        }
+    })
+}
+
+/// Excerpts, one a line, with a switch between their languages.
+fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
+    let excerpts: Result<Vec<Excerpt>, String> =
+        wanted.lines().map(|line| excerpt::cut(&site.library, line)).collect();
+    let excerpts = excerpts.map_err(anyhow::Error::msg)?;
+    let language = |excerpt: &Excerpt| excerpt.file.rsplit('.').next().unwrap_or_default().to_owned();
+    let mut languages: Vec<String> = excerpts.iter().map(language).collect();
+    languages.dedup();
+    Ok(html! {
+        div .tabbed {
+            @if languages.len() > 1 {
+                div .tabs role="group" aria-label="Language" {
+                    @for (index, language) in languages.iter().enumerate() {
+                        button type="button" data-language=(language) aria-pressed=(index == 0) {
+                            @match language.as_str() { "rs" => "Rust", other => (other.to_uppercase()) }
+                        }
                     }
                 }
             }
-            figcaption { strong { (typographic(figure.title)) "." } " " (typographic(figure.caption)) }
+            @for excerpt in &excerpts {
+                @let language = language(excerpt);
+                @let Excerpt { file, first, last, text } = excerpt;
+                figure .code .shown[language == languages[0]] data-language=(language) {
+                    figcaption {
+                        code .path { (file) } " "
+                        span .lines { @if first == last { "line " (first) } @else { "lines " (first) " to " (last) } }
+                    }
+                    @let colours = if language == "toml" { "text" } else { &language };
+                    pre { code { (place.coloured(&site.highlighter.html(colours, text)?)) } }
+                }
+            }
         }
     })
 }
 
-fn excerpt(site: &Site, name: &str, uses: &mut Uses) -> Result<Markup> {
-    let excerpt = site.excerpts.get(name);
-    let excerpt = excerpt.with_context(|| format!("excerpts.toml has no excerpt {name:?}"))?;
-    uses.excerpts.insert(name.to_owned());
-    let Excerpt { file, first, last, text } = excerpt;
-    let language = file.rsplit('.').next().unwrap_or_default();
-    let code = site.highlighter.html(language, text)?;
-    let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
-    Ok(html! {
-        figure .code {
-            figcaption { code .path { (file) } " " span .lines { (lines) } }
-            pre tabindex="0" role="group" aria-label={ (file) ", " (lines) } { code { (code) } }
-        }
-    })
-}
-
-/// Diagrams are SVG files that take their colours from the text around them. The title becomes the caption.
-fn diagram(site: &Site, name: &str) -> Result<Markup> {
+/// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
+fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     let text = site.library.read(&path)?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
-    let caption = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
+    let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
+    let caption = caption.or(title.map(|title| PreEscaped(title.to_owned())));
     Ok(html! {
         figure .diagram id={ "diagram-" (name) } {
             div .scroll { (PreEscaped(text[start..].trim())) }
-            @if let Some(caption) = caption { figcaption { (PreEscaped(caption)) } }
+            @if let Some(caption) = caption { figcaption { (caption) } }
         }
     })
 }

@@ -41,10 +41,15 @@ const FILES: &[(&str, &str)] = embedded![
         "05-sphere.md" "06-normals.md" "07-camera-class.md" "08-antialiasing.md" "09-diffuse.md"
         "10-metal.md" "11-glass.md" "12-camera.md" "13-defocus.md" "14-final.md" "20-many-rays.md"
         "21-mappings.md" "22-simd.md" "23-speed.md" "24-control.md" "25-error.md" "26-precision.md"
-        "27-references.md" "28-glossary.md" "book.toml" "excerpts.toml" "glossary.toml" "measured.toml"
+        "27-references.md" "28-glossary.md" "book.toml" "glossary.toml" "measured.toml"
         "references.toml";
     "docs/companion/measured/": "error.json" "mappings.json" "refill.json" "speed.json";
-    "docs/companion/diagrams/": "lanes.svg" "life-cycle.svg" "mappings.svg";
+    "docs/companion/diagrams/": "cosine.svg" "error.svg" "fuzz.svg" "hierarchy.svg" "lanes.svg" "lens.svg" "life-cycle.svg"
+        "mappings.svg" "path.svg" "pipeline.svg" "points.svg" "select.svg" "snell.svg" "sphere.svg";
+    "assets/companion/": "diagrams.js" "fonts.css" "page.css" "page.js" "theme.js";
+    "assets/scenes/": "hollow-glass.toml";
+    "assets/web/": "film.js" "live.css" "live.js" "scene.js";
+    "examples/": "lanes.rs";
     "reference/": "rt_weekend.c";
     "shaders/": "aside.wgsl" "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
         "path.wgsl" "resolve.wgsl" "rng.wgsl" "sphere.wgsl";
@@ -54,7 +59,7 @@ const FILES: &[(&str, &str)] = embedded![
     "src/prepared/": "camera.rs" "mod.rs";
     "src/render_cpu/": "bvh.rs" "camera.rs" "kernels.rs" "material.rs" "rng.rs" "sphere.rs" "tiles.rs"
         "work.rs";
-    "src/render_cpu/lanes/": "mod.rs" "vector.rs";
+    "src/render_cpu/lanes/": "vector.rs";
     "src/render_cpu/path/": "collect.rs" "mod.rs" "send.rs";
     "src/render_gpu/": "schedule.rs";
     "src/kernel/sampling/": "mod.rs" "warp.rs";

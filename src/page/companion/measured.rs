@@ -38,6 +38,9 @@ struct Kept {
     date: Option<String>,
     #[serde(skip)]
     text: String,
+    /// The stored text, which the prose speaks of, even if a reader's own replaces it in the tables.
+    #[serde(skip)]
+    kept: String,
 }
 
 /// All measurements by name.
@@ -48,7 +51,8 @@ impl Measured {
     pub fn read(library: &Library) -> Result<Self, Fault> {
         let mut kept: BTreeMap<String, Kept> = library.toml(FILE)?;
         for kept in kept.values_mut() {
-            kept.text = library.read(&format!("{FOLDER}/{}", kept.file))?.into_owned();
+            kept.kept = library.read(&format!("{FOLDER}/{}", kept.file))?.into_owned();
+            kept.text = kept.kept.clone();
         }
         Ok(Measured(kept))
     }
@@ -56,10 +60,55 @@ impl Measured {
     /// Replaces the tables of speed by another `weekender bench` JSON.
     pub fn set_bench(&mut self, text: String) -> Result<()> {
         let command = "weekender bench --json FILE".to_owned();
-        let kept = Kept { file: String::new(), command, machine: None, date: None, text };
+        let kept = self.find(BENCH)?.kept.clone();
+        let kept = Kept { file: String::new(), command, machine: None, date: None, text, kept };
         speed_tables(&kept)?;
         self.0.insert(BENCH.to_owned(), kept);
         Ok(())
+    }
+
+    /// A text with its `{{value DIGITS VALUE}}` and `{{value DIGITS VALUE over VALUE}}` as numbers. A value is a number,
+    /// or the name of a measurement and keys of its JSON with slashes between; an item of an array has its `name` or
+    /// `scene` as the key. An error comes with its position.
+    pub fn filled(&self, text: &str) -> Result<String, (usize, anyhow::Error)> {
+        let (mut filled, mut rest) = (String::new(), text);
+        while let Some((before, after)) = rest.split_once("{{value ") {
+            filled.push_str(before);
+            let at = text.len() - after.len();
+            let (wanted, after) = after.split_once("}}").unwrap_or((after, ""));
+            filled += &self.number(wanted).map_err(|error| (at, error))?;
+            rest = after;
+        }
+        Ok(filled + rest)
+    }
+
+    fn number(&self, wanted: &str) -> Result<String> {
+        let (digits, wanted) = wanted.split_once(' ').context("give the number of digits and the value")?;
+        let (above, below) = wanted.split_once(" over ").unwrap_or((wanted, "1"));
+        let number = self.value(above)? / self.value(below)?;
+        let digits: f64 = digits.parse()?;
+        let places = digits - 1.0 - number.abs().log10().floor();
+        let unit = 10_f64.powf(-places);
+        let rounded = (number / unit).round() * unit;
+        Ok(if places > 0.0 {
+            format!("{rounded:.0$}", places as usize)
+        } else {
+            grouped(&format!("{rounded:.0}"))
+        })
+    }
+
+    fn value(&self, path: &str) -> Result<f64> {
+        if let Ok(number) = path.parse() {
+            return Ok(number);
+        }
+        let (name, keys) = path.split_once('/').unwrap_or((path, ""));
+        let json: Value = serde_json::from_str(&self.find(name)?.kept)?;
+        let is = |item: &&Value, key: &str| ["name", "scene"].iter().any(|field| item[*field] == key);
+        let found = keys.split('/').try_fold(&json, |at, key| match at {
+            Value::Array(items) => items.iter().find(|item| is(item, key)),
+            at => at.get(key),
+        });
+        found.and_then(Value::as_f64).with_context(|| format!("{path} is no number of the measurements"))
     }
 
     /// The table with this name.
@@ -329,10 +378,14 @@ fn three_digits(seconds: f64) -> String {
 /// Two significant digits: `410` or `2,300`.
 fn two_digits(number: f64) -> String {
     let unit = 10_f64.powf((number.log10().floor() - 1.0).max(0.0));
-    let digits = format!("{:.0}", (number / unit).round() * unit);
+    grouped(&format!("{:.0}", (number / unit).round() * unit))
+}
+
+/// Digits with commas between thousands.
+fn grouped(digits: &str) -> String {
     let mut grouped = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
             grouped.push(',');
         }
         grouped.push(digit);
@@ -347,7 +400,14 @@ mod tests {
 
     fn kept(json: &Value) -> Kept {
         let (file, command) = ("a.json".to_owned(), "make it".to_owned());
-        Kept { file, command, machine: None, date: Some("1 May".to_owned()), text: json.to_string() }
+        Kept {
+            file,
+            command,
+            machine: None,
+            date: Some("1 May".to_owned()),
+            text: json.to_string(),
+            kept: String::new(),
+        }
     }
 
     /// The text of each row's cells.

@@ -11,6 +11,7 @@ mod formula;
 mod highlight;
 mod library;
 mod measured;
+mod mistakes;
 mod page;
 mod prose;
 mod reference;
@@ -65,6 +66,13 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<galler
         progress: options.progress,
         prints_stills: false,
     };
+    let pictures = out.join("figures/mistakes");
+    std::fs::create_dir_all(&pictures)
+        .with_context(|| format!("cannot create the directory {}", pictures.display()))
+        .map_err(Failure::Run)?;
+    for picture in page.mistakes.iter().take_while(|_| !interrupt.is_set()) {
+        picture.render(out).map_err(Failure::Run)?;
+    }
     gallery::render(&order, interrupt)
 }
 

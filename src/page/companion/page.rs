@@ -2,7 +2,9 @@
 
 use super::back_matter;
 use super::chapter::Chapter;
+use super::directive;
 use super::fault::Fault;
+use super::mistakes::Thumbnail;
 use super::prose;
 use super::site::{Site, Uses};
 use crate::page::gallery::Panel;
@@ -11,11 +13,6 @@ use crate::stages::{BOOK_URL, Stage};
 use crate::system::files::GENERATOR;
 use anyhow::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-
-const STYLE: &str = include_str!("../../../assets/companion/page.css");
-const SCRIPT: &str = include_str!("../../../assets/companion/page.js");
-/// Runs before anything is drawn, so that the page does not flash in the wrong colours.
-const THEME_SCRIPT: &str = include_str!("../../../assets/companion/theme.js");
 
 const TITLE: &str = "Weekender, the companion";
 const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
@@ -26,6 +23,8 @@ pub struct Page {
     pub html: String,
     /// The stages whose stills it shows, in the book's order.
     pub stages: Vec<&'static Stage>,
+    /// The pictures of mistakes that it shows.
+    pub mistakes: Vec<Thumbnail>,
 }
 
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
@@ -38,13 +37,13 @@ pub fn render(site: &Site) -> Result<Page> {
     let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses)?;
     site.check(&uses)?;
     let mut stages: Vec<&Stage> =
-        uses.figures.iter().flat_map(|figure| figure.panels).map(Panel::stage).collect();
+        uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
     stages.push(cover_stage());
     stages.sort_by_key(|stage| stage.index());
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
-    let page = document(site, &PreEscaped(chapters), &PreEscaped(live));
-    Ok(Page { html: page.into_string(), stages })
+    let page = document(site, &PreEscaped(chapters), &PreEscaped(live))?;
+    Ok(Page { html: page.into_string(), stages, mistakes: uses.mistakes })
 }
 
 /// The last stage, whose picture opens the page.
@@ -52,8 +51,14 @@ fn cover_stage() -> &'static Stage {
     &Stage::ALL[Stage::ALL.len() - 1]
 }
 
-fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
-    html! {
+/// Styles and scripts are read like the texts, so that an author sees a change at once.
+fn document(site: &Site, chapters: &Markup, live: &Markup) -> Result<Markup, Fault> {
+    let assets = |names: &[&str]| -> Result<Markup, Fault> {
+        let texts: Result<Vec<_>, _> =
+            names.iter().map(|name| site.library.read(&format!("assets/{name}"))).collect();
+        Ok(PreEscaped(texts?.concat()))
+    };
+    Ok(html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -64,8 +69,9 @@ fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
                 meta name="description" content=(ABOUT);
                 meta name="color-scheme" content="light dark";
                 link rel="icon" href="data:,";
-                style { (PreEscaped(STYLE)) (PreEscaped(web::HOST_STYLE)) }
-                script { (PreEscaped(THEME_SCRIPT)) }
+                style { (assets(&["companion/fonts.css", "companion/page.css", "web/live.css"])?) }
+                // Runs before anything is drawn, so that the page does not flash in the wrong colours.
+                script { (assets(&["companion/theme.js"])?) }
             }
             body id="top" {
                 a .skip href="#content" { "Skip to the text" }
@@ -76,12 +82,13 @@ fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
                     (colophon())
                 }
                 div .tip id="tip" role="tooltip" hidden {}
-                script { (PreEscaped(SCRIPT)) }
+                script { (assets(&["companion/page.js"])?) }
+                script type="module" { (assets(&["companion/diagrams.js"])?) }
                 script type="application/json" id="live-data" { (live) }
-                script type="module" { (PreEscaped(web::HOST_SCRIPT)) }
+                script type="module" { (assets(&["web/scene.js", "web/film.js", "web/live.js"])?) }
             }
         }
-    }
+    })
 }
 
 fn cover() -> Markup {
@@ -94,9 +101,10 @@ fn cover() -> Markup {
                 "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
                  every figure live in your browser. Then: lanes, threads and GPUs, measured."
             }
-            img src={ "figures/" (stage.id) ".png" } width=(stage.setup.width) height=(stage.setup.height)
-                alt="The book's last picture: hundreds of small balls around three large ones of glass, brown matte and polished metal."
-                fetchpriority="high";
+            figure .figure id="figure-cover" {
+                div .panels { (directive::panel(stage, None, None, true)) }
+                figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
+            }
         }
     }
 }
@@ -119,7 +127,7 @@ fn navigation(site: &Site) -> Markup {
     let (with_book, beyond) = site.chapters.split_at(last_of_book.map_or(0, |place| place + 1));
     html! {
         nav .contents id="contents" aria-label="Chapters" {
-            details open {
+            details {
                 summary { span .now { "Chapters" } }
                 div .list {
                     a .home href="#top" { strong { "Weekender" } " the companion" }

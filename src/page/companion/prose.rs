@@ -5,17 +5,19 @@ use super::chapter::Chapter;
 use super::directive::{self, typographic};
 use super::fault::{Fault, line_of};
 use super::site::{Site, Uses};
+use crate::page::gallery::Figure;
 use anyhow::{Context, Result, bail, ensure};
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{
     BrokenLink, CodeBlockKind, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as writer,
 };
+use std::fmt::Write as _;
 use std::iter::Peekable;
 use std::ops::Range;
 use std::vec::IntoIter;
 
 /// A text and its location.
-struct Place<'a> {
+pub struct Place<'a> {
     file: &'a str,
     lines_before: usize,
     /// The chapter; `None` in the back matter.
@@ -23,12 +25,51 @@ struct Place<'a> {
     text: &'a str,
 }
 
+impl Place<'_> {
+    /// A text inside a directive, without its paragraph.
+    pub fn inside(&self, site: &Site, text: &str, uses: &mut Uses) -> Result<Markup> {
+        let html = convert(site, &Place { text: text.trim(), ..*self }, uses)?.into_string();
+        let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
+        Ok(PreEscaped(inside.unwrap_or(&html).to_owned()))
+    }
+
+    /// Gives the chapter's symbols their colours in a formula or in highlighted code.
+    pub fn coloured(&self, html: &Markup) -> Markup {
+        let colours =
+            self.chapter.map(|chapter| &chapter.facts.colours).filter(|colours| !colours.is_empty());
+        let Some(colours) = colours else { return html.clone() };
+        let mut found = String::new();
+        let mut in_tag = false;
+        // Words, and what is between them.
+        let is_word = |c: char| c.is_alphanumeric() || c == '_';
+        let mut rest = html.0.as_str();
+        while let Some(first) = rest.chars().next() {
+            let end = rest.find(|c| is_word(c) != is_word(first)).unwrap_or(rest.len());
+            let (word, after) = rest.split_at(end);
+            match colours.get(word).filter(|_| !in_tag && !found.ends_with('&')) {
+                Some(colour) => drop(write!(found, "<span class=\"q{colour}\">{word}</span>")),
+                None => found.push_str(word),
+            }
+            if let Some(bracket) = word.rfind(['<', '>']) {
+                in_tag = word[bracket..].starts_with('<');
+            }
+            rest = after;
+        }
+        // Formulas have no spans.
+        PreEscaped(found.replace("<mi><span ", "<mi ").replace("</span></mi>", "</mi>"))
+    }
+}
+
 pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup, Fault> {
+    let text = site.measured.filled(&chapter.body).map_err(|(position, error)| {
+        let line = chapter.lines_before + line_of(&chapter.body, position);
+        Fault::new(&chapter.file, line, format!("{error:#}"))
+    })?;
     let place = Place {
         file: &chapter.file,
         lines_before: chapter.lines_before,
         chapter: Some(chapter),
-        text: &chapter.body,
+        text: &text,
     };
     convert(site, &place, uses)
 }
@@ -41,10 +82,8 @@ pub fn short_text(
     text: &str,
     uses: &mut Uses,
 ) -> Result<Markup, Fault> {
-    let place = Place { file, lines_before: line.saturating_sub(1), chapter: None, text: text.trim() };
-    let html = convert(site, &place, uses)?.into_string();
-    let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
-    Ok(PreEscaped(inside.map_or(html.clone(), str::to_owned)))
+    let place = Place { file, lines_before: line.saturating_sub(1), chapter: None, text };
+    place.inside(site, text, uses).map_err(|error| Fault::new(file, line, format!("{error:#}")))
 }
 
 /// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
@@ -140,11 +179,11 @@ impl Converter<'_> {
             }
             Event::End(TagEnd::Link) => out.extend(self.closing.pop().map(inline)),
             Event::InlineMath(latex) => {
-                let formula = self.site.formulas.convert(&latex, false)?;
+                let formula = self.place.coloured(&self.site.formulas.convert(&latex, false)?);
                 out.push(inline(with_punctuation(&formula, rest)));
             }
             Event::DisplayMath(latex) => {
-                let formula = self.site.formulas.convert(&latex, true)?;
+                let formula = self.place.coloured(&self.site.formulas.convert(&latex, true)?);
                 out.push(inline(
                     html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
                 ));
@@ -165,7 +204,7 @@ impl Converter<'_> {
         let text = self.place.text[range.clone()].trim();
         if let Some(inside) = text.strip_prefix("{{").and_then(|text| text.strip_suffix("}}")) {
             skip_to(rest, TagEnd::Paragraph);
-            return directive::html(self.site, inside.trim(), self.uses).map(block);
+            return directive::html(self.site, self.place, inside.trim(), self.uses).map(block);
         }
         // A lone formula may be wider than the text.
         let is_formula = text.len() > 4 && text.starts_with("$$") && text.ends_with("$$");
@@ -235,7 +274,7 @@ impl Converter<'_> {
             _ => "text",
         };
         let code = self.site.highlighter.html(language, &code)?;
-        Ok(html! { pre .block tabindex="0" role="group" aria-label={ "Code" } { code { (code) } } })
+        Ok(html! { pre .block { code { (code) } } })
     }
 
     fn citation(&self, target: &str) -> Result<Markup> {
@@ -293,6 +332,21 @@ impl Converter<'_> {
                 self.note_target(&anchor);
                 opened("", &format!("#{anchor}"), &title, None)
             }
+            "live" => {
+                let (id, settings) = rest.split_once('?').unwrap_or((rest, ""));
+                let shows = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage().id == id);
+                let figure = Figure::all()
+                    .iter()
+                    .find(shows)
+                    .with_context(|| format!("no figure shows the stage {id:?}"))?;
+                let anchor = format!("figure-{}", figure.id);
+                self.note_target(&anchor);
+                let link = html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) {} };
+                return Ok((
+                    PreEscaped(link.into_string().replace("</a>", "")),
+                    PreEscaped("</a>".to_owned()),
+                ));
+            }
             "source" => {
                 // The page has no copy of the repository, so it cites the path like a reference.
                 return Ok((html! {}, html! { " " span .cite { "[" code .path { (rest) } "]" } }));
@@ -303,8 +357,7 @@ impl Converter<'_> {
                 opened("", target, "", None)
             }
             _ => {
-                let kinds =
-                    "glossary:TERM, book:SECTION, page:CHAPTER, source:PATH, [@REFERENCE] or https://";
+                let kinds = "glossary:TERM, book:SECTION, page:CHAPTER, live:STAGE?SLIDER=VALUE, source:PATH, [@REFERENCE] or https://";
                 let is_inline = link_type == LinkType::Inline;
                 let form = if is_inline { target.to_owned() } else { format!("[{target}]") };
                 bail!("{form:?} is no link of the page; use {kinds}");

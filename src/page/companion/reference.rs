@@ -24,6 +24,8 @@ pub enum Area {
     Parallelism,
     /// How numbers are stored and rounded.
     Numbers,
+    /// Words of Rust, WGSL and C++.
+    Languages,
 }
 
 /// A work cited in the text.

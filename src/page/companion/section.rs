@@ -11,7 +11,6 @@ use super::library::Library;
 pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
     // A test reads these texts, so they have no faults.
     let library = Library::Embedded;
-    let declared = excerpt::read_all(&library).unwrap_or_default();
     let chapters = Chapter::read_all(&library).unwrap_or_default();
     let chapter_of = |section: &str| section.split('.').next().map(str::to_owned);
     let Some(chapter) = chapters.iter().find(|chapter| chapter.facts.book == chapter_of(section)) else {
@@ -19,7 +18,7 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
     };
     // Only later sections of the same chapter are new.
     let after = after.filter(|after| chapter_of(after) == chapter_of(section));
-    let mut is_new = after.is_none();
+    let (mut is_new, mut is_code) = (after.is_none(), false);
     let mut found = Vec::new();
     for line in chapter.body.lines() {
         if let Some(heading) = line.strip_prefix("## ") {
@@ -28,15 +27,14 @@ pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
                 break;
             }
             is_new = is_new || after.is_some_and(|after| is_later(number, after));
-        } else if is_new
-            && let Some(inside) = line.strip_prefix("{{").and_then(|rest| rest.strip_suffix("}}"))
-        {
-            let mut words = inside.split_whitespace();
-            if matches!(words.next(), Some("excerpt" | "pair")) {
-                found.extend(words.filter_map(|name| declared.get(name).cloned()));
-            }
+        } else if line.starts_with("{{code") || line == "}}" {
+            is_code = line != "}}";
+        } else if is_code && is_new {
+            found.extend(excerpt::cut(&library, line));
         }
     }
+    // The window has switches for these two languages.
+    found.retain(|excerpt| [".rs", ".wgsl"].iter().any(|ending| excerpt.file.ends_with(ending)));
     found
 }
 

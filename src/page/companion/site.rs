@@ -2,12 +2,12 @@
 
 use super::book::{self, Book};
 use super::chapter::Chapter;
-use super::excerpt::{self, Excerpt};
 use super::fault::Fault;
 use super::formula::Formulas;
 use super::highlight::Highlighter;
 use super::library::{Entry, Library};
 use super::measured::Measured;
+use super::mistakes::Thumbnail;
 use super::reference::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::page::gallery::Figure;
 use anyhow::Result;
@@ -19,8 +19,6 @@ pub struct Site {
     pub library: Library,
     pub book: Book,
     pub chapters: Vec<Chapter>,
-    /// By name.
-    pub excerpts: BTreeMap<String, Excerpt>,
     /// In alphabetical order.
     pub terms: Vec<Entry<Term>>,
     /// In file order.
@@ -36,8 +34,8 @@ pub struct Site {
 pub struct Uses {
     /// Keys of linked terms, each with the short title of the first chapter that links it.
     pub terms: BTreeMap<String, String>,
-    /// Names of the excerpts shown.
-    pub excerpts: BTreeSet<String>,
+    /// The pictures of mistakes, in the order of the page.
+    pub mistakes: Vec<Thumbnail>,
     /// In the order of the page.
     pub figures: Vec<&'static Figure>,
     /// Existing anchors.
@@ -56,7 +54,6 @@ impl Site {
             library: library.clone(),
             book: library.toml(book::FILE)?,
             chapters: Chapter::read_all(library)?,
-            excerpts: excerpt::read_all(library)?,
             terms,
             references: library.entries(REFERENCES)?,
             measured: Measured::read(library)?,
@@ -78,11 +75,6 @@ impl Site {
             let message =
                 format!("no chapter links the term {key:?}; link it as [text](glossary:{key}), or remove it");
             return Err(Fault::new(GLOSSARY, *line, message));
-        }
-        if let Some(name) = self.excerpts.keys().find(|name| !uses.excerpts.contains(*name)) {
-            let message =
-                format!("no chapter shows the excerpt {name:?}; add {{{{excerpt {name}}}}}, or remove it");
-            return Err(Fault::new(excerpt::FILE, 0, message));
         }
         match uses.targets.iter().find(|(anchor, ..)| !uses.anchors.contains(anchor)) {
             Some((anchor, file, line)) => {

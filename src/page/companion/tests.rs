@@ -15,7 +15,6 @@ fn site() -> Site {
     let mut site = Site::read(&Library::Embedded).unwrap();
     site.chapters.retain(|chapter| ["normals", "languages"].contains(&chapter.id.as_str()));
     site.chapters.iter_mut().for_each(|chapter| chapter.body.clear());
-    site.excerpts.clear();
     let term = |key: &str, line, area| {
         let value = Term { term: key.to_uppercase(), text: format!("A *{key}*."), area };
         Entry { key: key.to_owned(), line, value }
@@ -57,6 +56,10 @@ fn links_lead_to_what_they_name() {
             "<a href=\"#normals-61-shading-with-surface-normals\" title=\"Section 6.1 Shading with Surface Normals\">x</a>",
         ),
         ("glossary:lane", "<a id=\"use-lane\" class=\"term\" href=\"#term-lane\">x</a>"),
+        (
+            "live:metal-fuzzy?fuzz=1",
+            "<a class=\"try\" href=\"#figure-fuzz\" data-stage=\"metal-fuzzy\" data-set=\"fuzz=1\">x</a>",
+        ),
         ("source:src/lib.rs", "x <span class=\"cite\">[<code class=\"path\">src/lib.rs</code>]</span>"),
     ] {
         assert_eq!(alone(&site, &format!("[x]({target})")), format!("<p>{html}</p>\n"));
@@ -110,19 +113,40 @@ fn headings_code_and_formulas_render() {
 #[test]
 fn directives_render() {
     let site = Site::read(&Library::Embedded).unwrap();
-    let pair = alone(&site, "{{pair dot dot-wgsl}}");
-    assert!(pair.starts_with("<div class=\"pair\"><figure class=\"code\">"), "{pair}");
-    assert!(
-        pair.contains("<code class=\"path\">shaders/lanes.wgsl</code> <span class=\"lines\">lines "),
-        "{pair}"
-    );
+    let code =
+        alone(&site, "{{code\nshaders/lanes.wgsl: fn dot3\nsrc/render_cpu/lanes/vector.rs: pub fn dot\n}}");
+    assert!(code.contains("<figure class=\"code shown\" data-language=\"wgsl\">"), "{code}");
+    assert!(code.contains("<figure class=\"code\" data-language=\"rs\">"), "{code}");
+    assert!(code.contains("shaders/lanes.wgsl</code> <span class=\"lines\">lines "), "{code}");
     let figure = alone(&site, "{{ figure antialiasing }}");
     assert!(
         figure.contains("id=\"figure-antialiasing\"") && figure.contains("src=\"figures/aliased.png\""),
         "{figure}"
     );
+    let cropped = alone(&site, "{{figure antialiasing crop 1 2 3 4\nA *caption*.\n}}");
+    assert!(cropped.contains("viewBox=\"1 2 3 4\"") && cropped.contains("A <em>caption</em>."), "{cropped}");
     let diagram = alone(&site, "{{diagram lanes}}");
     assert!(diagram.contains("<div class=\"scroll\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
+}
+
+#[test]
+fn values_come_from_measurements() {
+    let site = site();
+    let rows = "speed/scenes/three-spheres/rows/C89, cc -O2, 1 thread";
+    let text = format!("{{{{value 3 {rows}/ratio_to_baseline}}}} {{{{value 2 12345 over 1}}}}");
+    assert_eq!(alone(&site, &text), "<p>1.00 12,000</p>\n");
+    let fault = converted(&site, "a\n\n{{value 2 speed/nothing}}", &mut Uses::default()).unwrap_err();
+    assert_eq!((fault.line, fault.message.contains("speed/nothing")), (7, true), "{fault}");
+}
+
+#[test]
+fn symbols_have_colours_in_formulas_and_code() {
+    let mut site = site();
+    let normals = site.chapters.iter_mut().find(|chapter| chapter.id == "normals").unwrap();
+    normals.facts.colours = [("h".to_owned(), 4)].into();
+    assert!(alone(&site, "$h$").contains("<mi class=\"q4\">h</mi>"));
+    let code = alone(&site, "{{code\nshaders/sphere.wgsl: fn chord_end\n}}");
+    assert!(code.contains("<span class=\"q4\">h</span>") && !code.contains("q4\">hit"), "{code}");
 }
 
 #[test]

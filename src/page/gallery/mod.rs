@@ -1,7 +1,6 @@
 //! Figures: the book's stages as pictures with captions, alone or side by side. `weekender gallery` renders them into a
 //! directory with a page.
 
-mod figures;
 mod page;
 mod quality;
 mod rendering;
@@ -18,34 +17,49 @@ use crate::system::files::{check_page, write_text};
 use crate::system::interrupt::Interrupt;
 use crate::system::suggest::{or_nearest, similar_names};
 use anyhow::{Result, bail};
+use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 /// One or more pictures with a caption.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Figure {
     /// The identifier in pages and on the command line. It never changes.
-    pub id: &'static str,
-    pub title: &'static str,
+    pub id: String,
+    pub title: String,
     /// One or two sentences.
-    pub caption: &'static str,
+    pub caption: String,
     /// Left to right, at least one.
-    pub panels: &'static [Panel],
+    pub panels: Vec<Panel>,
 }
 
 /// One picture of a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Panel {
-    stage_id: &'static str,
+    #[serde(rename = "stage")]
+    stage_id: String,
     /// A few words that distinguish the picture from its neighbours.
-    pub label: &'static str,
+    pub label: String,
 }
 
 impl Figure {
     /// All figures in the book's order. Every stage is in at least one.
-    pub const ALL: &'static [Figure] = figures::FIGURES;
+    pub fn all() -> &'static [Figure] {
+        static ALL: LazyLock<Vec<Figure>> = LazyLock::new(|| {
+            // A test finds the figures of every stage.
+            let text = include_str!("../../../assets/gallery/figures.toml");
+            toml::from_str(text)
+                .map(|mut file: BTreeMap<String, _>| file.remove("figure").unwrap_or_default())
+                .unwrap_or_default()
+        });
+        &ALL
+    }
 
     pub fn find(id: &str) -> Option<&'static Figure> {
-        Self::ALL.iter().find(|figure| figure.id == id)
+        Self::all().iter().find(|figure| figure.id == id)
     }
 
     /// The stage whose section the figure belongs to: its latest.
@@ -59,7 +73,7 @@ impl Panel {
     /// The stage shown.
     pub fn stage(&self) -> &'static Stage {
         // A test finds the stage of every panel.
-        Stage::find(self.stage_id).unwrap_or(&Stage::ALL[0])
+        Stage::find(&self.stage_id).unwrap_or(&Stage::ALL[0])
     }
 }
 
@@ -89,13 +103,15 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
 fn chosen(ids: &[String]) -> Result<Vec<&'static Stage>> {
     let mut chosen: Vec<&str> = Vec::new();
     for id in ids {
-        let panels = Figure::find(id).map_or(&[][..], |figure| figure.panels);
+        let panels = Figure::find(id).map_or(&[][..], |figure| &figure.panels);
         let stages = panels.iter().map(Panel::stage).chain(Stage::find(id).ok());
         let before = chosen.len();
         chosen.extend(stages.map(|stage| stage.id));
         if chosen.len() == before {
-            let ids =
-                Figure::ALL.iter().map(|figure| figure.id).chain(Stage::ALL.iter().map(|stage| stage.id));
+            let ids = Figure::all()
+                .iter()
+                .map(|figure| figure.id.as_str())
+                .chain(Stage::ALL.iter().map(|stage| stage.id));
             let mut near = similar_names(id, ids);
             near.dedup();
             bail!("--only names {id:?}, which is neither a figure nor a stage; {}", or_nearest(&near));
@@ -111,12 +127,15 @@ mod tests {
 
     #[test]
     fn figures_cover_every_stage_in_order() {
-        let shown: HashSet<&str> =
-            Figure::ALL.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage_id).collect();
+        let shown: HashSet<&str> = Figure::all()
+            .iter()
+            .flat_map(|figure| &figure.panels)
+            .map(|panel| panel.stage_id.as_str())
+            .collect();
         assert_eq!(shown, Stage::ALL.iter().map(|stage| stage.id).collect());
-        let ids: HashSet<&str> = Figure::ALL.iter().map(|figure| figure.id).collect();
-        assert_eq!(ids.len(), Figure::ALL.len());
-        assert!(Figure::ALL.is_sorted_by_key(|figure| figure.stage().index()));
+        let ids: HashSet<&str> = Figure::all().iter().map(|figure| figure.id.as_str()).collect();
+        assert_eq!(ids.len(), Figure::all().len());
+        assert!(Figure::all().is_sorted_by_key(|figure| figure.stage().index()));
         assert_eq!(Figure::find("gamma").map(|figure| figure.stage().id), Some("lambertian-gamma"));
     }
 

@@ -11,7 +11,7 @@ const STYLE: &str = include_str!("../../../assets/gallery/style.css");
 
 /// The page of the stills, with placeholders for missing ones.
 pub fn page(stills: &Stills) -> String {
-    let chapters = Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
+    let chapters = Figure::all().chunk_by(|a, b| a.stage().chapter() == b.stage().chapter());
     let chapters: Vec<(&Stage, &[Figure])> =
         chapters.filter_map(|figures| Some((figures.first()?.stage(), figures))).collect();
     let title = |stage: &Stage| html! { span.number { (stage.chapter()) } " " (stage.chapter_title) };
@@ -78,7 +78,7 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
     html! {
         figure.figure id={ "figure-" (figure.id) } {
             div class=(class) {
-                @for panel in figure.panels { (shown_panel(panel, figure.panels.len() > 1, stills)) }
+                @for panel in &figure.panels { (shown_panel(panel, figure.panels.len() > 1, stills)) }
             }
             figcaption {
                 h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
@@ -123,13 +123,13 @@ mod tests {
             stills.set(Still { backend: backend.to_owned(), ..Still::of(id) });
         }
         let page = page(&stills);
-        for figure in Figure::ALL {
+        for figure in Figure::all() {
             assert_eq!(page.matches(&format!("id=\"figure-{}\"", figure.id)).count(), 1, "{}", figure.id);
             let chapter = format!("<section id=\"chapter-{}\">", figure.stage().chapter());
             assert_eq!(page.matches(&chapter).count(), 1, "{chapter}");
         }
         // Metal appears alone and, with a label, beside its fuzzy neighbour.
-        let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
+        let panels: usize = Figure::all().iter().map(|figure| figure.panels.len()).sum();
         assert_eq!(page.matches("<img ").count(), 4);
         assert_eq!(page.matches("<p class=\"facts\"><strong>").count(), 2);
         assert_eq!(page.matches("Not rendered yet").count(), panels - 4);

@@ -6,7 +6,7 @@ use super::mistakes::{MISTAKES, applying_to};
 use super::tracer::Steps;
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
 /// Samples per pixel of the right picture.
 const FINE: u64 = 256;
@@ -70,17 +70,8 @@ impl Finding {
     }
 }
 
-/// Judges a picture, of `stage` if it is known.
-pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
-    judge_aloud(mine, stage, |_| {})
-}
-
-/// As [`judge`]; `say` is told what is being tried.
-pub fn judge_aloud(
-    mine: &Mine,
-    stage: Option<&'static Stage>,
-    mut say: impl FnMut(String),
-) -> Result<Finding> {
+/// Judges a picture, of `stage` if it is known. `say` is told what is being tried.
+pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
     let stages = match stage {
         Some(stage) if !stages().any(|known| known == stage) => bail!(
             "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
@@ -111,10 +102,7 @@ pub fn judge_aloud(
             break;
         }
     }
-    match best {
-        Some(best) => Ok(best),
-        None => Trial::new(mine, &Stage::ALL[0])?.of_wrong(),
-    }
+    best.context("there is no stage to compare with")
 }
 
 /// A picture compared with the right one of a stage.
@@ -194,7 +182,7 @@ impl<'a> Trial<'a> {
 
     fn in_bytes(&self) -> Option<Compared> {
         let shows = |mistake: &&Mistake| match mistake.change {
-            Change::InBytes(test, _) => test(self.mine, &self.right),
+            Change::InBytes(test) => test(self.mine, &self.right),
             _ => false,
         };
         let mistake = MISTAKES.iter().find(shows)?;

@@ -14,8 +14,8 @@ mod tracer;
 
 pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
-pub use hypothesis::{Compared, Mistake};
-pub use judge::{Finding, judge, judge_aloud, stages};
+pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
+pub use judge::{Finding, judge, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 
@@ -49,7 +49,7 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
     check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
     let mine = Mine::read(&options.picture)?;
     let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
-    let finding = judge_aloud(&mine, options.stage, |what| display.update(0, || what))?;
+    let finding = judge(&mine, options.stage, |what| display.update(0, || what))?;
     display.clear();
     for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());

@@ -1,0 +1,25 @@
+//! The page in Chromium: nothing is cut, every diagram moves, and every link of a picture sets it.
+
+use super::{PAGE, gpu_common};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn a_reader_can_use_the_page() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let lacks = |program: &str| Command::new(program).arg("--version").output().is_err();
+    if lacks("node") || lacks("chromium") || !folder.join("web/node_modules/playwright-core").exists() {
+        let reason = "the page was not used: install node and chromium, and run npm ci --prefix tests/web";
+        assert!(std::env::var("WEEKENDER_REQUIRE_BROWSER").as_deref() != Ok("1"), "{reason}");
+        return gpu_common::say_loudly(reason);
+    }
+    let page = PAGE.directory.path().join("index.html");
+    let output = Command::new("node").arg(folder.join("companion/browser.mjs")).arg(page).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let seen: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for key in ["console", "cut", "still", "links"] {
+        assert_eq!(seen[key], json!([]), "{key}");
+    }
+    assert!(seen["diagrams"].as_u64() >= Some(11) && seen["linkCount"].as_u64() > Some(20), "{seen}");
+}
