@@ -19,8 +19,10 @@ pub struct Changes {
     moved: Option<Instant>,
     /// A move was noted in this frame, however long the frame takes.
     has_moved: bool,
-    /// The changes of this frame belong to a move that began earlier.
+    /// Something is being moved, or a button of the mouse is held.
     is_in_gesture: bool,
+    /// The step to undo has been added for the present gesture.
+    has_step: bool,
     /// The document was changed by undo or redo, which is not a new undo step.
     is_undoing: bool,
 }
@@ -35,6 +37,7 @@ impl Changes {
             moved: None,
             has_moved: false,
             is_in_gesture: false,
+            has_step: false,
             is_undoing: false,
         }
     }
@@ -82,7 +85,7 @@ impl Changes {
     /// Ends the move. The changes of a command are not part of it.
     pub fn end_move(&mut self) {
         self.moved = None;
-        (self.has_moved, self.is_in_gesture) = (false, false);
+        (self.has_moved, self.is_in_gesture, self.has_step) = (false, false, false);
     }
 
     /// Whether something is being moved, or a button of the mouse is held.
@@ -113,15 +116,17 @@ impl Changes {
         let before = std::mem::replace(&mut self.last, document.clone());
         if *document != before {
             // Undo returns to the state before a change, or before a whole gesture.
-            if !self.is_in_gesture && !self.is_undoing {
+            if !self.has_step && !self.is_undoing {
                 self.add(before);
             }
+            self.has_step = true;
             if is_other_film && is_by_hand {
                 self.note_move();
             }
         }
         self.is_undoing = false;
         self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
+        self.has_step &= self.is_in_gesture;
         is_other_film
     }
 
@@ -242,6 +247,7 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         press(&context, true);
+        assert!(!changes.follow(&context, &document), "nothing has changed yet");
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
             assert!(!changes.follow(&context, &document));

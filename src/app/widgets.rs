@@ -549,7 +549,8 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
 fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> bool {
     let mut is_reset = false;
     let mut row = ui.new_child(UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center)));
-    Sides::new().height(rect.height()).shrink_left().truncate().show(
+    row.spacing_mut().item_spacing.x = 4.0;
+    Sides::new().height(rect.height()).spacing(4.0).shrink_left().truncate().show(
         &mut row,
         |ui| {
             let title = RichText::new(header.title);

@@ -211,7 +211,8 @@ fn note(ui: &mut Ui, reason: Option<&str>, is_replaced: bool) {
 
 /// Focuses a field of text, all of which is selected, until something else takes the focus.
 fn focus(ui: &Ui, field: &egui::Response, text: &str) {
-    if ui.memory(|memory| memory.focused().is_none()) {
+    // Enter, which takes the focus, is still to be seen.
+    if !field.lost_focus() && ui.memory(|memory| memory.focused().is_none()) {
         field.request_focus();
         if let Some(mut state) = TextEdit::load_state(ui.ctx(), field.id) {
             let end = CCursor::new(text.chars().count());
