@@ -1,5 +1,6 @@
 //! Prints the table of docs/check.md: mistakes are planted into a plain implementation of the book that shares no code
-//! with Weekender, at 400x225 and 100 samples in 8 bits, and `weekender check` is asked what is wrong.
+//! with Weekender, at 400x225 and 100 samples in 8 bits, and `weekender check` is asked what is wrong, with `--stage` and
+//! without.
 //!
 //! `cargo run --release --example check_table [MISTAKE...]`; the mistake `right` stands for correct pictures.
 
@@ -12,7 +13,7 @@ use weekender::pictures::check::{Mine, judge};
 use weekender::stages::Stage;
 
 /// Mistakes, each with a stage in which it shows.
-const PLANTED: [(&str, &str); 43] = [
+const PLANTED: [(&str, &str); 51] = [
     ("flipped-rows", "lambertian-gamma"),
     ("flipped-rows", "hollow-glass"),
     ("mirrored-columns", "hollow-glass"),
@@ -23,6 +24,12 @@ const PLANTED: [(&str, &str); 43] = [
     ("gamma-early", "diffuse"),
     ("gamma-twice", "lambertian-gamma"),
     ("gamma-twice", "hollow-glass"),
+    ("gamma-2.2", "lambertian-gamma"),
+    ("gamma-2.2", "hollow-glass"),
+    ("gamma-srgb", "lambertian-gamma"),
+    ("gamma-srgb", "hollow-glass"),
+    ("wraps-to-0", "lambertian-gamma"),
+    ("wraps-to-0", "hollow-glass"),
     ("scale-255", "lambertian-gamma"),
     ("scale-255", "hollow-glass"),
     ("truncated", "lambertian-gamma"),
@@ -52,14 +59,23 @@ const PLANTED: [(&str, &str); 43] = [
     ("fuzz-unnormalised", "metal-fuzzy"),
     ("refract-unnormalised", "hollow-glass"),
     ("index-inverted", "hollow-glass"),
+    ("glass-black", "hollow-glass"),
+    ("glass-swapped", "hollow-glass"),
     ("always-refract", "hollow-glass"),
     ("schlick-missing", "hollow-glass"),
     ("hollow-missing", "hollow-glass"),
     ("hollow-index", "hollow-glass"),
 ];
 
-/// Mistakes of the lens.
-const LENS: [(&str, &str); 2] = [("lens-centre", "defocus"), ("focus-distance-one", "defocus")];
+/// Mistakes of the lens and of the random numbers.
+const OTHERS: [(&str, &str); 6] = [
+    ("lens-centre", "defocus"),
+    ("lens-origin", "defocus"),
+    ("lens-aim", "defocus"),
+    ("focus-distance-one", "defocus"),
+    ("same-seed", "lambertian-gamma"),
+    ("same-seed", "hollow-glass"),
+];
 
 const SIZE: [u32; 2] = [400, 225];
 
@@ -69,25 +85,34 @@ const SEEDS: [u64; 2] = [1, 2];
 fn main() -> anyhow::Result<()> {
     let wanted: Vec<String> = std::env::args().skip(1).collect();
     let is_wanted = |mistake: &str| wanted.is_empty() || wanted.iter().any(|name| name == mistake);
-    let (mut right, mut all, mut seconds) = (0, 0_u32, 0.0);
-    println!("| mistake | stage | named |\n|---|---|---|");
-    for (mistake, stage) in PLANTED.into_iter().chain(LENS).filter(|(mistake, _)| is_wanted(mistake)) {
-        let mut others = Vec::new();
+    let (mut right, mut all, mut seconds) = ([0; 2], 0_u32, [0.0; 2]);
+    println!("| mistake | stage | named with --stage | without |\n|---|---|---|---|");
+    for (mistake, stage) in PLANTED.into_iter().chain(OTHERS).filter(|(mistake, _)| is_wanted(mistake)) {
+        let mut others = [Vec::new(), Vec::new()];
         for seed in SEEDS {
-            let (found, took) = found(stage, mistake, 100, seed)?;
-            seconds += took;
+            let mine = planted(stage, mistake, 100, seed);
             all += 1;
-            if found == mistake {
-                right += 1;
-            } else {
-                others.push(found);
+            for (way, given) in [Some(stage), None].into_iter().enumerate() {
+                let (found, took) = found(&mine, given)?;
+                seconds[way] += took;
+                if found == mistake {
+                    right[way] += 1;
+                } else {
+                    others[way].push(found);
+                }
             }
         }
-        let named = SEEDS.len() - others.len();
-        let others = if others.is_empty() { String::new() } else { format!(", else {}", others.join(", ")) };
-        println!("| {mistake} | {stage} | {named} of {}{others} |", SEEDS.len());
+        let named = |others: &Vec<String>| match others.as_slice() {
+            [] => format!("{} of {0}", SEEDS.len()),
+            _ => format!("{} of {}, else {}", SEEDS.len() - others.len(), SEEDS.len(), others.join(", ")),
+        };
+        println!("| {mistake} | {stage} | {} | {} |", named(&others[0]), named(&others[1]));
     }
-    println!("\nNamed: {right} of {all}; {:.1} s each.\n", seconds / f64::from(all.max(1)));
+    let each = seconds.map(|seconds| seconds / f64::from(all.max(1)));
+    println!(
+        "\nNamed of {all}: {} with --stage, {:.1} s each; {} without, {:.1} s each.\n",
+        right[0], each[0], right[1], each[1]
+    );
     if !is_wanted("right") {
         return Ok(());
     }
@@ -95,34 +120,38 @@ fn main() -> anyhow::Result<()> {
     let (mut wrong, mut pictures) = (Vec::new(), 0);
     for stage in book::STAGES {
         for (samples, seed) in [(10, 11), (10, 12), (100, 13)] {
-            let (found, _) = found(stage, "", samples, seed)?;
+            let mine = planted(stage, "", samples, seed);
             pictures += 1;
-            if found != "right" {
-                wrong.push(format!("{stage}, {samples} samples, seed {seed}: {found}"));
+            for given in [Some(stage), None] {
+                let (found, _) = found(&mine, given)?;
+                if found != "right" {
+                    wrong.push(format!("{stage} ({given:?}), {samples} samples, seed {seed}: {found}"));
+                }
             }
         }
     }
-    println!("False alarms: {} of {pictures} correct pictures. {}", wrong.len(), wrong.join("; "));
+    println!(
+        "False alarms: {} of {pictures} correct pictures, each tried both ways. {}",
+        wrong.len(),
+        wrong.join("; ")
+    );
     Ok(())
 }
 
-/// What is found in a planted picture, and in how many seconds.
-fn found(
-    stage: &'static str,
-    mistake: &'static str,
-    samples: u32,
-    seed: u64,
-) -> anyhow::Result<(&'static str, f64)> {
+fn planted(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> Mine {
     let [width, height] = SIZE;
-    let bytes = Book::new(stage, mistake).render(width, height, samples, seed);
-    let mine = Mine { width, height, bytes, format: "P3", damages: Vec::new() };
+    Mine::of_bytes(Book::new(stage, mistake).render(width, height, samples, seed), SIZE)
+}
+
+/// What is found in a picture, and in how many seconds.
+fn found(mine: &Mine, stage: Option<&str>) -> anyhow::Result<(String, f64)> {
     let begin = Instant::now();
-    let finding = judge(&mine, Some(Stage::find(stage)?))?;
+    let finding = judge(mine, stage.map(Stage::find).transpose()?, |_| {})?;
     let seconds = begin.elapsed().as_secs_f64();
     let found = match finding.named() {
-        Some(mistake) => mistake.id,
-        None if finding.is_right() => "right",
-        None => "unknown",
+        Some(mistake) => mistake.id.to_owned(),
+        None if finding.is_right() => "right".to_owned(),
+        None => "unknown".to_owned(),
     };
     Ok((found, seconds))
 }

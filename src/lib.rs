@@ -17,6 +17,8 @@ pub mod batch;
 #[doc(hidden)]
 pub mod cli;
 #[doc(hidden)]
+pub mod denoise;
+#[doc(hidden)]
 pub mod film;
 #[doc(hidden)]
 pub mod job;

@@ -229,7 +229,7 @@ fn incomparable_pictures_exit_with_2() {
         (&["a.exr", "cpu", "--heat-map", "map.jpg"], &["--heat-map", "map.jpg", ".png"]),
         (&["a.exr", "cpu", "--json", "nowhere/a.json"], &["a.json", "create its directory"]),
         (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
-        (&["a.exr", "text.png"], &["text.png", "not a PFM, EXR, PNG or PPM"]),
+        (&["a.exr", "text.png"], &["text.png", "not a PNG, PPM, PFM or EXR"]),
         (&["a.exr", "small.exr"], &["160x90", "80x45", "the same size"]),
         (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
         (&["cpu", "reference", "--stage", "all"], &["all", "--list"]),

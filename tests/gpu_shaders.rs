@@ -62,6 +62,29 @@ fn every_shader_is_valid() {
     }
 }
 
+/// Direct3D gets its kernels in HLSL. `WEEKENDER_HLSL` names a directory for them, where a compiler can be tried on them.
+#[cfg(windows)]
+#[test]
+fn every_kernel_is_translated_for_direct3d() {
+    use naga::back::hlsl::{Options, PipelineOptions, Writer};
+    for entry_point in EntryPoint::ALL {
+        let module = parsed(entry_point);
+        let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module).unwrap();
+        let entry = (naga::ShaderStage::Compute, entry_point.name());
+        for (index, values) in variants().into_iter().enumerate() {
+            let values = values.into_iter().collect();
+            let (module, info) = process_overrides(&module, &info, Some(entry), &values).unwrap();
+            let chosen = PipelineOptions { entry_point: Some((entry.0, entry.1.to_owned())) };
+            let (mut text, options) = (String::new(), Options::default());
+            Writer::new(&mut text, &options, &chosen).write(&module, &info, None).unwrap();
+            if let Some(directory) = std::env::var_os("WEEKENDER_HLSL") {
+                let name = format!("{}-{index}.hlsl", entry_point.name());
+                std::fs::write(std::path::Path::new(&directory).join(name), text).unwrap();
+            }
+        }
+    }
+}
+
 /// tint is another browser's compiler. No package system that we know of has it, so its absence is only reported unless
 /// `WEEKENDER_REQUIRE_TINT=1`.
 #[test]

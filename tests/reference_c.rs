@@ -144,7 +144,9 @@ fn without_a_scene_file_it_renders_the_three_spheres() {
     let out = directory.path().join("built-in.pfm");
     assert!(run(&baseline, &[Path::new("--out"), &out]).status.success());
     // The camera's up vector and the sky are written in full; its focus distance is the book's.
-    for (pixel, mean) in read_picture(&out, Encoding::Srgb).unwrap().pixels.into_iter().enumerate() {
+    for (pixel, mean) in
+        read_picture(&out, None).unwrap().linear(Encoding::Srgb).pixels.into_iter().enumerate()
+    {
         let found = film.mean(pixel);
         assert!((0..3).all(|channel| (found[channel] - mean[channel]).abs() < 1e-7), "{found:?} {mean:?}");
     }

@@ -15,3 +15,6 @@ for side in 16 32 48 64 128 256 512; do
     convert "$work/icon.png" -filter Lanczos -resize "${side}x$side" -strip \
         -define png:exclude-chunks=date,time "icons/$side.png"
 done
+convert icons/{256,64,48,32,16}.png icons/weekender.ico
+# For macOS, which needs Debian's icnsutils here.
+png2icns icons/weekender.icns icons/{512,256,128,48,32,16}.png

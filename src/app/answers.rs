@@ -5,7 +5,6 @@ use crate::job::render::panic_text;
 use eframe::egui::Context;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 /// Makes the answer when the work was not done, from the reason in words.
@@ -111,21 +110,12 @@ impl<T> Answer<T> {
 impl<T: Send + 'static> Answer<T> {
     /// Gives the result of `work`, which is done on a thread of the given name.
     pub fn give_from(self, thread: &str, work: impl FnOnce() -> T + Send + 'static) {
-        let answer = Arc::new(Mutex::new(Some(self)));
-        let own = Arc::clone(&answer);
-        let run = move || {
-            let outcome = caught(work);
-            match (taken(&own), outcome) {
-                (Some(answer), Ok(value)) => answer.give(value),
-                (Some(answer), Err(reason)) => answer.fail(reason),
-                (None, _) => {}
-            }
+        let run = move || match caught(work) {
+            Ok(value) => self.give(value),
+            Err(reason) => self.fail(reason),
         };
-        if let Err(error) = thread::Builder::new().name(thread.to_owned()).spawn(run)
-            && let Some(answer) = taken(&answer)
-        {
-            answer.fail(format!("no thread could be started ({error})"));
-        }
+        // Without a thread the answer is dropped, which gives the substitute.
+        let _ = thread::Builder::new().name(thread.to_owned()).spawn(run);
     }
 }
 
@@ -139,14 +129,11 @@ impl<T> Drop for Answer<T> {
     }
 }
 
-fn taken<T>(answer: &Mutex<Option<T>>) -> Option<T> {
-    answer.lock().unwrap_or_else(PoisonError::into_inner).take()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use eframe::egui::RawInput;
+    use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     #[test]
@@ -164,7 +151,7 @@ mod tests {
         for (name, act) in actions {
             // A frame that asks for no other one.
             for _ in 0..4 {
-                let _ = context.run_ui(RawInput::default(), |_| {});
+                context.run_ui(RawInput::default(), |_| {}).textures_delta.clear();
             }
             let before = wakes.load(Ordering::Relaxed);
             act(answers.answer(&context));

@@ -38,9 +38,8 @@ const NOTE: &str = "Window";
 struct Note {
     stage: Option<String>,
     file: Option<String>,
-    samples: Option<u64>,
-    seconds: Option<f64>,
-    noise: Option<f64>,
+    /// Samples, seconds, error.
+    stop: (Option<u64>, Option<f64>, Option<f64>),
     has_own_size: bool,
     is_from_file: bool,
 }
@@ -51,13 +50,11 @@ impl Note {
             Source::File(path) => path.to_str().map(str::to_owned),
             _ => None,
         };
-        let Stop { samples, seconds, noise } = document.stop;
+        let Stop { samples, seconds, noise, .. } = document.stop;
         Note {
             stage: document.stage().map(|stage| stage.id.to_owned()),
             file,
-            samples,
-            seconds,
-            noise,
+            stop: (samples, seconds, noise),
             has_own_size: document.has_own_size,
             is_from_file: document.is_from_file,
         }
@@ -90,7 +87,8 @@ pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     }
     (document.camera, document.settings) = (recipe.camera, recipe.settings);
     (document.has_own_size, document.is_from_file) = (note.has_own_size, note.is_from_file);
-    document.stop = Stop { samples: note.samples, seconds: note.seconds, noise: note.noise };
+    let (samples, seconds, noise) = note.stop;
+    document.stop = Stop { samples, seconds, noise, ..Stop::default() };
     Some((document, saved.samples()?))
 }
 

@@ -1,18 +1,20 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
 use super::model::document::Document;
-use eframe::egui::{
-    Context,
-    util::undoer::{Settings, Undoer},
-};
+use eframe::egui::Context;
 use std::time::{Duration, Instant};
 
 /// After this long without a move the picture is rendered at its full size.
 const SETTLE: Duration = Duration::from_millis(160);
 
+/// So many changes can be undone.
+const STEPS: usize = 100;
+
 /// The history of the document.
 pub struct Changes {
-    undo: Undoer<Document>,
+    /// The document before each change, oldest first.
+    undo: Vec<Document>,
+    redo: Vec<Document>,
     last: Document,
     moved: Option<Instant>,
     /// A move was noted in this frame, however long the frame takes.
@@ -27,10 +29,8 @@ impl Changes {
     /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
         Changes {
-            undo: Undoer::with_settings(Settings {
-                auto_save_interval: f32::INFINITY,
-                ..Settings::default()
-            }),
+            undo: Vec::new(),
+            redo: Vec::new(),
             last: document,
             moved: None,
             has_moved: false,
@@ -44,28 +44,31 @@ impl Changes {
         &self.last
     }
 
-    /// Whether there is a change to undo.
-    pub fn can_undo(&self, document: &Document) -> bool {
-        self.undo.has_undo(document)
+    /// What [`Changes::undo`] brings back.
+    pub fn earlier(&self, document: &Document) -> Option<&Document> {
+        self.undo.iter().rev().find(|earlier| *earlier != document)
     }
 
-    /// Whether there is a change to redo.
-    pub fn can_redo(&self, document: &Document) -> bool {
-        self.undo.has_redo(document)
+    /// What [`Changes::redo`] brings back.
+    pub fn later(&self) -> Option<&Document> {
+        self.redo.last()
     }
 
-    /// Undoes the last change.
+    /// Undoes the last change. One that came to nothing, such as a drag back, is skipped.
     pub fn undo(&mut self, document: &mut Document) {
-        if let Some(earlier) = self.undo.undo(document) {
-            restore(document, earlier);
-            self.is_undoing = true;
+        while let Some(earlier) = self.undo.pop() {
+            if earlier != *document {
+                self.redo.push(restore(document, earlier));
+                self.is_undoing = true;
+                break;
+            }
         }
     }
 
     /// Redoes the change that was undone last.
     pub fn redo(&mut self, document: &mut Document) {
-        if let Some(later) = self.undo.redo(document) {
-            restore(document, later);
+        if let Some(later) = self.redo.pop() {
+            self.undo.push(restore(document, later));
             self.is_undoing = true;
         }
     }
@@ -82,6 +85,11 @@ impl Changes {
         (self.has_moved, self.is_in_gesture) = (false, false);
     }
 
+    /// Whether something is being moved, or a button of the mouse is held.
+    pub fn is_in_gesture(&self) -> bool {
+        self.is_in_gesture
+    }
+
     /// Whether something is being moved.
     pub fn is_moving(&self) -> bool {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
@@ -94,43 +102,47 @@ impl Changes {
 
     /// Accepts a replaced document that comes with its film, as one step to undo.
     pub fn step_to(&mut self, document: &Document) {
-        self.undo.add_undo(&self.last);
-        self.last = document.clone();
+        let before = std::mem::replace(&mut self.last, document.clone());
+        self.add(before);
     }
 
-    /// Notes what has changed in this frame. Returns whether the document now needs a different film. `is_typing` says that
-    /// the user may still go on to type a number that has been applied.
-    pub fn follow(&mut self, context: &Context, document: &Document, is_typing: bool) -> bool {
+    /// Notes what has changed in this frame. Returns whether the document now needs a different film.
+    pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
         let is_other_film = !document.has_same_film(&self.last);
-        if *document != self.last {
+        let before = std::mem::replace(&mut self.last, document.clone());
+        if *document != before {
             // Undo returns to the state before a change, or before a whole gesture.
-            let goes_on = self.is_in_gesture || is_typing && !self.is_moving();
-            if !goes_on && !self.is_undoing {
-                self.undo.add_undo(&self.last);
+            if !self.is_in_gesture && !self.is_undoing {
+                self.add(before);
             }
             if is_other_film && is_by_hand {
                 self.note_move();
             }
         }
-        self.last.clone_from(document);
         self.is_undoing = false;
         self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
-        // What lasts becomes a step of its own.
-        if !is_typing {
-            self.undo.feed_state(context.input(|input| input.time), document);
-        }
         is_other_film
+    }
+
+    fn add(&mut self, before: Document) {
+        self.redo.clear();
+        self.undo.push(before);
+        if self.undo.len() > STEPS {
+            self.undo.remove(0);
+        }
     }
 }
 
-/// Replaces `document` by its state before or after a change. A size that follows the viewport or the book stays.
-fn restore(document: &mut Document, state: &Document) {
-    let before = std::mem::replace(document, state.clone());
+/// Replaces `document` by its state before or after a change, and returns it. A size that follows the viewport or the book
+/// stays.
+fn restore(document: &mut Document, state: Document) -> Document {
+    let before = std::mem::replace(document, state);
     let follows = !before.has_own_size && !document.has_own_size;
     if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
         document.set_size(before.size());
     }
+    before
 }
 
 #[cfg(test)]
@@ -148,11 +160,11 @@ mod tests {
             changes.note_move();
             changes.moved = Instant::now().checked_sub(2 * SETTLE);
             document.camera.vfov_degrees += f64::from(step);
-            assert!(changes.follow(&context, &document, false));
+            assert!(changes.follow(&context, &document));
         }
         changes.undo(&mut document);
         assert_eq!(document.camera, first);
-        assert!(!changes.can_undo(&document));
+        assert!(changes.earlier(&document).is_none());
     }
 
     /// A document of which something was changed, so that its film is another one.
@@ -164,30 +176,30 @@ mod tests {
     fn changes_are_taken_back_and_made_again() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
-        assert!(!changes.follow(&context, &document, false), "nothing has changed");
+        assert!(!changes.follow(&context, &document), "nothing has changed");
         let cameras: Vec<_> = (0..3)
             .map(|_| {
                 let before = document.camera;
                 change(&mut document);
-                assert!(changes.follow(&context, &document, false));
-                assert!(!changes.follow(&context, &document, false), "not again");
+                assert!(changes.follow(&context, &document));
+                assert!(!changes.follow(&context, &document), "not again");
                 before
             })
             .collect();
         let last = document.camera;
-        assert!(changes.can_undo(&document) && !changes.can_redo(&document));
+        assert!(changes.earlier(&document).is_some() && changes.later().is_none());
         for camera in cameras.into_iter().rev() {
             changes.undo(&mut document);
             assert_eq!(document.camera, camera);
-            assert!(changes.follow(&context, &document, false));
+            assert!(changes.follow(&context, &document));
         }
-        assert!(!changes.can_undo(&document) && changes.can_redo(&document));
+        assert!(changes.earlier(&document).is_none() && changes.later().is_some());
         for _ in 0..3 {
             changes.redo(&mut document);
-            changes.follow(&context, &document, false);
+            changes.follow(&context, &document);
         }
         assert_eq!(document.camera, last);
-        assert!(!changes.can_redo(&document));
+        assert!(changes.later().is_none());
     }
 
     #[test]
@@ -195,8 +207,8 @@ mod tests {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
         let mut changes = Changes::new(document.clone());
         document.stop.seconds = Some(7.0);
-        assert!(!changes.follow(&context, &document, false), "the same film goes on");
-        assert!(changes.can_undo(&document));
+        assert!(!changes.follow(&context, &document), "the same film goes on");
+        assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
     }
@@ -208,28 +220,13 @@ mod tests {
         let first = document.camera;
         change(&mut document);
         changes.adopt(&document);
-        assert!(!changes.follow(&context, &document, false) && !changes.can_undo(&document));
+        assert!(!changes.follow(&context, &document) && changes.earlier(&document).is_none());
         let second = document.camera;
         change(&mut document);
         changes.step_to(&document);
-        assert!(!changes.follow(&context, &document, false) && changes.can_undo(&document));
+        assert!(!changes.follow(&context, &document) && changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert!(document.camera == second && second != first);
-    }
-
-    #[test]
-    fn a_number_that_is_being_typed_is_one_step() {
-        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
-        let mut changes = Changes::new(document.clone());
-        let first = document.camera;
-        change(&mut document);
-        changes.follow(&context, &document, false);
-        for _ in 0..2 {
-            change(&mut document);
-            changes.follow(&context, &document, true);
-        }
-        changes.undo(&mut document);
-        assert_eq!(document.camera, first, "it goes on from the change before");
     }
 
     /// Presses or releases the button of the pointer.
@@ -237,7 +234,7 @@ mod tests {
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
         let event = Event::PointerButton { pos: Pos2::ZERO, button, pressed, modifiers };
         let input = RawInput { events: vec![event], ..RawInput::default() };
-        let _ = context.run_ui(input, |_| {});
+        context.run_ui(input, |_| {}).textures_delta.clear();
     }
 
     #[test]
@@ -247,18 +244,18 @@ mod tests {
         press(&context, true);
         for seconds in [7.0, 8.0] {
             document.stop.seconds = Some(seconds);
-            assert!(!changes.follow(&context, &document, false));
+            assert!(!changes.follow(&context, &document));
             assert!(changes.moved.is_none(), "the film goes on, so nothing is previewed");
         }
         press(&context, false);
-        changes.follow(&context, &document, false);
+        changes.follow(&context, &document);
         document.stop.seconds = Some(9.0);
-        changes.follow(&context, &document, false);
+        changes.follow(&context, &document);
         for expected in [Some(8.0), None] {
             changes.undo(&mut document);
-            changes.follow(&context, &document, false);
+            changes.follow(&context, &document);
             assert_eq!(document.stop.seconds, expected);
         }
-        assert!(!changes.can_undo(&document));
+        assert!(changes.earlier(&document).is_none());
     }
 }

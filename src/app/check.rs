@@ -6,17 +6,15 @@ use super::right::scrolling;
 use super::stage_panel::paragraph;
 use super::texture::Texture;
 use super::theme;
-use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, switch, tip};
+use super::viewport::paint;
+use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, small, switch, tip};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align2, Color32, Label, Pos2, Rect, RichText, Sense, Stroke, TextStyle, TextureOptions, Ui,
-    WidgetInfo, pos2, vec2,
+    self, Align2, Color32, Label, Pos2, Rect, RichText, Sense, Stroke, TextureOptions, Ui, WidgetInfo, pos2,
+    vec2,
 };
 use std::path::{Path, PathBuf};
-
-/// Width of the wipe's handle, points.
-const HANDLE: f32 = 24.0;
 
 /// A size, and mine, ours and the difference, if the picture could be compared.
 type Compared<T> = Option<([u32; 2], [T; 3])>;
@@ -59,7 +57,7 @@ impl Check {
         let (number, checked) = (self.number, path.to_owned());
         let work = move || {
             let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
-            let found = mine.and_then(|mine| judge(&mine, stage).map(|finding| (mine, finding)));
+            let found = mine.and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
             match found {
                 Ok((mine, finding)) => {
                     let views =
@@ -99,6 +97,13 @@ impl Check {
     /// The answer, once there is one.
     pub fn answer(&self) -> Option<&Answer> {
         self.shown.as_ref().map(|(answer, _)| answer)
+    }
+
+    /// What was checked, in words.
+    pub fn words(&self) -> Option<String> {
+        let (_, pictures) = self.shown.as_ref()?;
+        let ([width, height], _) = pictures.as_ref()?;
+        Some(format!("Checked {}, {width} × {height} pixels", self.name()))
     }
 
     /// Whether an answer is shown or awaited.
@@ -158,7 +163,7 @@ impl Check {
             links(ui, answer, commands);
             if pictures.is_some() {
                 ui.add_space(4.0);
-                ui.label(RichText::new("Compare").small().color(theme::colours(ui).weak));
+                small(ui, "Compare");
                 let sides = [
                     (Side::Yours, About::new("Yours", "Your picture")),
                     (Side::Wipe, About::new("Wipe", "Drag a divider between the two")),
@@ -189,7 +194,7 @@ impl Check {
         let (answer, pictures) = self.shown.as_mut()?;
         let (size, [yours, ours, difference]) = pictures.as_mut()?;
         let room = ui.available_rect_before_wrap();
-        ui.painter().rect_filled(room, 0, theme::surround(ui));
+        ui.painter().rect_filled(room, 0, theme::colours(ui).surround);
         let size = size.map(|pixels| pixels as f32);
         let scale = ((room.width() - 16.0) / size[0]).min((room.height() - 16.0) / size[1]).max(0.0);
         let rect = Rect::from_center_size(room.center(), vec2(size[0], size[1]) * scale);
@@ -205,7 +210,9 @@ impl Check {
         let ours_is = answer
             .stage
             .map_or("Ours".to_owned(), |stage| format!("Ours: {} {}", stage.section, stage.title));
-        let [left, right] = [(rect.left_top(), Align2::LEFT_TOP), (rect.right_top(), Align2::RIGHT_TOP)];
+        let label = |rect: Rect, corner: Align2, text: &String| {
+            paint::title(ui, ui.painter(), rect, corner, std::slice::from_ref(text));
+        };
         match self.side {
             Side::Wipe => {
                 if let Some(pointer) = response.interact_pointer_pos() {
@@ -214,17 +221,17 @@ impl Check {
                 let x = rect.left() + self.divider * rect.width();
                 image(yours, rect.with_max_x(x));
                 image(ours, rect.with_min_x(x));
-                label(ui, rect.with_max_x(x), left, &yours_is);
-                label(ui, rect.with_min_x(x), right, &ours_is);
-                divider(ui, rect, x);
+                paint::divider(ui.painter(), rect, x);
+                label(rect.with_max_x(x), Align2::LEFT_TOP, &yours_is);
+                label(rect.with_min_x(x), Align2::RIGHT_TOP, &ours_is);
             }
             Side::Yours => {
                 image(yours, rect);
-                label(ui, rect, left, &yours_is);
+                label(rect, Align2::LEFT_TOP, &yours_is);
             }
             Side::Ours => {
                 image(ours, rect);
-                label(ui, rect, right, &ours_is);
+                label(rect, Align2::RIGHT_TOP, &ours_is);
             }
             Side::Difference => image(difference, rect),
         }
@@ -311,32 +318,6 @@ fn certainty(kind: AnswerKind) -> (&'static str, &'static str) {
         AnswerKind::Unknown | AnswerKind::CannotCheck => {
             ("not", "The pictures differ by more than chance, and no known mistake comes close.")
         }
-    }
-}
-
-/// A label in a corner of a picture, if it fits.
-fn label(ui: &Ui, within: Rect, (corner, align): (Pos2, Align2), text: &str) {
-    let colours = theme::colours(ui);
-    let font = TextStyle::Small.resolve(ui.style());
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, colours.strong);
-    let inwards = if align == Align2::LEFT_TOP { 8.0 } else { -8.0 };
-    let rect = align.anchor_size(corner + vec2(inwards, 8.0), galley.size() + vec2(16.0, 8.0));
-    if within.contains_rect(rect) {
-        ui.painter().rect_filled(rect, 4, colours.panel.gamma_multiply(0.9));
-        ui.painter().galley(rect.min + vec2(8.0, 4.0), galley, colours.strong);
-    }
-}
-
-/// The divider of the wipe, with a round handle.
-fn divider(ui: &Ui, rect: Rect, x: f32) {
-    let painter = ui.painter();
-    for (width, color) in [(4.0, Color32::from_black_alpha(160)), (2.0, Color32::WHITE)] {
-        painter.vline(x, rect.y_range(), Stroke::new(width, color));
-    }
-    let handle = Rect::from_center_size(pos2(x, rect.center().y), vec2(HANDLE, HANDLE));
-    painter.circle_filled(handle.center(), 0.5 * HANDLE, Color32::WHITE);
-    for (sign, by) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
-        paint_sign(painter, handle.translate(vec2(by, 0.0)), sign, Color32::BLACK);
     }
 }
 

@@ -1,15 +1,19 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Keys, Palette};
+use super::dialogs::{Dialog, Keys, Palette, Purpose};
 use super::facts::Facts;
+use super::layout::NARROW;
 use super::model::device::Device;
 use super::model::origin::Source;
-use super::model::remembered::{Dock, Theme};
+use super::model::remembered::{Dock, Tab, Theme};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::tone::{Channel, Tone};
 use super::model::view::{Mode, With};
 use super::model::viewpoint::Viewpoint;
+use super::places;
+use super::spheres::neighbour;
+use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
@@ -89,6 +93,7 @@ pub enum Command {
     ZoomIn,
     ZoomOut,
     Channel(Channel),
+    Denoise,
     ViewFrom(Viewpoint),
     NextSphere,
     PreviousSphere,
@@ -261,13 +266,16 @@ fn rows() -> Vec<Row> {
     }
 
     menu = Some(Menu::File);
-    row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", |w, c| w.ask_open(c),
+    row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", 
+        |w, c| w.ask_path(c, Purpose::Open),
         keys(CTRL, Key::O), also("load import resume")}
     row! {C::CheckPicture, "Check my picture…",
-        "Finds the mistake in a picture that your own program has rendered", |w, c| w.ask_check(c),
+        "Finds the mistake in a picture that your own program has rendered", 
+        |w, c| w.ask_path(c, Purpose::Check),
         also("wrong mistake homework verify compare")}
     row! {C::Reload, "Reload the scene", "Reads the scene file again, after another program has changed it",
-        |w, c| w.reload(c), keys(CTRL, Key::R),
+        
+        |w, c| w.files.scene_file.reload(c, &w.model.document.origin), keys(CTRL, Key::R),
         needs(
             |f| matches!(f.document().origin.source, Source::File(_)),
             "This picture is not from a scene file"
@@ -290,9 +298,9 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Edit);
     row! {C::Undo, "Undo", "Takes back the last change", |w, _| w.undo(), keys(CTRL, Key::Z),
-        needs(|f| f.can_undo, "Nothing has been changed yet"), also("back lost")}
+        needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost")}
     row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
-        needs(|f| f.can_redo, "Nothing has been undone")}
+        needs(|f| f.redo.is_some(), "Nothing has been undone")}
     row! {C::ResetAll, "Reset everything",
         "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
@@ -316,10 +324,11 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Show);
     for (place, show) in Show::ALL.into_iter().enumerate() {
-        row! {C::Show(show), show.name(), show.help(), move |w, c| w.show_as(c, show),
+        let [name, help, synonyms] = show.words();
+        row! {C::Show(show), name, help, move |w, c| w.show_as(c, show),
             keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
             on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
-            also(show.synonyms())}
+            also(synonyms)}
     }
     menu = Some(Menu::View);
     row! {C::Fit, "Fit in the window", "Shows the whole picture as large as possible",
@@ -353,12 +362,15 @@ fn rows() -> Vec<Row> {
     row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
         |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
         also("lecture slides projector beamer")}
-    row! {C::FullScreen, "Full screen", "Fills the screen with the window", |w, c| w.toggle_full_screen(c),
+    row! {C::FullScreen, "Full screen", "Fills the screen with the window", 
+        |w, c| w.fill_screen(c, !w.model.is_full_screen),
         key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
     for theme in Theme::ALL {
-        row! {C::Theme(theme), theme.name(), theme.help(), move |w, c| w.choose_theme(c, theme),
-            on(move |f| f.model.remembered.theme == theme), also(theme.synonyms())}
+        let [name, help, synonyms] = theme.words();
+        row! {C::Theme(theme), name, help, 
+            move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
+            on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
     menu = Some(Menu::View);
     row! {C::Larger, "Larger", "Makes text and controls larger",
@@ -380,12 +392,13 @@ fn rows() -> Vec<Row> {
     row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| w.restart(),
         key(Key::R)}
     row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-        |w, _| w.switch_device(), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
+        |w, _| w.switch_device(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
     row! {C::Device(Device::Reference), "Reference (f64)",
-        "Traces with twice the digits, slowly, to show rounding errors", |w, _| w.toggle_reference(),
+        "Traces with twice the digits, slowly, to show rounding errors", 
+        |w, _| w.switch_device(Device::Reference),
         on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
     row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
-        |w, _| w.keep(), key(Key::M), line(),
+        |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
         needs(
             |f| f.model.view.kept.looked().is_none(),
             "This picture is kept already; Escape returns to the one that is traced"
@@ -435,12 +448,12 @@ fn rows() -> Vec<Row> {
     row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
         |w, _| w.toggle_code(), key(Key::K),
         off(|f| no_presentation(f).or_else(|| no_stage(f))),
-        on(Facts::shows_code), also("source rust wgsl program")}
+        on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| w.open_book(c),
         also("web section")}
     row! {C::Companion, "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds",
-        |w, c| w.open_companion(c), also("web page explain")}
+        |w, c| w.write_companion(c, true), also("web page explain")}
     row! {C::ExtremeScenes, "Extreme scenes…",
         "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
         |w, c| w.open_stage_list(c, true), line(), off(no_presentation), also("stress stiff numerical")}
@@ -473,6 +486,10 @@ fn rows() -> Vec<Row> {
         |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket)}
     row! {C::ZoomOut, "Zoom out", "Ctrl and the wheel zoom at the pointer",
         |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket)}
+    row! {C::Denoise, "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
+        |w, _| w.model.view.is_denoised ^= true, key(Key::V),
+        needs(|f| f.document().settings.estimate_error, "The film has one half; denoising compares two"),
+        on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn")}
     for channel in Channel::ALL {
         row! {C::Channel(channel), channel.name(), "Shows one channel alone, as grey; again shows all",
             move |w, _| w.model.view.tone.toggle(channel), keys(SHIFT, channel.key()),
@@ -483,10 +500,11 @@ fn rows() -> Vec<Row> {
         row! {C::ViewFrom(side), side.name(), "Looks at the same point from that side",
             move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
     }
-    row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", |w, _| w.step_sphere(true),
+    row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", 
+        |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, true),
         key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
-        |w, _| w.step_sphere(false), key(Key::Comma),
+        |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, false), key(Key::Comma),
         needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::LookAtSphere, "Look at the sphere",
         "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
@@ -509,7 +527,8 @@ fn rows() -> Vec<Row> {
         |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
         also("kept slot compare same")}
     for device in [Device::Cpu, Device::Gpu, Device::Both] {
-        row! {C::Device(device), device.long_label(), device.help(),
+        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
+        row! {C::Device(device), name, device.help(),
             move |w, _| w.model.remembered.device = device, off(move |_| device.unavailable()),
             on(move |f| f.model.remembered.device == device), also("device trace")}
     }
@@ -532,7 +551,7 @@ fn rows() -> Vec<Row> {
     row! {C::GoOnFromKept, "Go on from it",
         "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
         |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
-    row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.delete_kept(),
+    row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
         needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::LookLive, "Return to the picture", "Leaves the kept picture", |w, _| w.model.view.look(None),
         keys(Modifiers::ALT, Key::Num0), unlisted()}
@@ -542,9 +561,10 @@ fn rows() -> Vec<Row> {
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::ClearPaths, "Close the paths", "", |w, _| w.clear_paths(), needs(|f| f.has_paths, NO_PATHS),
         unlisted()}
-    row! {C::NextPanel, "Next panel", "", |w, c| w.next_panel(c), key(Key::F6), off(no_presentation),
+    row! {C::NextPanel, "Next panel", "", |w, c| w.shell.panel = places::next(c, w.shell.panel, &w.model), key(Key::F6), off(no_presentation),
         unlisted()}
-    row! {C::Blank, "Blank the screen", "", |w, _| w.toggle_blank(), key(Key::B),
+    row! {C::Blank, "Blank the screen", "", 
+        |w, _| w.model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true), key(Key::B),
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
         unlisted()}
     for sizing in Sizing::ALL {
@@ -662,6 +682,9 @@ impl Command {
             Command::Field(name) => {
                 let remembered = &mut window.model.remembered;
                 (remembered.has_panels, remembered.has_controls) = (true, true);
+                if context.content_rect().width() < NARROW {
+                    remembered.tab = Tab::Controls;
+                }
                 super::widgets::focus(context, name);
             }
             _ => {

@@ -213,7 +213,7 @@ fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
 }
 
 fn albedo_words() -> About<'static> {
-    About::new("Colour", "The share of red, green and blue light that it gives back (albedo):")
+    About::new("Colour", "The share of red, green and blue light that it gives back (albedo)")
 }
 
 /// The kinds of material. Another kind keeps the colour.
@@ -361,7 +361,7 @@ fn tracer(
     };
     let reset = is_changed.then_some("Reset tracer");
     let header = Header { title: "Tracer", summary: &summary, reset, ..Header::default() };
-    let rules = *document.rules();
+    let (rules, is_random) = (*document.rules(), document.is_random());
     let is_reset = fold(ui, header, false, |ui| {
         within(ui);
         let settings = &mut document.settings;
@@ -375,7 +375,6 @@ fn tracer(
                 48.0,
             );
         }
-        let is_random = rules.antialiasing || rules.shading == Shading::Path;
         random_numbers(ui, settings, (!is_random).then_some("In this stage nothing is random"));
         threads_and_lanes(ui, remembered);
         let help = "Keeps two halves of the samples, whose difference tells the error; costs memory";

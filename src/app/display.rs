@@ -1,21 +1,23 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
-use super::identity::Identity;
-use super::kept::{KeptActions, Subject};
+use super::command::Command;
+use super::denoising::Denoising;
+use super::kept::{FilmId, KeptActions, Subject};
 use super::layers::Layers;
 use super::model::Model;
+use super::model::checked::CheckedScene;
 use super::model::show::Show;
 use super::pixel_values::PixelValues;
 use super::sight::Sighted;
+use super::spheres::is_lost;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
 use super::tracer::Shown;
 use super::tracing::Tracing;
 use super::viewport::Viewport;
+use crate::scene::Camera;
 use eframe::egui::Context;
-
-/// With this many samples per pixel, pictures differ by more than their noise.
-const CLEAR_SAMPLES: u64 = 16;
+use std::sync::Arc;
 
 #[derive(Default)]
 pub struct Display {
@@ -23,10 +25,12 @@ pub struct Display {
     pub layers: Layers,
     pub tone: ToneUi,
     pub values: PixelValues,
-    pub identity: Identity,
+    pub denoising: Denoising,
     pub kept: KeptActions,
-    /// The toast of a lost scene was shown.
-    pub is_home_offered: bool,
+    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    pub is_lost: bool,
+    /// Camera and scene of which that was found.
+    judged: Option<(Camera, Arc<CheckedScene>)>,
     /// What "Show me" has changed, to return to.
     pub sight: Option<Sighted>,
 }
@@ -56,9 +60,21 @@ impl Display {
         toasts: &mut Toasts,
     ) {
         let (document, view) = (&model.document, &model.view);
+        let is_known = |(camera, scene): &(Camera, Arc<CheckedScene>)| {
+            *camera == document.camera && Arc::ptr_eq(scene, &document.checked)
+        };
+        if !is_moving && !self.judged.as_ref().is_some_and(is_known) {
+            self.judged = Some((document.camera, Arc::clone(&document.checked)));
+            let is_lost = is_lost(document);
+            if is_lost && !std::mem::replace(&mut self.is_lost, is_lost) {
+                toasts.good_with("Home brings you back", &[Command::Home]);
+            }
+            self.is_lost = is_lost;
+        }
         let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
         if let Some(kept) = view.kept.shown().or_else(other) {
-            self.kept.picture.follow(context, kept, &view.of_film(tracing.second.film()));
+            let shown = view.of_shown(FilmId::Kept(kept.number()), tracing.second.film());
+            self.kept.picture.follow(context, kept, &shown);
         }
         let live = (document, &tracing.main);
         let subject = Subject::new(view, live, tracing.seconds_before);
@@ -71,27 +87,5 @@ impl Display {
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
         let area = self.viewport.room().filter(|_| is_picture);
         self.values.follow(&subject, self.viewport.placement.rect(), area, context);
-        self.identity.follow(view.subtracted(tracing.second.film()), &subject, context);
-    }
-
-    /// Puts the divider of a new wipe where the two pictures differ most, once both are clear.
-    pub fn place_divider(&self, model: &mut Model, tracing: &Tracing) {
-        if !model.view.is_divider_unplaced {
-            return;
-        }
-        let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
-        let mine = match model.view.kept.shown() {
-            Some(kept) => self.kept.picture.shown(kept),
-            None => {
-                let is_over = tracing.main.status().phase.is_over();
-                tracing.main.shown().filter(|shown| is_clear(shown) || is_over)
-            }
-        };
-        let theirs = tracing.second.shown().filter(|shown| is_clear(shown) || tracing.second.is_over());
-        if let (Some(mine), Some(theirs)) = (mine, theirs) {
-            let column = mine.texture.most_different_column(&theirs.texture);
-            model.view.divider = column.unwrap_or(model.view.divider);
-            model.view.is_divider_unplaced = false;
-        }
     }
 }

@@ -9,22 +9,19 @@ use super::model::remembered::Dock;
 use super::model::view::{ViewState, With};
 use super::places::Place;
 use super::tools::Tools;
-use super::widgets::{Sign, choice, hint, sign_button, tip};
+use super::widgets::{About, Sign, TABS, hint, panel_line, sign_button, small, switch, tip};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
-    self, Align, Align2, Button, Color32, ColorImage, CornerRadius, Frame, Key, Label, Layout, Margin, Rect,
-    Response, RichText, Role, ScrollArea, Sense, Shape, Sides, Stroke, StrokeKind, TextEdit, TextStyle,
-    TextureHandle, TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
+    self, Align, Align2, Button, Color32, ColorImage, Frame, Key, Label, Layout, Margin, Rect, Response,
+    RichText, Role, ScrollArea, Sense, Shape, Sides, Stroke, StrokeKind, TextEdit, TextStyle, TextureHandle,
+    TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
 const HEIGHT: f32 = 276.0;
 const LEAST: f32 = 160.0;
 const LOW: f32 = 200.0;
-
-/// Height of the tabs.
-const TABS: f32 = 40.0;
 
 /// A card: its picture, and its height with the name.
 const PICTURE: Vec2 = vec2(132.0, 74.0);
@@ -44,7 +41,8 @@ impl Cards {
         let place = self.textures.iter().position(|(number, _)| *number == kept.number());
         let place = place.unwrap_or_else(|| {
             let small = &kept.thumbnail;
-            let image = ColorImage::from_rgb(small.size.map(|length| length as usize), &small.rgb8);
+            let size = [small.width(), small.height()].map(|length| length as usize);
+            let image = ColorImage::from_rgb(size, small);
             let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
             self.textures.push((kept.number(), texture));
             self.textures.len() - 1
@@ -79,7 +77,7 @@ pub fn ui(
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
             row.show(ui, |ui| tabs(ui, dock, model, facts, commands));
-            super::widgets::panel_line(ui);
+            panel_line(ui);
             Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 8.0;
                 let mut is_saved = false;
@@ -87,7 +85,7 @@ pub fn ui(
                     Dock::Path => tools.paths.ui(ui),
                     Dock::Kept => kept_ui(ui, model, kept, facts, commands),
                     Dock::Lanes => tools.lanes.ui(ui, facts),
-                    Dock::Error => is_saved = plot::ui(ui, &mut model.document.stop.noise, facts),
+                    Dock::Error => is_saved = plot::ui(ui, facts),
                 }
                 ui.take_available_space();
                 is_saved
@@ -109,7 +107,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mu
         ] {
             let is_there = tab != Dock::Path || dock == tab || facts.has_paths;
             if is_there {
-                let response = tab_ui(ui, dock == tab, name);
+                let response = super::widgets::tab(ui, name, dock == tab);
                 if tip(ui, response, help, None).clicked() {
                     *shown = Some(tab);
                 }
@@ -131,22 +129,6 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mu
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
 }
 
-fn tab_ui(ui: &mut Ui, is_on: bool, name: &str) -> Response {
-    let colours = theme::colours(ui);
-    let text = RichText::new(name).color(if is_on { colours.strong } else { colours.weak });
-    let response = ui.scope(|ui| {
-        ui.spacing_mut().button_padding.x = 0.0;
-        ui.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)))
-    });
-    let response = response.inner;
-    response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, name));
-    if is_on {
-        let line = response.rect.x_range().expand(8.0);
-        ui.painter().hline(line, response.rect.bottom() - 1.0, Stroke::new(2.0, colours.accent));
-    }
-    response
-}
-
 /// What can be done with the chosen kept picture: name, command and tooltip.
 const ACTIONS: [(&str, Command, &str); 5] = [
     ("Look", Command::Flip, "Show it instead of the picture (Alt and its number)"),
@@ -156,22 +138,27 @@ const ACTIONS: [(&str, Command, &str); 5] = [
     ("Keep", Command::Keep, "Keep a copy of this picture with all its samples (M)"),
 ];
 
-/// Buttons of the actions, from right to left. The first three are a switch.
+/// The actions, from right to left. The first three are a switch.
 fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    for (place, (name, command, help)) in ACTIONS.iter().enumerate().rev() {
+    for (name, command, help) in ACTIONS[3..].iter().rev() {
         let reason = facts.disabled_reason(*command);
-        let is_on = match command {
-            Command::Flip => facts.model.view.kept.looked().is_some(),
-            _ => facts.is_on(*command),
-        };
-        let (left, right) = (u8::from(place != 1 && place != 2) * 4, u8::from(place > 1) * 4);
-        ui.spacing_mut().item_spacing.x = if matches!(place, 1 | 2) { 0.0 } else { 8.0 };
-        let corners = CornerRadius { nw: left, sw: left, ne: right, se: right };
-        let response = ui.add_enabled(reason.is_none(), choice(ui, is_on, *name).corner_radius(corners));
+        let response = ui.add_enabled(reason.is_none(), Button::new(*name));
         if tip(ui, response, help, reason.as_deref()).clicked() {
             commands.push(*command);
         }
     }
+    let reasons = [0, 1, 2].map(|place| facts.disabled_reason(ACTIONS[place].1));
+    let about = |place: usize| {
+        let (name, command, help) = ACTIONS[place];
+        (Some(command), About::new(name, help).disabled_if(reasons[place].as_deref()))
+    };
+    let is_looked = facts.model.view.kept.looked().is_some();
+    let is_on = |command: &Command| match command {
+        Command::Flip => is_looked,
+        _ => facts.is_on(*command),
+    };
+    let chosen = ACTIONS[..3].iter().map(|(_, command, _)| *command).find(is_on);
+    commands.extend(switch(ui, 0.0, chosen, &[0, 1, 2].map(about)).flatten());
 }
 
 fn kept_ui(
@@ -215,7 +202,7 @@ fn sentence(ui: &mut Ui, model: &mut Model, kept: &KeptActions, facts: &Facts) {
     }
     if theirs != mine {
         let ([a, b], [x, y]) = (theirs, mine);
-        ui.label(RichText::new(format!("The kept picture is {a} × {b} and this one {x} × {y}.")).small());
+        small(ui, format!("The kept picture is {a} × {b} and this one {x} × {y}."));
         let help = "Begins the picture anew at that size, so that the two can be subtracted";
         let link = ui.link(RichText::new("Render at its size").small());
         if tip(ui, link, help, None).clicked() {
@@ -224,8 +211,7 @@ fn sentence(ui: &mut Ui, model: &mut Model, kept: &KeptActions, facts: &Facts) {
         return;
     }
     let memory = words(list.bytes());
-    let text = format!("Kept pictures take {memory}. They are gone when the window closes.");
-    ui.label(RichText::new(text).small().color(ui.visuals().weak_text_color()));
+    small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
 }
 
 fn card(
@@ -344,15 +330,6 @@ fn empty_place(ui: &mut Ui) -> Response {
     let colour = if response.hovered() { colours.strong } else { colours.weak };
     ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     response
-}
-
-/// Colours that tell data apart: from the camera or CPU, matte or GPU, metal or expected, glass or both, waits.
-pub fn data_colours(ui: &Ui) -> [Color32; 5] {
-    let colours: [[u8; 3]; 5] = match ui.visuals().dark_mode {
-        true => [[92, 150, 255], [235, 148, 56], [180, 180, 190], [70, 195, 150], [46, 50, 56]],
-        false => [[47, 111, 224], [217, 121, 26], [140, 140, 152], [31, 154, 107], [220, 221, 221]],
-    };
-    colours.map(|[red, green, blue]| Color32::from_rgb(red, green, blue))
 }
 
 /// An entry of a legend.

@@ -4,11 +4,9 @@ use super::command::Command;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::document::Document;
-use super::model::further::Further;
-use super::model::remembered::Tab;
 use super::model::show::Show;
 use super::model::view::{Mode, partner};
-use crate::progressive::Status;
+use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,14 +17,20 @@ pub struct Facts {
     pub model: Model,
     /// The status of the render.
     pub status: Arc<Status>,
-    /// Paths per second of tracing at present, if known.
-    pub speed: Option<f64>,
     /// Seconds of tracing that the film's samples took before this run, if known.
     pub seconds_before: Option<f64>,
-    /// Whether there is a change to undo.
-    pub can_undo: bool,
-    /// Whether there is a change to redo.
-    pub can_redo: bool,
+    /// What Undo and Redo would change, if anything.
+    pub undo: Option<&'static str>,
+    pub redo: Option<&'static str>,
+    /// The render is a preview, and the camera or a sphere is being moved.
+    pub is_coarse: bool,
+    pub is_moving: bool,
+    /// The render began during the pause that lasts, and stops early.
+    pub is_held: bool,
+    /// Nothing but sky and ground is in sight, unlike from the camera of the stage.
+    pub is_lost: bool,
+    /// What was checked, in words.
+    pub checked: Option<String>,
     /// Whether the pointer has been over the picture.
     pub has_pixel: bool,
     /// Whether there is a list of paths.
@@ -58,7 +62,7 @@ impl Facts {
     }
 
     /// How a render that has ended can go on.
-    pub fn further(&self) -> Option<Further> {
+    pub fn further(&self) -> Option<Stop> {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
     }
 
@@ -87,8 +91,16 @@ impl Facts {
         self.model.remembered.recent.get(place).map(PathBuf::as_path)
     }
 
-    /// The name of a command, with the file that it opens or the bookmark that it goes to.
+    /// The name of a command, with the change that it undoes, the file that it opens or the bookmark that it goes to.
     pub fn name(&self, command: Command) -> String {
+        let change = match command {
+            Command::Undo => self.undo,
+            Command::Redo => self.redo,
+            _ => None,
+        };
+        if let Some(change) = change {
+            return format!("{}: {change}", command.name());
+        }
         if let Command::Kept(place) = command
             && let Some(named) = self.model.view.kept.get(place)
         {
@@ -135,12 +147,6 @@ impl Facts {
         let view = &self.model.view;
         let is_shown = view.show() == Show::Picture && view.mode() != Some(Mode::Difference);
         (!is_shown).then(|| "It changes the picture, which is not shown now; Ctrl+1 shows it".to_owned())
-    }
-
-    /// Whether the right panel shows code.
-    pub fn shows_code(&self) -> bool {
-        let remembered = &self.model.remembered;
-        self.model.has_panels() && remembered.has_info && remembered.tab == Tab::Code
     }
 
     /// The stage before or after this one in the book.

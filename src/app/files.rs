@@ -10,16 +10,15 @@ use super::scene_file::SceneFile;
 use super::toasts::Toasts;
 use crate::backends::BackendChoice;
 use crate::cli::{CompanionOptions, ProgressChoice};
+use crate::denoise::Denoised;
 use crate::film::Film;
-use crate::job::output::{Description, OutputFormat, write_image};
+use crate::job::output::{Description, OutputFormat, key, write_image};
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
 use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{
-    FilmIdentity, Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop,
-};
+use crate::progressive::{Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
@@ -162,7 +161,7 @@ impl Files {
                 _ => "nothing was traced".to_owned(),
             })?;
             let describe = describer(&document, &status, Some(0.0));
-            write(&film, &document, describe, (format, path))
+            write(&film, None, &document, describe, (format, path))
         };
         self.saved.ask("files", context, work, Err);
     }
@@ -223,14 +222,16 @@ impl Files {
         let document = subject.document().clone();
         let describe = describer(&document, subject.status(), subject.seconds_before());
         let answer = self.saved.answer_or(context, Err);
-        subject.inspect(move |film| answer.give(write(film, &document, describe, named)));
+        let denoised = subject.denoised().map(Arc::clone);
+        subject
+            .inspect(move |film| answer.give(write(film, denoised.as_deref(), &document, describe, named)));
     }
 
     /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
     pub fn copy(&self, context: &Context, subject: &Subject<'_>) {
         let transfer = subject.document().rules().transfer;
         let answer = self.copied.answer(context);
-        subject.inspect(move |film| {
+        subject.inspect_shown(move |film| {
             let size = [film.width(), film.height()];
             let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
             answer.give((picture, format!("picture, {} × {}", size[0], size[1])));
@@ -291,8 +292,7 @@ impl Files {
     pub fn load_reference(&self, context: &Context, path: PathBuf) {
         read(&self.references, context, move || {
             let (_, read) = saved::open_film(&path)?;
-            let identity = Some(FilmIdentity::of(&read.film));
-            Ok((path, ReferenceMeans { identity, ..ReferenceMeans::of(&read.film) }))
+            Ok((path, ReferenceMeans::of(&read.film)))
         });
     }
 }
@@ -304,6 +304,7 @@ fn is_named_picture(path: &Path) -> bool {
 
 fn write(
     film: &Film,
+    denoised: Option<&Denoised>,
     document: &Document,
     describe: impl FnOnce(&Film) -> Description,
     (format, path): (OutputFormat, PathBuf),
@@ -312,7 +313,14 @@ fn write(
         return Err("nothing has been traced yet; try again in a moment".to_owned());
     }
     if OutputFormat::from_path(&path).is_ok_and(|of_name| of_name == format) {
-        write_image(&path, film, document.rules().transfer, &describe(film))
+        // A film is saved as it is.
+        let denoised = denoised.filter(|_| format != OutputFormat::Exr);
+        let film = denoised.map_or(film, |denoised| &denoised.film);
+        let mut description = describe(film);
+        if let Some(denoised) = denoised {
+            description.set(key::DENOISED, denoised.error.words());
+        }
+        write_image(&path, film, document.rules().transfer, &description)
             .map(|()| path)
             .map_err(|error| error.to_string())
     } else {
@@ -348,7 +356,7 @@ fn read<T: Send + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::kept::tests::{OnScreen, small_film};
 
     fn files() -> Files {
         Files::new(Autosave::new(None, Duration::MAX))

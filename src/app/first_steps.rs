@@ -29,8 +29,9 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         // The picture comes first.
         return;
     }
-    let around =
-        Frame::new().fill(theme::surround(ui)).inner_margin(Margin { bottom: 8, ..Margin::symmetric(8, 0) });
+    let around = Frame::new()
+        .fill(theme::colours(ui).surround)
+        .inner_margin(Margin { bottom: 8, ..Margin::symmetric(8, 0) });
     let card = Frame::new()
         .fill(theme::colours(ui).panel)
         .stroke(Stroke::new(1.0, theme::colours(ui).line))

@@ -27,7 +27,6 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
     if context.text_edit_focused() {
         return false;
     }
-    context.input_mut(name_digits_by_place);
     // An open menu or list has the keys that are pressed alone.
     let has_popup = egui::Popup::is_any_open(context);
     for (key, command) in REMOTE.into_iter().filter(|_| is_presenting && !has_popup) {
@@ -74,38 +73,7 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
     if also(Key::Backspace) {
         commands.push(Command::DeleteSphere);
     }
-    // Escape first leaves a control, then closes the code, the first steps, then a crop, then clears the paths, then
-    // deselects, then leaves a sight, a comparison or another view, then a slot, then a presentation, then full-screen mode.
     true
-}
-
-/// Leaves Tab, and what is typed after it, to frames of their own: `late` has the events that wait. egui moves the keyboard
-/// on before anything is drawn, and all that was typed in one frame would go to the next control.
-pub fn part_at_tab(late: &mut Vec<egui::Event>, events: &mut Vec<egui::Event>) {
-    late.append(events);
-    let is_typed = |event: &egui::Event| {
-        matches!(event, egui::Event::Text(_) | egui::Event::Paste(_) | egui::Event::Key { pressed: true, .. })
-    };
-    let is_tab = |event: &egui::Event| matches!(event, egui::Event::Key { key: Key::Tab, pressed: true, .. });
-    let mut typed = late.iter().enumerate().filter(|(_, event)| is_typed(event));
-    let end = match typed.next() {
-        Some((_, first)) if is_tab(first) => typed.next(),
-        _ => typed.find(|(_, event)| is_tab(event)),
-    };
-    let end = end.map_or(late.len(), |(at, _)| at);
-    events.extend(late.drain(..end));
-}
-
-/// With Alt, a digit is known by its place on the keyboard: with Shift as well, it types something else.
-fn name_digits_by_place(input: &mut egui::InputState) {
-    for event in &mut input.events {
-        if let egui::Event::Key { key, physical_key: Some(place), modifiers, .. } = event
-            && modifiers.alt
-            && (Key::Num0..=Key::Num9).contains(place)
-        {
-            *key = *place;
-        }
-    }
 }
 
 /// Takes the events that the window system sends instead of Ctrl+C, and returns how many there were.

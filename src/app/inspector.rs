@@ -1,7 +1,6 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
-use super::answers::Answers;
-use super::kept::{FilmId, Subject};
+use super::kept::{FilmId, Query, Subject};
 use super::model::document::Document;
 use super::theme;
 use super::widgets::{compact, hint, tip};
@@ -10,7 +9,6 @@ use crate::film::to_byte;
 use crate::progressive::standard_error;
 use crate::scene::Scene;
 use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, Ui, UiBuilder, vec2};
-use std::sync::{Arc, Weak};
 
 /// With more spheres than this, searching for the one under the pointer would stall the window.
 const PICK_LIMIT: usize = 50_000;
@@ -34,25 +32,13 @@ pub struct Pixel {
     pub samples: u64,
 }
 
-/// What the picture that is compared with this one has at the pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OtherPixel {
-    /// Linear radiance.
-    pub mean: [f64; 3],
-    /// Its column and row, if that picture is scaled.
-    pub scaled: Option<[u32; 2]>,
-}
-
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     hovered: Option<[u32; 2]>,
     pixel: Option<Pixel>,
-    /// The pixel, the film and its sample count of the last query.
-    asked: Option<([u32; 2], FilmId, u64)>,
-    /// Can be upgraded as long as the query waits for the film.
-    waiting: Weak<()>,
-    answers: Answers<Pixel>,
+    /// By pixel, film and number of samples.
+    query: Query<([u32; 2], FilmId, u64), Pixel>,
 }
 
 impl Inspector {
@@ -81,30 +67,20 @@ impl Inspector {
     /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
     /// the last known pixel stays.
     pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
-        while let Some(pixel) = self.answers.take() {
-            self.pixel = Some(pixel);
-        }
-        let Some(at) = self.hovered else { return };
-        let wanted = Some((at, subject.film_id(), subject.shown_samples()));
-        let is_waiting = self.waiting.strong_count() > 0;
-        if is_waiting || self.asked == wanted || !subject.is_full() {
-            return;
-        }
-        let question = Arc::new(());
-        self.waiting = Arc::downgrade(&question);
-        self.asked = wanted;
-        let (transfer, answer) = (subject.document().rules().transfer, self.answers.answer(context));
-        subject.inspect(move |film| {
+        self.pixel = self.query.take().or(self.pixel.take());
+        let Some(at) = self.hovered.filter(|_| subject.is_full()) else { return };
+        let (key, transfer) =
+            ((at, subject.film_id(), subject.shown_samples()), subject.document().rules().transfer);
+        self.query.ask(context, subject, key, move |film| {
             let [x, y] = at;
-            if x < film.width() && y < film.height() && film.sample_count() > 0 {
-                let index = y as usize * film.width() as usize + x as usize;
-                let mean = film.mean(index);
-                let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
-                let (error, samples) = (standard_error(film, index), film.sample_count());
-                // Dropped first: it wakes a frame, which may ask the next question.
-                drop(question);
-                answer.give(Pixel { at, mean, error, bytes, samples });
+            if x >= film.width() || y >= film.height() || film.sample_count() == 0 {
+                return None;
             }
+            let index = y as usize * film.width() as usize + x as usize;
+            let mean = film.mean(index);
+            let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
+            let (error, samples) = (standard_error(film, index), film.sample_count());
+            Some(Pixel { at, mean, error, bytes, samples })
         });
     }
 
@@ -115,7 +91,7 @@ impl Inspector {
         ui: &mut Ui,
         document: &Document,
         layer: Option<(Layer, [f64; 3])>,
-        other: Option<OtherPixel>,
+        other: Option<[f64; 3]>,
     ) {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The header and four rows, so that what is above stays where it is.
@@ -140,7 +116,7 @@ fn pixel_ui(
     document: &Document,
     pixel: &Pixel,
     layer: Option<(Layer, [f64; 3])>,
-    other: Option<OtherPixel>,
+    other: Option<[f64; 3]>,
     ui: &mut Ui,
 ) {
     let (colours, [x, y]) = (theme::colours(ui), pixel.at);
@@ -159,15 +135,11 @@ fn pixel_ui(
     };
     let light = "Linear radiance: the mean of the samples, before gamma";
     match other {
-        Some(OtherPixel { mean, scaled }) => {
+        Some(mean) => {
             line("A", &format!("This picture. {light}"), pixel.mean.map(decimals));
-            let at = scaled.map_or_else(String::new, |[x, y]| format!(", at its pixel {x}, {y}"));
-            line("B", &format!("The picture that it is compared with{at}"), mean.map(decimals));
-            // A difference of scaled pictures would show the scaling.
-            if scaled.is_none() {
-                let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
-                line("A − B", "How much brighter this picture is", difference.map(signed));
-            }
+            line("B", "The picture that it is compared with", mean.map(decimals));
+            let difference = [0, 1, 2].map(|i| pixel.mean[i] - mean[i]);
+            line("A − B", "How much brighter this picture is", difference.map(signed));
         }
         None => line("light", light, pixel.mean.map(decimals)),
     }
@@ -232,10 +204,7 @@ fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
-
     use crate::app::model::origin::{Origin, Source};
-
     use crate::job::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;
@@ -245,7 +214,7 @@ mod tests {
     fn a_difference_tells_both_sides() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
         let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
-        let other = OtherPixel { mean: [0.25, 0.5, 1.0], scaled: None };
+        let other = [0.25, 0.5, 1.0];
         let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
         let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
@@ -266,43 +235,5 @@ mod tests {
                 path.rays[0].hit.map_or("sky".to_owned(), |hit| names(document.scene(), hit.sphere).1);
             assert_eq!(surface(&document, at).unwrap().0, expected, "{at:?}");
         }
-    }
-
-    #[test]
-    fn each_pixel_is_asked_for_once() {
-        let (screen, context) = (OnScreen::new(small_film(1, 0.0625)), egui::Context::default());
-        let mut inspector = Inspector::default();
-        // Whether the film is asked, and what it answers.
-        let ask = |inspector: &mut Inspector, at: Option<[u32; 2]>| {
-            let is_asked = screen.before_answers(|subject| {
-                inspector.hover(at);
-                for _ in 0..2 {
-                    inspector.follow(subject, &context);
-                }
-                inspector.waiting.strong_count() > 0
-            });
-            assert_eq!(inspector.waiting.strong_count(), 0);
-            let [answer, second] = [inspector.answers.take(), inspector.answers.take()];
-            assert_eq!(second, None);
-            (is_asked, answer)
-        };
-        assert_eq!(ask(&mut inspector, None), (false, None), "the pointer is elsewhere");
-        let last = Pixel { at: [3, 1], mean: [0.0625; 3], error: None, bytes: [64; 3], samples: 1 };
-        let dark = Pixel { at: [3, 0], mean: [0.0; 3], bytes: [0; 3], ..last.clone() };
-        assert_eq!(ask(&mut inspector, Some([3, 1])), (true, Some(last.clone())));
-        assert_eq!(ask(&mut inspector, Some([3, 1])), (false, None), "it is known");
-        assert_eq!(ask(&mut inspector, None), (false, None));
-        assert_eq!(inspector.hovered(), Some([3, 1]), "the pointer has left the picture");
-        assert_eq!(ask(&mut inspector, Some([3, 0])), (true, Some(dark)));
-        for outside in [[4, 0], [0, 2]] {
-            assert_eq!(ask(&mut inspector, Some(outside)), (true, None));
-        }
-        inspector.answers.answer(&context).give(last.clone());
-        inspector.follow(&screen.subject(), &context);
-        assert_eq!(inspector.pixel(), Some(&last));
-        inspector.hover(Some([3, 1]));
-        inspector.forget();
-        assert_eq!((inspector.pixel(), inspector.hovered()), (None, Some([3, 1])));
-        assert_eq!(ask(&mut inspector, None), (true, Some(last)), "of another picture");
     }
 }

@@ -2,11 +2,12 @@
 //! tracer's.
 
 use super::answers::Answers;
-use super::dock::{data_colours, swatch};
+use super::dock::swatch;
 use super::facts::Facts;
 use super::model::device::Device;
 use super::model::document::Document;
-use super::widgets::hint;
+use super::theme;
+use super::widgets::{hint, small};
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Shading;
@@ -20,7 +21,7 @@ const COLUMN: f32 = 11.8;
 const ROWS: std::ops::RangeInclusive<f32> = 4.0..=12.0;
 
 /// Height of the heading of a timeline, points.
-const HEADING: f32 = 20.0;
+const HEADING: f32 = 24.0;
 
 /// The timelines without and with refill, recorded by a background thread while they are shown.
 #[derive(Default)]
@@ -95,7 +96,8 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
         "A core traces {lanes} paths side by side, one per lane. Each row is a lane, each column a step. A lane whose path \
          has ended waits, unless it is refilled with the next path."
     )).wrap());
-    let colours = data_colours(ui);
+    let colours = theme::colours(ui);
+    let colours = [colours.first, colours.second, colours.third, colours.fourth, colours.waits];
     ui.horizontal_wrapped(|ui| {
         let names = ["from the camera", "off matte", "off metal", "glass", "waits"];
         names.into_iter().zip(&colours).for_each(|(name, colour)| swatch(ui, *colour, name));
@@ -109,7 +111,7 @@ fn timelines_ui(ui: &mut Ui, timelines: &[Timeline; 2]) {
         let figures = format!("{steps} steps, {share:.0} % of the lanes at work");
         ui.horizontal(|ui| {
             ui.label(RichText::new(name).small().strong());
-            ui.label(RichText::new(&figures).small().color(ui.visuals().weak_text_color()));
+            small(ui, &figures);
         });
         let size = vec2(column * timeline.len() as f32, row * lanes as f32);
         let (place, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -3,13 +3,12 @@
 use super::command::Command;
 use super::dialogs::Purpose;
 use super::facts::Facts;
-use super::inspector::OtherPixel;
 use super::model::Model;
 use super::model::document::Document;
 use super::model::first_steps::Step;
-use super::model::fitted::Fitted;
 use super::model::remembered::{Dock, Remembered, Tab};
 use super::model::view::{Mode, ViewState};
+use super::paths::at_same_place;
 use super::places::Place;
 use super::present::{self, Magnified};
 use super::second::Second;
@@ -21,7 +20,7 @@ use super::{bar, controls, dock, first_steps, right, stage_panel, status, theme}
 use eframe::egui::{self, Rect, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
-const NARROW: f32 = 1000.0;
+pub const NARROW: f32 = 1000.0;
 
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
@@ -117,10 +116,7 @@ impl Window {
         if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
             first_steps::ui(ui, facts, &mut self.commands);
         }
-        let Model { remembered, .. } = &facts.model;
-        if facts.model.has_panels()
-            && remembered.has_info
-            && remembered.tab == Tab::Check
+        if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
         {
             return Touch { room: Some(room), ..Touch::default() };
@@ -143,7 +139,7 @@ impl Window {
             None => tracing.main.shown_mut(),
         };
         let has_film = shown.is_some();
-        let (fitted, size) = (view.wiped(document).map(|(_, fitted)| fitted), facts.shown().size());
+        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown_mut(layer)) {
                 Some(layer) => Some((&mut layer.texture, layer.divisor)),
@@ -154,11 +150,10 @@ impl Window {
             second: tracing.second.shown_mut().map(|shown| SecondPicture {
                 texture: &mut shown.texture,
                 divisor: shown.divisor,
-                fitted: fitted.unwrap_or(Fitted::new(size, size)),
+                is_scaled,
             }),
             paths: kept.is_none().then_some(&tools.paths),
             values: &display.values,
-            is_same: display.identity.is_same(),
         };
         let handle =
             Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
@@ -167,9 +162,6 @@ impl Window {
 
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch, facts: &Facts) {
-        if touch.is_divider_moved {
-            self.model.view.is_divider_unplaced = false;
-        }
         if facts.model.presentation.is_some() {
             self.lens(ui, touch.hovered, touch.room);
         }
@@ -180,9 +172,6 @@ impl Window {
         }
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
-        }
-        if touch.is_lost && !std::mem::replace(&mut self.display.is_home_offered, true) {
-            self.shell.toasts.offer("Home brings you back", &[Command::Home]);
         }
         if touch.is_orbit {
             self.note_step(Step::Orbit);
@@ -216,9 +205,10 @@ impl Window {
             None => display.shown(model, tracing).map(|shown| colours(&shown.texture, shown.divisor, at)),
         };
         let Some(mine) = mine else { return };
-        let other = view.mode().and_then(|_| tracing.second.shown()).and_then(|shown| {
-            let at = view.wiped(document).map_or(Some(at), |(_, fitted)| fitted.pixel(at))?;
-            Some(colours(&shown.texture, shown.divisor, at))
+        let other = view.mode().and_then(|_| tracing.second.shown()).map(|shown| {
+            let size = view.shown_document(document).size();
+            let at = view.wiped().map_or(at, |kept| at_same_place(at, [size, kept.size()]));
+            colours(&shown.texture, shown.divisor, at)
         });
         let inspected = tools.inspector.pixel().filter(|pixel| pixel.at == at);
         let with = match view.mode() {
@@ -228,11 +218,20 @@ impl Window {
         };
         let without = other.as_deref().and_then(present::pixel);
         let magnified = match (other, without, with) {
+            (Some(other), Some(without), Some(with)) if is_later(document, &tracing.second) => {
+                Magnified::two(vec![other, mine], with, without)
+            }
             (Some(other), Some(without), Some(with)) => Magnified::two(vec![other, mine], without, with),
             _ => Magnified::one(mine, inspected.map(|pixel| pixel.mean)),
         };
         magnified.paint(ui, room, pointer);
     }
+}
+
+/// Whether the other picture of a comparison is a later stage than this one.
+fn is_later(document: &Document, second: &Second) -> bool {
+    let other = second.shown().and_then(|shown| shown.document.stage());
+    other.zip(document.stage()).is_some_and(|(other, mine)| other.index() > mine.index())
 }
 
 /// The titles of the two sides of a comparison, the other one first, each from the longest to the shortest.
@@ -248,7 +247,8 @@ fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
     if facts.model.presentation.is_none() {
         return titles;
     }
-    let mut names = ["Without", "With"].into_iter();
+    let names = if is_later(facts.shown(), second) { ["With", "Without"] } else { ["Without", "With"] };
+    let mut names = names.into_iter();
     titles.map(|titles| {
         let name = names.next().unwrap_or_default();
         titles
@@ -260,15 +260,12 @@ fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
     })
 }
 
-/// The pixel of the other picture of a comparison.
-fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<OtherPixel> {
-    if let Some((kept, fitted)) = view.wiped(live) {
-        let place = fitted.pixel(at)?;
-        let scaled = (!fitted.is_exact()).then_some(place);
-        return Some(OtherPixel { mean: kept.mean(place)?, scaled });
+/// What the other picture of a comparison has at a pixel: linear radiance.
+fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
+    match view.wiped() {
+        Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
+        None => view.subtracted(second.film())?.mean(at),
     }
-    let mean = view.subtracted(second.film())?.mean(at)?;
-    Some(OtherPixel { mean, scaled: None })
 }
 
 /// A panel whose content scrolls.

@@ -14,6 +14,7 @@ mod check;
 mod code;
 mod command;
 mod controls;
+mod denoising;
 mod dialogs;
 mod display;
 mod dock;
@@ -21,7 +22,6 @@ mod facts;
 mod files;
 mod first_steps;
 mod frame_log;
-mod identity;
 mod input;
 mod inspector;
 mod kept;
@@ -47,7 +47,6 @@ mod second;
 mod shell;
 mod sight;
 mod sizer;
-mod speed;
 mod spheres;
 mod stage_list;
 mod stage_panel;
@@ -96,6 +95,14 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
+    // winit panics at other values.
+    let factor = std::env::var("WINIT_X11_SCALE_FACTOR").unwrap_or_default();
+    let is_factor = |text: &str| text.parse().is_ok_and(|factor: f64| factor > 0.0 && factor.is_normal());
+    if !factor.is_empty() && !factor.eq_ignore_ascii_case("randr") && !is_factor(&factor) {
+        bail!(
+            "WINIT_X11_SCALE_FACTOR is {factor:?}; set it to a number above 0 with a point, such as 1.5, or to randr"
+        );
+    }
     let options = WindowOptions { state_directory: state_directory(), ..options };
     let drawn = Arc::new(OnceLock::<egui::Context>::new());
     let waker = Arc::clone(&drawn);
@@ -110,6 +117,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
+            bring_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
             // The first frame would have egui's own style otherwise.
@@ -131,6 +139,24 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
 }
 
+/// Moves the window to a monitor if it was last on one that is gone.
+fn bring_to_monitor(context: &eframe::CreationContext) {
+    /// Pixels of the window that must be visible in each direction.
+    const VISIBLE: i32 = 64;
+    let Some(window) = context.winit_window() else { return };
+    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
+    let meets = |from: i32, length: u32, begin: i32, extent: u32| {
+        from + VISIBLE <= begin + extent as i32 && begin + VISIBLE <= from + length as i32
+    };
+    let is_visible = window.available_monitors().any(|monitor| {
+        let (corner, area) = (monitor.position(), monitor.size());
+        meets(at.x, size.width, corner.x, area.width) && meets(at.y, size.height, corner.y, area.height)
+    });
+    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_visible) {
+        window.set_outer_position(monitor.position());
+    }
+}
+
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
 /// as with OpenGL, because egui's wgpu shader computes everything that it might need.
 fn renderers(wish: DrawWith) -> &'static [eframe::Renderer] {
@@ -149,6 +175,7 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
             .with_title("Weekender")
             .with_app_id("weekender")
             .with_inner_size([1280.0, 800.0])
+            .with_clamp_size_to_monitor_size(true)
             .with_min_inner_size([480.0, 320.0])
             .with_icon(theme::icon())
             .with_drag_and_drop(true),
@@ -178,7 +205,6 @@ mod tests {
     use eframe::egui::{Event, Pos2, Ui};
 
     use egui_kittest::{Harness, HarnessBuilder};
-    use std::time::{Duration, Instant};
 
     /// The window of a command line, without a display.
     pub(super) fn window(words: &str) -> Window {
@@ -211,34 +237,6 @@ mod tests {
     pub(super) fn rest_at<State>(harness: &mut Harness<'_, State>, at: Pos2) {
         harness.event(Event::PointerMoved(at));
         harness.run_steps(6);
-    }
-
-    fn input() -> egui::RawInput {
-        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0));
-        egui::RawInput { screen_rect: Some(screen), ..egui::RawInput::default() }
-    }
-
-    /// How long the window may sleep after a frame that does this.
-    pub(super) fn sleep_after(context: &egui::Context, mut act: impl FnMut(&egui::Context)) -> Duration {
-        // What earlier frames have asked for is over.
-        (0..4).for_each(|_| drop(context.run_ui(input(), |_| {})));
-        let output = context.run_ui(input(), |ui| act(ui.ctx()));
-        output.viewport_output[&egui::ViewportId::ROOT].repaint_delay
-    }
-
-    /// Draws frames until the condition holds.
-    pub(super) fn until(
-        window: &mut Window,
-        context: &egui::Context,
-        what: &str,
-        is_so: impl Fn(&Window) -> bool,
-    ) {
-        let begin = Instant::now();
-        while !is_so(window) {
-            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}; {:?}", window.messages());
-            std::thread::sleep(Duration::from_millis(2));
-            context.run_ui(input(), |ui| window.ui_in(ui)).textures_delta.clear();
-        }
     }
 
     #[test]

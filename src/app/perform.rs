@@ -5,24 +5,22 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
+use super::model::Presentation;
 use super::model::companion;
 use super::model::device::{self, Device};
 use super::model::document::Document;
 use super::model::edit::Edit;
 use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
-use super::model::presentation::Presentation;
-use super::model::remembered::{Bookmark, Dock, Remembered, Tab, Theme};
+use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::view::{Mode, ViewState, With};
 use super::model::viewpoint::Viewpoint;
 use super::navigation;
-use super::places;
 use super::sight::Sighted;
 use super::spheres::grip::{new_body, to_copy};
-use super::spheres::{self, Selected, neighbour};
-use super::theme;
+use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::film::Film;
@@ -92,9 +90,8 @@ impl Window {
             document.stop = stop;
         }
         let before = self.document();
-        if before.is_edited() && !before.is_from_file {
-            let place = before.stage().map_or_else(|| before.title(), |stage| stage.section.to_owned());
-            let words = format!("Your changes to {place} are kept in Undo");
+        if before.is_changed() && !before.is_from_file {
+            let words = format!("Your changes to {} are kept in Undo", before.place());
             self.shell.toasts.good_with(words, &[Command::Undo]);
         }
         self.show_document(document);
@@ -135,9 +132,8 @@ impl Window {
     // Undo
 
     pub(super) fn undo(&mut self) {
-        let before = self.document().clone();
+        let words = format!("Undone: {}", self.facts().undo.unwrap_or_default());
         self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
-        let words = format!("Undone: {}", self.document().difference(&before));
         self.shell.toasts.withdraw(Command::Redo);
         self.shell.toasts.good_with(words, &[Command::Redo]);
     }
@@ -189,7 +185,7 @@ impl Window {
     pub(super) fn add_bookmark(&mut self) {
         let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-        let place = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
+        let place = document.place();
         let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
         bookmarks.push(Bookmark::new(name, &document.camera));
         self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
@@ -227,10 +223,6 @@ impl Window {
         if let Some(sphere) = self.model.selected {
             self.edit(Edit::Delete(sphere));
         }
-    }
-
-    pub(super) fn step_sphere(&mut self, is_next: bool) {
-        self.model.selected = neighbour(self.document().scene(), self.model.selected, is_next);
     }
 
     pub(super) fn look_at_sphere(&mut self) {
@@ -348,8 +340,8 @@ impl Window {
     }
 
     pub(super) fn toggle_code(&mut self) {
+        let is_open = self.model.shows(Tab::Code);
         let remembered = &mut self.model.remembered;
-        let is_open = remembered.has_panels && remembered.has_info && remembered.tab == Tab::Code;
         remembered.tab = if is_open { Tab::Stage } else { Tab::Code };
         (remembered.has_panels, remembered.has_info) = (true, true);
     }
@@ -366,25 +358,12 @@ impl Window {
         }
     }
 
-    pub(super) fn next_panel(&mut self, context: &Context) {
-        self.shell.panel = places::next(context, self.shell.panel, &self.model);
-    }
-
     pub(super) fn open_stage_list(&mut self, context: &Context, is_at_end: bool) {
         self.model.remembered.has_panels = true;
         super::stage_list::open(context, is_at_end);
     }
 
-    pub(super) fn choose_theme(&mut self, context: &Context, theme: Theme) {
-        self.model.remembered.theme = theme;
-        theme::choose(context, theme);
-    }
-
-    pub(super) fn toggle_full_screen(&mut self, context: &Context) {
-        self.fill_screen(context, !self.model.is_full_screen);
-    }
-
-    fn fill_screen(&mut self, context: &Context, is_full: bool) {
+    pub(super) fn fill_screen(&mut self, context: &Context, is_full: bool) {
         if self.model.is_full_screen != is_full {
             self.model.is_full_screen = is_full;
             context.send_viewport_cmd(ViewportCommand::Fullscreen(is_full));
@@ -402,12 +381,6 @@ impl Window {
                 self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
-        }
-    }
-
-    pub(super) fn toggle_blank(&mut self) {
-        if let Some(presentation) = &mut self.model.presentation {
-            presentation.is_blank = !presentation.is_blank;
         }
     }
 
@@ -431,8 +404,8 @@ impl Window {
     // Tracing
 
     pub(super) fn pause_or_go_on(&mut self, context: &Context) {
-        if let Some(further) = self.facts().further() {
-            self.model.document.stop = further.stop;
+        if let Some(stop) = self.facts().further() {
+            self.model.document.stop = stop;
             return;
         }
         self.model.is_paused = !self.model.is_paused;
@@ -450,14 +423,10 @@ impl Window {
         self.tracing.restart();
     }
 
-    pub(super) fn switch_device(&mut self) {
+    /// Traces on this device, or on the CPU again.
+    pub(super) fn switch_device(&mut self, other: Device) {
         let device = &mut self.model.remembered.device;
-        *device = if *device == Device::Gpu { Device::Cpu } else { Device::Gpu };
-    }
-
-    pub(super) fn toggle_reference(&mut self) {
-        let device = &mut self.model.remembered.device;
-        *device = if *device == Device::Reference { Device::Cpu } else { Device::Reference };
+        *device = if *device == other { Device::Cpu } else { other };
     }
 
     pub(super) fn take_size(&mut self, sizing: Sizing) {
@@ -467,10 +436,6 @@ impl Window {
     }
 
     // Kept pictures
-
-    pub(super) fn keep(&mut self) {
-        self.display.kept.is_wanted = true;
-    }
 
     /// Keeps the picture once it has samples.
     pub(super) fn keep_wanted(&mut self, context: &Context) {
@@ -498,12 +463,6 @@ impl Window {
         }
     }
 
-    pub(super) fn delete_kept(&mut self) {
-        if let Some(place) = self.model.view.kept.chosen() {
-            self.model.view.delete_kept(place);
-        }
-    }
-
     /// Tests whether the shown picture and the chosen kept one differ by noise alone.
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
@@ -515,14 +474,6 @@ impl Window {
     }
 
     // Files
-
-    pub(super) fn ask_open(&mut self, context: &Context) {
-        self.ask_path(context, Purpose::Open);
-    }
-
-    pub(super) fn ask_check(&mut self, context: &Context) {
-        self.ask_path(context, Purpose::Check);
-    }
 
     pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
         let mut from = self.folder();
@@ -634,8 +585,7 @@ impl Window {
         let Some((document, samples)) = self.files.autosave.left().and_then(|path| picture_of(&path)) else {
             return;
         };
-        let name = document.stage().map_or_else(|| document.title(), |stage| stage.section.to_owned());
-        let samples = grouped(samples);
+        let (name, samples) = (document.place(), grouped(samples));
         let words =
             format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
         self.shell.toasts.offer(words, &[Command::Recover, Command::NotNow]);
@@ -663,10 +613,6 @@ impl Window {
         }
     }
 
-    pub(super) fn reload(&mut self, context: &Context) {
-        self.files.scene_file.reload(context, &self.model.document.origin);
-    }
-
     pub(super) fn show_in_folder(&mut self, context: &Context) {
         let folder = self.model.remembered.recent.first().and_then(|path| path.parent());
         if let Some(url) = folder.map(companion::file_url) {
@@ -689,10 +635,6 @@ impl Window {
     pub(super) fn open_book(&mut self, context: &Context) {
         let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
         self.open_or_tell(context, url);
-    }
-
-    pub(super) fn open_companion(&mut self, context: &Context) {
-        self.write_companion(context, true);
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {

@@ -1,10 +1,8 @@
 //! The numbers of pixels, drawn in them when they are large.
 
-use super::answers::Answers;
-use super::kept::{FilmId, Subject};
+use super::kept::{FilmId, Query, Subject};
 use super::widgets::compact;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
-use std::sync::{Arc, Weak};
 
 /// The smallest side of a pixel, in points, in which its numbers have room.
 const ROOM: f32 = 44.0;
@@ -21,41 +19,26 @@ struct Part {
 #[derive(Default)]
 pub struct PixelValues {
     part: Option<Part>,
-    /// Film, samples and pixels of the last query.
-    asked: Option<(FilmId, u64, [[u32; 2]; 2])>,
-    /// Can be upgraded as long as the query waits for the film.
-    waiting: Weak<()>,
-    answers: Answers<Part>,
+    /// By film, samples and pixels.
+    query: Query<(FilmId, u64, [[u32; 2]; 2]), Part>,
 }
 
 impl PixelValues {
     /// Takes the film's answer, and asks again if other pixels are visible or have changed. The picture is drawn at `rect`;
     /// `area` is the viewport.
     pub fn follow(&mut self, subject: &Subject<'_>, rect: Rect, area: Option<Rect>, context: &egui::Context) {
-        while let Some(part) = self.answers.take() {
-            self.part = Some(part);
-        }
+        self.part = self.query.take().or(self.part.take());
         let visible = area.and_then(|area| visible(rect, area, subject.document().size()));
         let Some([first, end]) = visible.filter(|_| subject.has_samples()) else {
-            (self.part, self.asked) = (None, None);
+            *self = PixelValues::default();
             return;
         };
-        let question = (subject.film_id(), subject.samples(), [first, end]);
-        if self.asked == Some(question) || self.waiting.strong_count() > 0 {
-            return;
-        }
-        let guard = Arc::new(());
-        self.waiting = Arc::downgrade(&guard);
-        self.asked = Some(question);
-        let answer = self.answers.answer(context);
-        subject.inspect(move |film| {
+        self.query.ask(context, subject, (subject.film_id(), subject.samples(), [first, end]), move |film| {
             let means = (first[1]..end[1].min(film.height()))
                 .flat_map(|y| (first[0]..end[0].min(film.width())).map(move |x| [x, y]))
                 .map(|[x, y]| film.mean(y as usize * film.width() as usize + x as usize))
                 .collect();
-            // Dropped first: the answer wakes a frame, which may ask the next question.
-            drop(guard);
-            answer.give(Part { first, width: end[0] - first[0], means });
+            Some(Part { first, width: end[0] - first[0], means })
         });
     }
 
@@ -119,10 +102,6 @@ fn visible(rect: Rect, area: Rect, size: [u32; 2]) -> Option<[[u32; 2]; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::Window;
-    use crate::app::model::view::ViewState;
-    use crate::app::tests::{until, window};
-
     use egui::pos2;
 
     #[test]
@@ -140,32 +119,11 @@ mod tests {
     }
 
     #[test]
-    fn the_numbers_of_visible_pixels_are_asked_for_once() {
-        let mut window = window("weekender --stage normals --size 8x5 --samples 1 --device cpu --threads 1");
-        let context = egui::Context::default();
-        let is_done = |window: &Window| {
-            window.status().phase.is_over() && window.shown().is_some_and(|(_, divisor)| divisor == 1)
-        };
-        until(&mut window, &context, "the end", is_done);
-        let view = ViewState::default();
-        let subject = Subject::new(&view, (window.document(), &window.tracing.main), None);
-        let mut values = PixelValues::default();
+    fn only_large_pixels_in_sight_have_numbers() {
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 500.0));
         let area = Rect::from_min_size(pos2(150.0, 250.0), vec2(200.0, 200.0));
-        values.follow(&subject, rect, Some(area), &context);
-        let asked = values.asked;
-        assert_eq!(asked.map(|(.., pixels)| pixels), Some([[1, 2], [4, 5]]));
-        let part = values.answers.wait().unwrap();
-        assert_eq!((part.first, part.width, part.means.len()), ([1, 2], 3, 9));
-        let (sender, receiver) = std::sync::mpsc::channel();
-        subject.inspect(move |film| {
-            let _ = sender.send([2, 3, 4].map(|y| [1, 2, 3].map(|x| film.mean(y * 8 + x))));
-        });
-        assert_eq!(part.means, receiver.recv().unwrap().concat());
-        values.part = Some(part);
-        values.follow(&subject, rect, Some(area), &context);
-        assert!(values.asked == asked && values.answers.take().is_none(), "nothing has changed");
-        values.follow(&subject, rect, None, &context);
-        assert!(values.part.is_none() && values.asked.is_none(), "no picture is shown");
+        assert_eq!(visible(rect, area, [8, 5]), Some([[1, 2], [4, 5]]));
+        assert_eq!(visible(rect, area, [80, 50]), None);
+        assert_eq!(visible(rect, area.translate(vec2(800.0, 0.0)), [8, 5]), None);
     }
 }

@@ -1,31 +1,24 @@
 //! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
-//! expected continuation, and the goal, whose line can be dragged.
+//! expected continuation, and the goal.
 
-use super::dock::{data_colours, swatch};
+use super::dock::swatch;
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::numbers::statistics::fit::Point;
 use crate::progressive::{HistoryPoint, Status};
-use eframe::egui::{self, Color32, CursorIcon, Rangef, Rect, Sense, Sides, Ui, Vec2b, WidgetInfo};
+use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, Vec2b};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, PlotTransform,
-    Points,
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points,
 };
 use std::fmt::Write;
-
-/// The range of goals, RMSE.
-const GOALS: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
 
 /// The largest number of decades for which an axis has grid lines.
 const MOST_DECADES: f64 = 40.0;
 
-/// How close the pointer must be to the goal's line to grab it, points.
-const GRIP: f32 = 8.0;
-
-/// Draws the plot. `goal` is the error at which the render ends. Returns whether the points are to be saved.
-pub fn ui(ui: &mut Ui, goal: &mut Option<f64>, facts: &Facts) -> bool {
+/// Draws the plot. Returns whether the points are to be saved.
+pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
     let status = &facts.status;
     if points(status).is_empty() {
         hint(
@@ -50,12 +43,13 @@ pub fn ui(ui: &mut Ui, goal: &mut Option<f64>, facts: &Facts) -> bool {
             }
         },
     );
-    plot(ui, goal, status);
+    plot(ui, facts.document().stop.noise, status);
     is_saved
 }
 
-fn plot(ui: &mut Ui, goal: &mut Option<f64>, status: &Status) {
-    let [of_cpu, of_gpu, expected, of_both, _] = data_colours(ui);
+fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
+    let &theme::Colours { first: of_cpu, second: of_gpu, third: expected, fourth: of_both, .. } =
+        theme::colours(ui);
     let (weak, strong) = (ui.visuals().weak_text_color(), ui.visuals().strong_text_color());
     let style = |backend: &str| match backend {
         "cpu" => (of_cpu, "CPU"),
@@ -66,7 +60,7 @@ fn plot(ui: &mut Ui, goal: &mut Option<f64>, status: &Status) {
     let curves = curves(&status.history);
     let now = points(status).last().map(at);
     // From the newest error to the goal.
-    let ahead = prediction(status, *goal).zip(now).zip(*goal).map(|((ahead, [x, y]), goal)| {
+    let ahead = prediction(status, goal).zip(now).zip(goal).map(|((ahead, [x, y]), goal)| {
         let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
         vec![[x, y], at(&Point { time: seconds, error: goal })]
     });
@@ -76,7 +70,7 @@ fn plot(ui: &mut Ui, goal: &mut Option<f64>, status: &Status) {
         names.dedup();
         names.into_iter().for_each(|(colour, name)| swatch(ui, colour, name));
         if let Some(goal) = goal {
-            swatch(ui, weak, &format!("goal {} %", compact(two_digits(100.0 * *goal))));
+            swatch(ui, weak, &format!("goal {} %", compact(two_digits(100.0 * goal))));
         }
         if ahead.is_some() {
             swatch(ui, expected, "expected");
@@ -110,12 +104,8 @@ fn plot(ui: &mut Ui, goal: &mut Option<f64>, status: &Status) {
             let [seconds, error] = place.map(|power| compact(10_f64.powf(power)));
             Some(format!("{samples}{seconds} s\nerror {error} %"))
         });
-    let line = ui.scope_id().with("goal");
-    let is_held = ui.ctx().is_being_dragged(line);
-    let response = plot.show(ui, |plot| {
-        // The axes stay fixed while the goal is dragged.
-        plot.set_auto_bounds(!is_held);
-        if let Some(goal) = *goal {
+    plot.show(ui, |plot| {
+        if let Some(goal) = goal {
             let line = HLine::new("goal", (100.0 * goal).log10()).color(weak);
             plot.hline(line.style(LineStyle::dashed_loose()).allow_hover(false));
         }
@@ -135,9 +125,6 @@ fn plot(ui: &mut Ui, goal: &mut Option<f64>, status: &Status) {
             plot.line(line.width(1.0).allow_hover(false));
         }
     });
-    if let Some(goal) = goal {
-        drag_goal(ui, line, goal, &response.transform);
-    }
 }
 
 /// Grid lines at powers of ten, and fainter ones at 2 and 5 times these; none if they would merge into solid grey.
@@ -152,25 +139,6 @@ fn decades(grid: GridInput) -> Vec<GridMark> {
             .map(|(digit, step_size)| GridMark { value: f64::from(power) + digit.log10(), step_size })
     });
     marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
-}
-
-/// Moves the goal with the pointer that grabbed its line.
-fn drag_goal(ui: &Ui, line: egui::Id, goal: &mut f64, plot: &PlotTransform) {
-    let level = plot.position_from_point_y((100.0 * *goal).log10());
-    let grip = Rect::from_x_y_ranges(plot.frame().x_range(), level - GRIP..=level + GRIP);
-    let response = ui.interact(grip.intersect(plot.frame().expand(GRIP)), line, Sense::drag());
-    response.widget_info(|| WidgetInfo::slider(true, 100.0 * *goal, "Goal, as a line"));
-    if response.hovered() || response.dragged() {
-        ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
-    }
-    // The exact level, which rounding to two digits would lose.
-    let from = ui.data(|data| data.get_temp(line)).filter(|_| !response.drag_started()).unwrap_or(level);
-    let to = from + response.drag_delta().y;
-    ui.data_mut(|data| data.insert_temp(line, if response.dragged() { to } else { level }));
-    if response.drag_delta().y != 0.0 {
-        let percent = 10_f64.powf(plot.value_from_position(egui::pos2(0.0, to)).y);
-        *goal = two_digits(percent / 100.0).clamp(*GOALS.start(), *GOALS.end());
-    }
 }
 
 /// Rounds to two significant digits.

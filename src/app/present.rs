@@ -4,9 +4,10 @@
 
 use super::command::Command;
 use super::facts::Facts;
+use super::status;
 use super::theme;
 use super::widgets::compact;
-use crate::progressive::{Phase, Status, Stop};
+use crate::progressive::Phase;
 use crate::stages::Stage;
 use eframe::egui::{
     self, Align, Align2, Color32, Context, CornerRadius, CursorIcon, FontFamily, FontId, Frame, Label,
@@ -50,14 +51,15 @@ impl Presenter {
         if ui.input(|input| input.pointer.is_moving()) {
             self.begin(&ui.ctx().clone());
         }
-        let words = words(&facts.status, facts.model.is_paused);
-        let share = share(&facts.status, facts.document().stop);
+        let words = status::sentence(facts);
+        let is_done = matches!(facts.status.phase, Phase::Done(_));
+        let share = if is_done { 1.0 } else { status::share(facts).unwrap_or(0.0) as f32 };
         bottom("present progress", 0.5 * unit, 0.0).show(ui, |ui| {
             let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
             response.widget_info(|| WidgetInfo::labeled(Role::ProgressIndicator, true, &words));
             let done = Rect::from_min_size(rect.min, vec2(rect.width() * share, rect.height()));
             ui.painter().rect_filled(rect, 0.0, theme::colours(ui).raised);
-            ui.painter().rect_filled(done, 0.0, theme::accent(ui));
+            ui.painter().rect_filled(done, 0.0, theme::colours(ui).accent);
         });
         if !facts.model.presentation.is_some_and(|presentation| presentation.has_captions) {
             return;
@@ -174,35 +176,11 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
         for (name, text) in texts {
             ui.vertical(|ui| {
                 ui.set_width(width);
-                ui.label(RichText::new(name).size(heading).color(theme::accent(ui)));
+                ui.label(RichText::new(name).size(heading).color(theme::colours(ui).accent));
                 ui.add(Label::new(RichText::new(text).size(size).color(theme::colours(ui).strong)).wrap());
             });
         }
     });
-}
-
-/// The share of the render that is done; 0 without an end.
-fn share(status: &Status, stop: Stop) -> f32 {
-    if matches!(status.phase, Phase::Done(_)) {
-        return 1.0;
-    }
-    let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
-    let of_time = stop.seconds.map(|end| status.trace.as_secs_f64() / end);
-    // The error falls with the root of the samples, so its square tells the share of the work.
-    let of_error = stop.noise.zip(status.error).map(|(end, error)| (end / error.rmse).powi(2));
-    // The first end that is reached counts.
-    [of_samples, of_time, of_error].into_iter().flatten().fold(0.0, f64::max).clamp(0.0, 1.0) as f32
-}
-
-fn words(status: &Status, is_paused: bool) -> String {
-    let samples = match status.samples_per_pixel {
-        0 => "Starting".to_owned(),
-        1 => "1 sample per pixel".to_owned(),
-        count => format!("{count} samples per pixel"),
-    };
-    let error = status.error.filter(|_| status.samples_per_pixel > 0);
-    let error = error.map_or_else(String::new, |error| format!(", error {:.2} %", 100.0 * error.rmse));
-    format!("{}{samples}{error}", if is_paused { "Paused at " } else { "" })
 }
 
 /// What the magnifier shows.
@@ -296,21 +274,8 @@ pub fn pixel(swatch: &[Option<[u8; 3]>]) -> Option<[u8; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::presentation::Presentation;
+    use crate::app::model::Presentation;
     use crate::app::tests::{dressed, facts_of};
-    use crate::film::ErrorEstimate;
-
-    #[test]
-    fn the_first_end_that_is_reached_counts() {
-        let error = Some(ErrorEstimate { rmse: 0.006, rmse_deviation: 0.0, rel_mse: 0.0 });
-        let (phase, trace) = (Phase::Tracing, Duration::from_secs(3));
-        let status = Status { samples_per_pixel: 32, phase, trace, error, ..Status::default() };
-        assert_eq!(share(&status, Stop::default()), 0.0);
-        assert_eq!(share(&status, Stop::at_samples(128)), 0.25);
-        let noise = Stop { noise: Some(0.003), ..Stop::default() };
-        assert_eq!(share(&status, noise), 0.25, "half the error takes four times the samples");
-        assert_eq!(share(&status, Stop { seconds: Some(4.0), ..noise }), 0.75);
-    }
 
     #[test]
     fn the_magnifier_tells_both_pictures_apart() {

@@ -116,8 +116,11 @@ impl Window {
     pub(super) fn go_on(&mut self, resumed: Resumed) {
         let path = resumed.path.display();
         if self.document().has_same_film(&resumed.begun) {
-            if !self.files.is_restoring {
-                self.shell.toasts.good(format!("Continuing {path}"));
+            if self.files.autosave.left().as_ref() == Some(&resumed.path) {
+                self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+            } else if !self.files.is_restoring {
+                let name = resumed.path.file_name().unwrap_or(resumed.path.as_os_str()).display();
+                self.shell.toasts.good(format!("Going on with {name}"));
                 self.model.remembered.note_recent(&resumed.path);
             }
             self.tracing.adopt(resumed.film);

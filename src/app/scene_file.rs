@@ -2,7 +2,7 @@
 
 use super::answers::Answers;
 use super::command::Command;
-use super::model::checked::{Stamp, stamp_of};
+use super::model::checked::stamp_of;
 use super::model::origin::{Origin, Source};
 use super::window::Window;
 use crate::job::recipe::{Recipe, file};
@@ -18,7 +18,6 @@ const LOOKS_APART: Duration = Duration::from_millis(500);
 pub struct Reread {
     origin: Arc<Origin>,
     recipe: Recipe,
-    stamp: Option<Stamp>,
 }
 
 #[derive(Default)]
@@ -51,11 +50,9 @@ impl SceneFile {
         let Source::File(path) = &origin.source else { return };
         let (path, origin) = (path.clone(), Arc::clone(origin));
         let work = move || {
-            // A later change is noticed.
-            let stamp = stamp_of(&path);
             let recipe = file::load(&path).map_err(|error| error.to_string())?;
             recipe.job().map_err(|error| error.to_string())?;
-            Ok(Reread { origin, recipe, stamp })
+            Ok(Reread { origin, recipe })
         };
         self.reread.ask("files", context, work, Err);
     }
@@ -96,7 +93,6 @@ impl Window {
             match outcome {
                 Ok(reread) if Arc::ptr_eq(&reread.origin, &origin) => {
                     let reloaded = self.document().reloaded(reread.recipe);
-                    reloaded.origin.note_file(reread.stamp);
                     self.show_document(reloaded);
                     self.shell.toasts.good(format!("Reloaded {name}"));
                 }

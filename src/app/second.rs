@@ -45,12 +45,6 @@ impl Second {
         }
     }
 
-    /// Whether the second picture is complete.
-    pub fn is_over(&self) -> bool {
-        matches!(self.of, Some((Other::Kept(_), _)))
-            || self.tracer.as_ref().is_some_and(|tracer| tracer.status().phase.is_over())
-    }
-
     /// Its film, while the difference is shown.
     pub fn film(&self) -> Option<&Arc<ReferenceMeans>> {
         self.film.as_ref()
@@ -212,7 +206,7 @@ mod tests {
         let (mut second, context) = (Second::default(), Context::default());
         let stage = &Stage::ALL[0];
         let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
-        let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]], identity: None };
+        let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] };
         let answer = |second: &mut Second, origin: &Arc<Origin>| {
             second.films.answer(&context).give((Arc::clone(origin), film()));
             second.receive();

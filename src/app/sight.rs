@@ -42,7 +42,7 @@ impl Sighted {
             Means::Luminance(range) => view.tone.range = range,
             Means::Wipe(divider) => {
                 view.toggle(Mode::Wipe, With::Stage);
-                (view.divider, view.is_divider_unplaced) = (divider, false);
+                view.divider = divider;
             }
             _ => {}
         }
@@ -135,7 +135,6 @@ mod tests {
                 Means::Luminance(wanted) => assert_eq!(view.tone.range, wanted),
                 Means::Wipe(divider) => {
                     assert_eq!((view.mode(), view.divider), (Some(Mode::Wipe), divider));
-                    assert!(!view.is_divider_unplaced);
                 }
                 _ => {}
             }

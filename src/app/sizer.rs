@@ -3,7 +3,6 @@
 use super::model::document::Document;
 use super::model::sizing::Sizing;
 use eframe::egui::Context;
-use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// A new size counts once it has stayed the same for so long: a window that is resized has many sizes.
@@ -11,12 +10,6 @@ const SETTLE: Duration = Duration::from_millis(250);
 
 /// A picture that was traced for longer than this many seconds is kept.
 const LONG_SECONDS: f64 = 10.0;
-
-/// After this many changes of the size within [`RESTLESS`] the picture is kept, so that a panel whose height depends on
-/// the render cannot start it again for ever.
-const CHANGES: usize = 6;
-
-const RESTLESS: Duration = Duration::from_secs(15);
 
 /// The picture that a change of the size would throw away.
 pub struct Present {
@@ -44,8 +37,6 @@ enum Verdict {
 pub struct Sizer {
     /// The size that fits, and since when.
     fitting: Option<([u32; 2], Instant)>,
-    /// When the size was changed without the user's asking, oldest first.
-    changes: VecDeque<Instant>,
     is_asked: bool,
     /// A large size that the user wants.
     pub accepted: Option<[u32; 2]>,
@@ -84,35 +75,28 @@ impl Sizer {
         if wanted == document.size() {
             return;
         }
-        self.changes.retain(|change| now.duration_since(*change) < RESTLESS);
         let is_by_hand = context.input(|input| input.pointer.any_down());
         // The book's size changes only when the user chooses it or another picture.
         let verdict = if is_asked || sizing == Sizing::Book {
             Verdict::Change
         } else {
-            verdict(present, now.duration_since(since), is_by_hand, self.changes.len())
+            verdict(present, now.duration_since(since), is_by_hand)
         };
         match verdict {
-            Verdict::Change => {
-                if present.is_documents && !is_asked {
-                    self.changes.push_back(now);
-                }
-                document.set_size(wanted);
-            }
+            Verdict::Change => document.set_size(wanted),
             Verdict::Wait(time) => context.request_repaint_after(time),
             Verdict::Keep => self.offer = Some(wanted),
         }
     }
 }
 
-/// What to do about a picture when another size fits for `settled`, after `changes` changes of the size. `is_by_hand` says
-/// that a button of the mouse is down.
-fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usize) -> Verdict {
+/// What to do about a picture when another size fits for `settled`. `is_by_hand` says that a button of the mouse is down.
+fn verdict(present: &Present, settled: Duration, is_by_hand: bool) -> Verdict {
     if !present.is_documents {
         Verdict::Change
     } else if settled < SETTLE {
         Verdict::Wait(SETTLE - settled)
-    } else if present.is_needed || present.seconds > LONG_SECONDS || changes >= CHANGES {
+    } else if present.is_needed || present.seconds > LONG_SECONDS {
         // Also while a button of the mouse is down, which may be pressing the offer.
         Verdict::Keep
     } else if is_by_hand {
@@ -136,12 +120,12 @@ mod tests {
     #[test]
     fn a_window_that_is_being_resized_is_waited_for() {
         let short = Duration::from_millis(100);
-        assert_eq!(verdict(&YOUNG, short, false, 0), Verdict::Wait(Duration::from_millis(150)));
-        assert!(matches!(verdict(&YOUNG, LONG, true, 0), Verdict::Wait(_)), "the mouse drags an edge");
-        assert_eq!(verdict(&YOUNG, LONG, false, 0), Verdict::Change);
+        assert_eq!(verdict(&YOUNG, short, false), Verdict::Wait(Duration::from_millis(150)));
+        assert!(matches!(verdict(&YOUNG, LONG, true), Verdict::Wait(_)), "the mouse drags an edge");
+        assert_eq!(verdict(&YOUNG, LONG, false), Verdict::Change);
         let old = Present { seconds: 99.0, ..YOUNG };
-        assert!(matches!(verdict(&old, short, false, 0), Verdict::Wait(_)), "nothing flickers");
-        assert_eq!(verdict(&Present { is_documents: false, ..YOUNG }, short, true, 0), Verdict::Change);
+        assert!(matches!(verdict(&old, short, false), Verdict::Wait(_)), "nothing flickers");
+        assert_eq!(verdict(&Present { is_documents: false, ..YOUNG }, short, true), Verdict::Change);
     }
 
     fn ago(seconds: u64) -> Instant {
@@ -163,26 +147,25 @@ mod tests {
             let mut sizer = settled(size);
             assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{size:?} has fitted");
             assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
-            assert_eq!(sizer.changes.len(), usize::from(expected == [320, 180]));
             assert_eq!(sizer.offer, None);
         }
         let mut sizer = settled([320, 180]);
         sizer.offer = Some([1, 1]);
         let old = Present { seconds: 99.0, ..YOUNG };
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90]);
-        assert_eq!((sizer.offer, sizer.changes.len()), (Some([320, 180]), 0));
+        assert_eq!(sizer.offer, Some([320, 180]));
         sizer.ask();
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
-        assert_eq!((sizer.offer, sizer.changes.len()), (None, 0));
+        assert_eq!(sizer.offer, None);
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
     }
 
     #[test]
     fn ten_seconds_of_tracing_are_given_up_and_no_more() {
-        let after = |seconds| verdict(&Present { seconds, ..YOUNG }, SETTLE, false, 0);
+        let after = |seconds| verdict(&Present { seconds, ..YOUNG }, SETTLE, false);
         assert_eq!([10.0, 10.5].map(after), [Verdict::Change, Verdict::Keep]);
         let nearly = Duration::from_millis(249);
-        assert_eq!(verdict(&YOUNG, nearly, false, 0), Verdict::Wait(Duration::from_millis(1)));
-        assert_eq!(verdict(&YOUNG, SETTLE, true, 0), Verdict::Wait(SETTLE));
+        assert_eq!(verdict(&YOUNG, nearly, false), Verdict::Wait(Duration::from_millis(1)));
+        assert_eq!(verdict(&YOUNG, SETTLE, true), Verdict::Wait(SETTLE));
     }
 }

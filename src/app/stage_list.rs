@@ -3,12 +3,12 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::theme;
-use super::widgets::{hint, tip};
+use super::widgets::{caption, hint, tip};
 use crate::measure::stress::{Case, shown_cases};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, ColorImage, Context, Id, Key, Modifiers, Rect, Response, RichText, Sense, Stroke,
-    StrokeKind, TextStyle, TextureHandle, Ui, WidgetInfo, vec2,
+    self, Align, ColorImage, Context, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind,
+    TextStyle, TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
@@ -129,10 +129,7 @@ pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         for (index, row) in found.iter().copied().enumerate() {
             if row.heading() != heading {
                 heading = row.heading();
-                let color = ui.visuals().weak_text_color();
-                ui.add_space(8.0);
-                ui.label(RichText::new(format!("  {heading}")).small().color(color));
-                ui.add_space(4.0);
+                caption(ui, &format!("  {heading}"));
             }
             let response = row_ui(ui, row, index == state.chosen);
             if index == state.chosen && state.has_moved {

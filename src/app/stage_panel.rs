@@ -4,7 +4,7 @@ use super::command::Command;
 use super::facts::Facts;
 use super::model::document::Document;
 use super::model::view::{With, partner};
-use super::widgets::{About, choice, hint, primary, switch, tip};
+use super::widgets::{About, choice, hint, primary, small, switch, tip};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Button, Label, RichText, Ui};
@@ -34,11 +34,6 @@ pub fn title(ui: &mut Ui, over: &str, title: &str) {
     small(ui, over);
     ui.add_space(-4.0);
     ui.add(Label::new(RichText::new(title).heading().strong()).wrap());
-}
-
-fn small(ui: &mut Ui, text: &str) {
-    let color = ui.visuals().weak_text_color();
-    ui.add(Label::new(RichText::new(text).small().color(color)).wrap());
 }
 
 /// A paragraph under a small heading.

@@ -2,12 +2,14 @@
 
 use super::command::Command;
 use super::facts::Facts;
+use super::kept::FilmId;
 use super::model::sizing::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
-use super::widgets::{compact, tip};
+use super::widgets::{compact, small, tip};
 use super::wording::grouped;
+use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::progressive::{EndReason, Phase, Status};
@@ -46,9 +48,14 @@ pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut 
                         facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
                     tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
                     left_out(ui, facts.status.rejected_samples);
-                    if spheres::inside(facts.document()) && facts.document().case().is_none() {
-                        ui.label("The camera is inside a sphere.");
-                        if ui.button("Home").on_hover_text(Command::Home.help()).clicked() {
+                    let is_inside = spheres::inside(facts.document()) && facts.document().case().is_none();
+                    if is_inside || facts.is_lost {
+                        ui.label(match is_inside {
+                            true => "The camera is inside a sphere.",
+                            false => "Nothing but sky or ground is in sight.",
+                        });
+                        let home = ui.button("Home");
+                        if tip(ui, home, Command::Home.help(), None).clicked() {
                             commands.push(Command::Home);
                         }
                     } else if let Some([width, height]) = offered {
@@ -112,20 +119,37 @@ pub fn sentence(facts: &Facts) -> String {
             place + 1
         );
     }
+    if let Some(checked) = &facts.checked {
+        return checked.clone();
+    }
     let count = status.samples_per_pixel;
-    let error = status.error.map_or_else(String::new, |error| format!(", error {}", percent(error.rmse)));
+    let error = match (status.error, denoised_error(facts)) {
+        (Some(raw), Some(Ok(error))) => {
+            let [rmse, deviation, raw] = [error.rmse(), error.rmse_deviation(), raw.rmse].map(percent);
+            format!(", denoised: error {rmse} ± {deviation} (raw {raw})")
+        }
+        (Some(raw), Some(Err(reason))) => format!(", error {} (not denoised: {reason})", percent(raw.rmse)),
+        (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
+        (None, _) => String::new(),
+    };
     let samples = format!("{} samples per pixel", grouped(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
+        _ if facts.is_coarse && facts.is_moving => "A coarse picture while you move".to_owned(),
+        _ if facts.is_coarse || count == 0 => "Starting".to_owned(),
+        _ if facts.model.is_paused && facts.is_held => {
+            format!("Paused; the picture has moved, and {count} samples show it")
+        }
         _ if facts.model.is_paused => format!("Paused at {samples}{error}"),
-        Phase::Done(_) if !is_random(facts) => "Done: nothing in this picture depends on chance".to_owned(),
+        Phase::Done(_) if !facts.document().is_random() => {
+            "Done: nothing in this picture depends on chance".to_owned()
+        }
         Phase::Done(reason) => {
             let seconds = facts.seconds_before.unwrap_or_default() + status.trace.as_secs_f64();
             let taken = facts.seconds_before.map_or_else(String::new, |_| format!(" in {}", time(seconds)));
             let word = if *reason == EndReason::Stopped { "Stopped" } else { "Done" };
             format!("{word}: {samples}{taken}{error}")
         }
-        _ if count == 0 => "Starting".to_owned(),
         _ => match stop.samples {
             Some(end) => {
                 let per_sample = status.trace.as_secs_f64() / count as f64;
@@ -136,6 +160,14 @@ pub fn sentence(facts: &Facts) -> String {
             None => format!("{samples}{error}{}", ending(facts)),
         },
     }
+}
+
+/// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
+fn denoised_error(facts: &Facts) -> Option<Result<DenoisedError, &str>> {
+    let view = &facts.model.view;
+    let (film, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
+    (*film == FilmId::Live(facts.status.run) && outcome != Err("")).then_some(outcome)
 }
 
 /// When a render without a number of samples will end.
@@ -150,15 +182,11 @@ fn ending(facts: &Facts) -> String {
     }
 }
 
-fn is_random(facts: &Facts) -> bool {
-    let rules = facts.document().rules();
-    rules.antialiasing || rules.shading == crate::stages::Shading::Path
-}
-
 /// How much of the work is done, `0..=1`; none without an end.
-fn share(facts: &Facts) -> Option<f64> {
+pub fn share(facts: &Facts) -> Option<f64> {
     let (status, stop) = (&*facts.status, facts.document().stop);
-    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.model.view.kept.looked().is_some() {
+    let is_kept = facts.model.view.kept.looked().is_some();
+    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse || is_kept {
         return None;
     }
     let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);
@@ -180,13 +208,13 @@ fn details(ui: &mut Ui, facts: &Facts) {
                 ui.label(RichText::new("Details").strong());
                 for (name, value) in figures(facts) {
                     ui.horizontal(|ui| {
-                        ui.label(RichText::new(name).small().color(theme::colours(ui).weak));
+                        small(ui, name);
                         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                             ui.add(Label::new(RichText::new(value).small()).truncate());
                         });
                     });
                 }
-                ui.add(Label::new(RichText::new(TERMS).small().color(theme::colours(ui).weak)).wrap());
+                small(ui, TERMS);
             });
         });
     tip(ui, response, "Speed, lanes, memory, and what these mean", None);
@@ -195,7 +223,7 @@ fn details(ui: &mut Ui, facts: &Facts) {
 fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
     let status = &*facts.status;
     let unknown = || "–".to_owned();
-    let speed = facts.speed.unwrap_or_else(|| status.paths_per_second()) / 1e6;
+    let speed = status.paths_per_second() / 1e6;
     // A film that was opened does not say how its samples were traced.
     let has_paths = status.stats.paths > 0;
     let rays = status.stats.rays as f64 / status.stats.paths.max(1) as f64;
@@ -282,6 +310,14 @@ mod tests {
         facts.model.document.stop.noise = Some(0.002);
         assert!(sentence(&facts).ends_with("error 0.4 %; 0.2 % in about 30 s"), "{}", sentence(&facts));
         assert_eq!(share(&facts), Some(0.25));
+        facts.is_coarse = true;
+        assert!(sentence(&facts) == "Starting" && share(&facts).is_none());
+        facts.is_moving = true;
+        assert_eq!(sentence(&facts), "A coarse picture while you move");
+        facts.is_coarse = false;
+        (facts.model.is_paused, facts.is_held) = (true, true);
+        assert_eq!(sentence(&facts), "Paused; the picture has moved, and 100 samples show it");
+        (facts.model.is_paused, facts.is_held) = (false, false);
         facts.status = Arc::new(Status { phase: Phase::Done(EndReason::NoiseTarget), ..status });
         assert!(sentence(&facts).starts_with("Done: 100 samples per pixel in 10 s"), "{}", sentence(&facts));
         assert_eq!(share(&facts), None);

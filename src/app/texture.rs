@@ -1,6 +1,6 @@
 //! A picture as a texture of the window.
 
-use eframe::egui::{Color32, ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use std::sync::Arc;
 
 /// A picture, and its texture once it was drawn.
@@ -28,36 +28,6 @@ impl Texture {
             let [red, green, blue, _] = self.image[(x, y)].to_array();
             [red, green, blue]
         })
-    }
-
-    /// Where a divider between two pictures of the same size shows most of their difference: a share of the width, not
-    /// so near to an edge that hardly anything of one picture is left. `None` if their sizes differ or their pixels do
-    /// not.
-    pub fn most_different_column(&self, other: &Texture) -> Option<f32> {
-        let [width, height] = self.image.size;
-        if other.image.size != self.image.size {
-            return None;
-        }
-        let apart = |a: Color32, b: Color32| {
-            let ([r, g, b, _], [x, y, z, _]) = (a.to_array(), b.to_array());
-            u64::from(r.abs_diff(x)) + u64::from(g.abs_diff(y)) + u64::from(b.abs_diff(z))
-        };
-        let mut columns = vec![0_u64; width];
-        for y in 0..height {
-            let row = y * width..(y + 1) * width;
-            let pixels = self.image.pixels[row.clone()].iter().zip(&other.image.pixels[row]);
-            for (column, (a, b)) in columns.iter_mut().zip(pixels) {
-                *column += apart(*a, *b);
-            }
-        }
-        // Noise and edges are narrower than what is worth looking at.
-        let reach = width / 16;
-        let around =
-            |x: usize| -> u64 { columns[x.saturating_sub(reach)..(x + reach + 1).min(width)].iter().sum() };
-        let margin = width / 6;
-        let best = (margin..width - margin)
-            .max_by_key(|x| (around(*x), std::cmp::Reverse(x.abs_diff(width / 2))))?;
-        (around(best) > 0).then(|| (best as f32 + 0.5) / width as f32)
     }
 
     /// The texture for drawing, with square or smoothed pixels.

@@ -8,87 +8,68 @@ use eframe::egui::{
 };
 use std::sync::Arc;
 
-/// The colours of one theme. Letters on `tint` are `text` or `strong`.
-pub struct Colours {
-    /// Panels, menus, cards, dialogs.
-    pub panel: Color32,
-    /// Around the picture, and behind plots.
-    pub surround: Color32,
-    /// Behind what is typed, and behind code.
-    pub well: Color32,
-    /// Buttons, fields, rails.
-    pub raised: Color32,
-    /// Under the pointer; open menus.
-    pub hovered: Color32,
-    /// While pressed.
-    pub pressed: Color32,
-    /// Separators, edges of cards.
-    pub line: Color32,
-    /// Rings and handles; never letters.
-    pub edge: Color32,
-    /// What is on or chosen.
-    pub tint: Color32,
-    /// Labels, hints, keys.
-    pub weak: Color32,
-    pub text: Color32,
-    /// Titles, values, what is chosen.
-    pub strong: Color32,
-    /// Links, focus, progress; as a fill, the one button to press next.
-    pub accent: Color32,
-    /// Letters on `accent`.
-    pub on_accent: Color32,
-    /// Right.
-    pub good: Color32,
-    /// A mistake, a notice.
-    pub warn: Color32,
-    /// An error.
-    pub bad: Color32,
-}
-
 const fn rgb(hex: u32) -> Color32 {
     let [_, r, g, b] = hex.to_be_bytes();
     Color32::from_rgb(r, g, b)
 }
 
-const DARK: Colours = Colours {
-    panel: rgb(0x1B1D20),
-    surround: rgb(0x111214),
-    well: rgb(0x111214),
-    raised: rgb(0x2A2D32),
-    hovered: rgb(0x363A40),
-    pressed: rgb(0x42474F),
-    line: rgb(0x303338),
-    edge: rgb(0x6F7680),
-    tint: rgb(0x27405C),
-    weak: rgb(0xA0A6AF),
-    text: rgb(0xCDD1D6),
-    strong: rgb(0xF2F4F6),
-    accent: rgb(0x70B0F0),
-    on_accent: rgb(0x0C1826),
-    good: rgb(0x6CC58A),
-    warn: rgb(0xE8BA5C),
-    bad: rgb(0xF47A70),
-};
+macro_rules! colours {
+    ($($(#[$what:meta])* $name:ident $dark:literal $light:literal)*) => {
+        /// The colours of one theme. Letters on `tint` are `text` or `strong`.
+        pub struct Colours {
+            $($(#[$what])* pub $name: Color32,)*
+        }
 
-const LIGHT: Colours = Colours {
-    panel: rgb(0xF7F7F5),
-    surround: rgb(0xE2E3E2),
-    well: rgb(0xFFFFFF),
-    raised: rgb(0xE6E7E7),
-    hovered: rgb(0xDADDDF),
-    pressed: rgb(0xCCD1D5),
-    line: rgb(0xD6D7D7),
-    edge: rgb(0x81868C),
-    tint: rgb(0xCFE0F2),
-    weak: rgb(0x585D64),
-    text: rgb(0x303439),
-    strong: rgb(0x101215),
-    accent: rgb(0x185FA5),
-    on_accent: rgb(0xFFFFFF),
-    good: rgb(0x186839),
-    warn: rgb(0x7D5200),
-    bad: rgb(0xB0241C),
-};
+        const DARK: Colours = Colours { $($name: rgb($dark)),* };
+        const LIGHT: Colours = Colours { $($name: rgb($light)),* };
+    };
+}
+
+colours! {
+    /// Panels, menus, cards, dialogs.
+    panel 0x1B1D20 0xF7F7F5
+    /// Around the picture, and behind plots.
+    surround 0x111214 0xE2E3E2
+    /// Behind what is typed, and behind code.
+    well 0x111214 0xFFFFFF
+    /// Buttons, fields, rails.
+    raised 0x2A2D32 0xE6E7E7
+    /// Under the pointer; open menus.
+    hovered 0x363A40 0xDADDDF
+    /// While pressed.
+    pressed 0x42474F 0xCCD1D5
+    /// Separators, edges of cards.
+    line 0x303338 0xD6D7D7
+    /// Rings and handles; never letters.
+    edge 0x6F7680 0x81868C
+    /// What is on or chosen.
+    tint 0x27405C 0xCFE0F2
+    /// Labels, hints, keys.
+    weak 0xA0A6AF 0x585D64
+    text 0xCDD1D6 0x303439
+    /// Titles, values, what is chosen.
+    strong 0xF2F4F6 0x101215
+    /// Links, focus, progress; as a fill, the one button to press next.
+    accent 0x70B0F0 0x185FA5
+    /// Letters on `accent`.
+    on_accent 0x0C1826 0xFFFFFF
+    /// Right.
+    good 0x6CC58A 0x186839
+    /// A mistake, a notice.
+    warn 0xE8BA5C 0x7D5200
+    /// An error.
+    bad 0xF47A70 0xB0241C
+    /// Data: from the camera, or CPU.
+    first 0x5C96FF 0x2F6FE0
+    /// Data: off matte, or GPU.
+    second 0xEB9438 0xD9791A
+    /// Data: off metal, or expected.
+    third 0xB4B4BE 0x8C8C98
+    /// Data: glass, or both.
+    fourth 0x46C396 0x1F9A6B
+    /// Data: waits.
+    waits 0x2E3238 0xDCDDDD
+}
 
 /// The colours of the theme that a part of the window has.
 pub fn colours(ui: &Ui) -> &'static Colours {
@@ -97,16 +78,6 @@ pub fn colours(ui: &Ui) -> &'static Colours {
 
 fn of_theme(is_dark: bool) -> &'static Colours {
     if is_dark { &DARK } else { &LIGHT }
-}
-
-/// The colour around the picture.
-pub fn surround(ui: &Ui) -> Color32 {
-    colours(ui).surround
-}
-
-/// The accent colour.
-pub fn accent(ui: &Ui) -> Color32 {
-    colours(ui).accent
 }
 
 /// Sets both themes' styles.

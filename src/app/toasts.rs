@@ -207,7 +207,10 @@ mod tests {
         let context = egui::Context::default();
         let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
         let draw = |toasts: &mut Toasts| {
-            let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()));
+            context
+                .run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over, &mut Vec::new()))
+                .textures_delta
+                .clear();
         };
         draw(&mut toasts);
         let before = toasts.0[1].place;

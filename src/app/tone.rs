@@ -1,19 +1,17 @@
 //! What is shown of the picture and how bright, and the histogram.
 
-use super::answers::Answers;
 use super::command::Command;
 use super::facts::Facts;
-use super::kept::{FilmId, Subject};
+use super::kept::{FilmId, Query, Subject};
 use super::model::show::Show;
 use super::model::tone::{Channel, Tone};
 use super::model::view::ViewState;
 use super::theme;
-use super::widgets::{About, Header, Number, compact, entry, fold, hint, list, row, switch, tip};
-use crate::film::Histogram;
-use eframe::egui::{
-    self, Align2, Label, Pos2, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+use super::widgets::{
+    About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
 };
-use std::sync::{Arc, Weak};
+use crate::film::Histogram;
+use eframe::egui::{self, Align2, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
@@ -27,44 +25,27 @@ const INTERVAL: Duration = Duration::from_millis(500);
 pub struct ToneUi {
     is_open: bool,
     histogram: Option<Histogram>,
-    /// Film, samples and white of the last query, and when it was made.
-    asked: Option<(FilmId, u64, f64, Instant)>,
-    /// Can be upgraded as long as the query waits for the film.
-    waiting: Weak<()>,
-    answers: Answers<Histogram>,
+    /// By film, white and samples.
+    query: Query<(FilmId, f64, u64), Histogram>,
+    asked_at: Option<Instant>,
 }
 
 impl ToneUi {
     /// Takes the film's answer, and asks again if the picture has changed.
     pub fn follow(&mut self, subject: &Subject<'_>, white: f64, context: &egui::Context) {
-        while let Some(histogram) = self.answers.take() {
-            self.histogram = Some(histogram);
-        }
-        let (film, samples) = (subject.film_id(), subject.samples());
-        if !self.is_open || !subject.has_samples() || self.waiting.strong_count() > 0 {
+        self.histogram = self.query.take().or(self.histogram.take());
+        if !self.is_open || !subject.has_samples() {
             return;
         }
-        if let Some((asked_film, asked_samples, asked_white, at)) = self.asked {
-            let is_same_picture = asked_film == film && asked_white == white;
-            let wait = INTERVAL.saturating_sub(at.elapsed());
-            if is_same_picture && asked_samples == samples {
-                return;
-            }
-            if is_same_picture && wait > Duration::ZERO {
-                context.request_repaint_after(wait);
-                return;
-            }
+        let key = (subject.film_id(), white, subject.samples());
+        let is_same =
+            self.query.asked().is_some_and(|(film, of_white, _)| (*film, *of_white) == (key.0, white));
+        let wait = self.asked_at.map_or(Duration::ZERO, |at| INTERVAL.saturating_sub(at.elapsed()));
+        if is_same && !wait.is_zero() {
+            context.request_repaint_after(wait);
+        } else if self.query.ask(context, subject, key, move |film| Some(Histogram::of(film, white))) {
+            self.asked_at = Some(Instant::now());
         }
-        let question = Arc::new(());
-        self.waiting = Arc::downgrade(&question);
-        self.asked = Some((film, samples, white, Instant::now()));
-        let answer = self.answers.answer(context);
-        subject.inspect(move |film| {
-            let histogram = Histogram::of(film, white);
-            // Dropped first: the answer wakes a frame, which may ask the next question.
-            drop(question);
-            answer.give(histogram);
-        });
     }
 
     /// Draws what is shown and how bright, and the histogram.
@@ -90,6 +71,13 @@ impl ToneUi {
                     }
                 }
             });
+            let mut is_denoised = view.is_denoised;
+            let reason = facts.disabled_reason(Command::Denoise);
+            let (name, help) = (Command::Denoise.name(), Command::Denoise.help());
+            let about = About::new(&name, help);
+            if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
+                commands.push(Command::Denoise);
+            }
             if show == Show::Luminance {
                 range_ui(ui, &mut view.tone);
             } else {
@@ -168,48 +156,5 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
     let help = "How many pixels are how bright, from black to white: each twentieth of the width is twice the light, \
                 and heights are square roots of counts";
     tip(ui, response, help, None);
-    ui.add(Label::new(RichText::new(words).small().color(colours.weak)).wrap());
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::kept::on_screen::{OnScreen, small_film};
-
-    use crate::app::tests::sleep_after;
-
-    #[test]
-    fn a_picture_that_refines_is_counted_again_after_a_while_and_another_one_at_once() {
-        let (screen, context) = (OnScreen::new(small_film(8, 16.0)), egui::Context::default());
-        let mut tone = ToneUi::default();
-        let is_asked = |tone: &mut ToneUi, white: f64| {
-            screen.before_answers(|subject| {
-                tone.follow(subject, white, &context);
-                tone.waiting.strong_count() > 0
-            })
-        };
-        assert!(!is_asked(&mut tone, 1.0), "nobody looks at it");
-        tone.is_open = true;
-        assert!(is_asked(&mut tone, 1.0));
-        assert!(!is_asked(&mut tone, 1.0), "it is known");
-        let counted = tone.histogram.take().unwrap();
-        assert_eq!((counted.pixels, counted.clipped, counted.largest), (8, 1, 2.0));
-        assert!(is_asked(&mut tone, 4.0), "another white");
-        assert!(!is_asked(&mut tone, 4.0));
-        assert_eq!(tone.histogram.as_ref().map(|histogram| histogram.clipped), Some(0));
-
-        let film = screen.subject().film_id();
-        let (just_now, earlier) = (Instant::now() + Duration::from_secs(3600), Instant::now() - INTERVAL);
-        tone.asked = Some((film, 7, 4.0, just_now));
-        let mut is_waiting = true;
-        let sleep = sleep_after(&context, |context| {
-            tone.follow(&screen.subject(), 4.0, context);
-            is_waiting = tone.waiting.strong_count() > 0;
-        });
-        assert!(!is_waiting && sleep <= INTERVAL && sleep > INTERVAL / 2, "{sleep:?}");
-        tone.asked = Some((film, 7, 4.0, earlier));
-        assert!(is_asked(&mut tone, 4.0));
-        tone.asked = Some((FilmId::Live(9), 8, 4.0, just_now));
-        assert!(is_asked(&mut tone, 4.0), "another film");
-    }
+    small(ui, words);
 }

@@ -138,6 +138,16 @@ impl Tracer {
         self.started.as_ref().is_some_and(|run| run.document.has_same_film(document))
     }
 
+    /// Whether the render is a preview.
+    pub fn is_coarse(&self) -> bool {
+        self.started.as_ref().is_some_and(|run| run.preview.divisor > 1)
+    }
+
+    /// Whether the render began during a pause that lasts.
+    pub fn is_held(&self) -> bool {
+        self.started.as_ref().is_some_and(|run| run.is_held)
+    }
+
     /// Sets the view for pictures.
     fn look(&mut self, view: &View) {
         if !self.view.is_same(view) {

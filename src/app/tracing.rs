@@ -1,13 +1,13 @@
 //! What traces: the render on the screen, the one that it is compared with, and their size.
 
 use super::changes::Changes;
+use super::kept::FilmId;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::second::Second;
 use super::sizer::{Present, Sizer};
-use super::speed::Speed;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
 use super::wording::in_window_words;
@@ -24,7 +24,6 @@ pub struct Tracing {
     pub main: Tracer,
     /// Traces what the picture is compared with.
     pub second: Second,
-    pub speed: Speed,
     pub sizer: Sizer,
     /// Tracing time of the film's samples from before this run; none if it is not known.
     pub seconds_before: Option<f64>,
@@ -44,7 +43,6 @@ impl Tracing {
         Ok(Tracing {
             main: Tracer::new()?,
             second: Second::default(),
-            speed: Speed::default(),
             sizer: Sizer::default(),
             seconds_before: Some(0.0),
             film: None,
@@ -57,9 +55,7 @@ impl Tracing {
     /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
     pub fn poll(&mut self, context: &Context) -> Option<Instant> {
         self.second.receive();
-        let pictured = self.main.poll(context);
-        self.speed.follow(self.main.status());
-        pictured
+        self.main.poll(context)
     }
 
     /// Goes on with this film, which is the document's.
@@ -114,7 +110,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_film(self.second.film()),
+            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film()),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };

@@ -14,6 +14,9 @@ use std::ops::RangeInclusive;
 /// Width of a field for a number, points.
 pub const FIELD: f32 = 64.0;
 
+/// Height of a row of tabs, points.
+pub const TABS: f32 = 40.0;
+
 /// Seconds for which a refused number is explained.
 const REFUSAL_SECONDS: f64 = 4.0;
 
@@ -38,12 +41,19 @@ impl<'a> About<'a> {
 /// Gives a widget a name for assistive technology, and for [`focus`].
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+    take_focus(response, name);
+}
+
+/// Focuses the widget if it is the one that [`focus`] wants. Returns whether it is.
+fn take_focus(response: &Response, name: &str) -> bool {
     let wanted: Option<String> = response.ctx.data(|data| data.get_temp(wanted()));
-    if wanted.as_deref() == Some(name) {
+    let is_wanted = wanted.as_deref() == Some(name);
+    if is_wanted {
         response.ctx.data_mut(|data| data.remove::<String>(self::wanted()));
         response.scroll_to_me(None);
         response.request_focus();
     }
+    is_wanted
 }
 
 /// Gives the keyboard focus to the first widget of this name that is drawn next.
@@ -106,6 +116,19 @@ pub fn above(ui: &mut Ui, about: About<'_>) {
         Label::new(RichText::new(about.name).small().color(color)),
     );
     tip(ui, label, about.help, about.disabled_reason);
+}
+
+/// Small weak text.
+pub fn small(ui: &mut Ui, text: impl Into<String>) -> Response {
+    let text = RichText::new(text).small().color(ui.visuals().weak_text_color());
+    ui.add(Label::new(text).wrap())
+}
+
+/// A small heading between rows of a list.
+pub fn caption(ui: &mut Ui, text: &str) {
+    ui.add_space(8.0);
+    small(ui, text);
+    ui.add_space(4.0);
 }
 
 /// A weak sentence that wraps.
@@ -231,61 +254,38 @@ impl<'a> Number<'a> {
         Number { check: Some(check), ..self }
     }
 
-    /// The field alone. A typed number is taken when the edit is complete. One that can't be taken changes nothing: the
-    /// field gets a red frame, and the reason stands beside it.
+    /// The field alone. A number that can't be taken changes nothing: the field gets a red frame, and the reason stands
+    /// beside it.
     pub fn field(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
-        let (rect, _) = ui.allocate_exact_size(vec2(width, ui.spacing().interact_size.y), Sense::hover());
-        let layout = Layout::centered_and_justified(egui::Direction::LeftToRight);
-        let mut within = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
-        within.shrink_clip_rect(rect);
-        within.spacing_mut().button_padding.x = 4.0;
-        if self.about.disabled_reason.is_some() {
-            within.disable();
-        }
-        let (id, before) = (within.next_auto_id(), *value);
-        let layer = within.layer_id();
-        // Tab leaves a field only after it has asked for the focus.
-        let is_typing = within.memory_mut(|memory| {
-            if self.about.disabled_reason.is_none() {
-                memory.interested_in_focus(id, layer);
-            }
-            memory.has_focus(id)
-        });
-        let is_given_up = was_escape_pressed(ui);
-        let outcome = RefCell::new(None);
+        let (before, mut shown, refused) = (*value, *value, RefCell::new(None));
         let parse = |text: &str| {
-            let parsed = if is_given_up { Ok(before) } else { self.parsed(text, before) };
-            let number = parsed.as_ref().ok().copied();
-            outcome.replace(Some(parsed));
-            number.filter(|number| !is_typing && *number != before)
+            let parsed = self.parsed(text, before);
+            refused.replace(parsed.clone().err());
+            parsed.ok()
         };
-        let mut shown = before;
         let speed = self.speed.unwrap_or(0.01 * before.abs().max(0.1));
         let drag = DragValue::new(&mut shown)
             .speed(if self.is_whole { speed.max(0.1) } else { speed })
             .range(self.limits.clone())
             .clamp_existing_to_range(false)
+            .update_while_editing(false)
             .custom_formatter(|n, _| self.text(n))
             .custom_parser(parse)
             .suffix(self.suffix)
-            .clip_text(true)
-            .min_size(rect.size());
-        let mut response = within.add(drag);
+            .clip_text(true);
+        let added = ui.add_enabled_ui(self.about.disabled_reason.is_none(), |ui| {
+            ui.spacing_mut().button_padding.x = 4.0;
+            ui.add_sized([width, ui.spacing().interact_size.y], drag)
+        });
+        let (mut response, mut refused) = (added.inner, refused.into_inner());
         named(&response, self.about.name);
-        response.flags.set(Flags::CHANGED, false);
-        let mut outcome = outcome.into_inner();
-        if shown != before {
-            let checked = self.checked(shown);
-            if let Some(number) = checked.as_ref().ok().filter(|number| **number != before) {
-                *value = *number;
-                response.mark_changed();
-            }
-            outcome = Some(checked);
+        match self.checked(shown) {
+            _ if shown == before => {}
+            Ok(number) => *value = number,
+            Err(reason) => refused = Some(reason),
         }
-        if let Some(outcome) = outcome {
-            refuse(ui, id, outcome.err());
-        }
-        explain_refusal(ui, &response, is_typing);
+        response.flags.set(Flags::CHANGED, *value != before);
+        explain_refusal(ui, &response, refused, *value != before);
         tip(ui, response, self.about.help, self.about.disabled_reason)
     }
 
@@ -379,40 +379,21 @@ impl<'a> Number<'a> {
     }
 }
 
-/// Whether Escape was pressed lately. egui applies the text of a field up to two frames after it lost the focus, even if
-/// Escape took that.
-fn was_escape_pressed(ui: &Ui) -> bool {
-    const FRAMES: u64 = 2;
-    let (place, now) = (Id::unique("escape pressed"), ui.ctx().cumulative_frame_nr());
-    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        ui.data_mut(|data| data.insert_temp(place, now));
+/// Draws a red frame around a field whose text was refused, and the reason beside it, for a while.
+fn explain_refusal(ui: &Ui, response: &Response, reason: Option<String>, is_changed: bool) {
+    let (place, now) = (response.id.with("refused"), ui.input(|input| input.time));
+    if let Some(reason) = reason {
+        ui.data_mut(|data| data.insert_temp(place, (reason, now + REFUSAL_SECONDS)));
     }
-    ui.data(|data| data.get_temp::<u64>(place)).is_some_and(|then| now <= then + FRAMES)
-}
-
-/// Notes why what was typed into `id` can't be taken, or that it can.
-fn refuse(ui: &Ui, id: Id, reason: Option<String>) {
-    let (place, until) = (id.with("refused"), ui.input(|input| input.time) + REFUSAL_SECONDS);
-    ui.data_mut(|data| match reason {
-        Some(reason) => _ = data.insert_temp(place, (reason, until)),
-        None => data.remove::<(String, f64)>(place),
-    });
-}
-
-/// Draws a red frame, and the reason beside it, around a field whose text was refused.
-fn explain_refusal(ui: &Ui, response: &Response, is_typing: bool) {
-    let refused: Option<(String, f64)> = ui.data(|data| data.get_temp(response.id.with("refused")));
+    let refused: Option<(String, f64)> = ui.data(|data| data.get_temp(place));
     let Some((reason, until)) = refused else { return };
-    let left = until - ui.input(|input| input.time);
-    if left <= 0.0 && !is_typing {
-        return refuse(ui, response.id, None);
+    if until <= now || is_changed {
+        return ui.data_mut(|data| data.remove::<(String, f64)>(place));
     }
     let bad = theme::colours(ui).bad;
     ui.painter().rect_stroke(response.rect, 4, Stroke::new(1.0, bad), StrokeKind::Inside);
     show_tip(ui, response, RichText::new(reason).color(bad));
-    if left > 0.0 {
-        ui.ctx().request_repaint_after_secs(left as f32);
-    }
+    ui.ctx().request_repaint_after_secs((until - now) as f32);
 }
 
 /// Three coordinates under their name, each within `limits`. `check` says why a vector can't be taken, if so.
@@ -426,81 +407,53 @@ pub fn vector(
 ) {
     ui.scope(|ui| {
         above(ui, about);
-        ui.horizontal(|ui| {
-            let width = ((ui.available_width() - 16.0) / 3.0).floor();
-            let before = *value;
-            for (axis, component) in ["x", "y", "z"].into_iter().zip(0..3) {
-                let name = format!("{}, {axis}", about.name);
-                let about = About { name: &name, ..about };
-                let check = |number: f64| {
-                    let mut changed = before;
-                    changed[component] = number;
-                    check(changed)
-                };
-                let scale = Some(before.abs().max_element());
-                let number =
-                    Number { scale, ..Number::new(about, limits.clone()).speed(speed).refused_if(&check) };
-                number.field(ui, width, &mut value[component]);
-            }
-        });
+        fields(ui, about, ["x", "y", "z"], value, (limits, speed), check);
     });
 }
 
-/// A colour to pick or type. It is shown as the picture shows it in white light.
+/// Three fields side by side.
+fn fields(
+    ui: &mut Ui,
+    about: About<'_>,
+    names: [&str; 3],
+    value: &mut DVec3,
+    (limits, speed): (RangeInclusive<f64>, f64),
+    check: &dyn Fn(DVec3) -> Option<String>,
+) {
+    ui.horizontal(|ui| {
+        let width = ((ui.available_width() - 16.0) / 3.0).floor();
+        let before = *value;
+        for (component, name) in names.into_iter().enumerate() {
+            let name = format!("{}, {name}", about.name);
+            let about = About { name: &name, ..about };
+            let check = |number: f64| {
+                let mut changed = before;
+                changed[component] = number;
+                check(changed)
+            };
+            let scale = Some(before.abs().max_element());
+            let number =
+                Number { scale, ..Number::new(about, limits.clone()).speed(speed).refused_if(&check) };
+            number.field(ui, width, &mut value[component]);
+        }
+    });
+}
+
+/// A colour to pick, or to type as shares of light. It is shown as the picture shows it in white light.
 pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
     let shown = albedo.to_array().map(|n| (255.0 * n.clamp(0.0, 1.0).sqrt()).round() as u8);
-    let [r, g, b] = shown;
-    let help = format!("{} {}", about.help, point_words(*albedo));
-    let about = About { help: &help, ..about };
     row(ui, about, |ui| {
-        ui.visuals_mut().text_edit_bg_color = Some(theme::colours(ui).raised);
-        let usual = format!("{r:02X}{g:02X}{b:02X}");
-        let place = ui.scope_id().with("colour");
-        let mut text = ui.data(|data| data.get_temp(place)).unwrap_or_else(|| usual.clone());
-        let edit =
-            egui::TextEdit::singleline(&mut text).desired_width(64.0).align(egui::Align2::CENTER_CENTER);
-        let response = ui.add(edit.min_size(vec2(80.0, 0.0)));
-        named(&response, about.name);
-        if response.has_focus() {
-            ui.data_mut(|data| data.insert_temp(place, text));
-        } else {
-            ui.data_mut(|data| data.remove::<String>(place));
-            if response.lost_focus() && text != usual && !was_escape_pressed(ui) {
-                let typed = colour_of(&text);
-                *albedo = typed.unwrap_or(*albedo);
-                let reason = "Six digits as in 5172B4, or red, green and blue as in 0.1, 0.2, 0.5";
-                refuse(ui, response.id, typed.is_none().then(|| reason.to_owned()));
-            }
-        }
-        explain_refusal(ui, &response, false);
-        tip(ui, response, about.help, about.disabled_reason);
-        ui.spacing_mut().interact_size.x = ui.spacing().interact_size.y;
+        ui.spacing_mut().interact_size.x = FIELD;
         let mut picked = shown;
         let response = ui.color_edit_button_srgb(&mut picked);
         named(&response, about.name);
         tip(ui, response, about.help, about.disabled_reason);
         for component in (0..3).filter(|component| picked[*component] != shown[*component]) {
-            albedo[component] = decoded(picked[component]);
+            let light = (f64::from(picked[component]) / 255.0).powi(2);
+            albedo[component] = (light * 1e4).round() / 1e4;
         }
     });
-}
-
-/// The share of light that the picture shows as this byte.
-fn decoded(byte: u8) -> f64 {
-    let light = (f64::from(byte) / 255.0).powi(2);
-    (light * 1e4).round() / 1e4
-}
-
-/// The colour of a text: six hexadecimal digits, or three shares of light.
-fn colour_of(text: &str) -> Option<DVec3> {
-    let numbers = text.split([',', ' ']).filter(|part| !part.is_empty()).map(str::parse);
-    if let Ok(Ok(shares)) = numbers.collect::<Result<Vec<f64>, _>>().map(<[f64; 3]>::try_from) {
-        return shares.iter().all(|share| (0.0..=1.0).contains(share)).then(|| shares.into());
-    }
-    let digits = text.trim().trim_start_matches('#');
-    let is_colour = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-    let [_, bytes @ ..] = u32::from_str_radix(digits, 16).ok().filter(|_| is_colour)?.to_be_bytes();
-    Some(DVec3::from_array(bytes.map(decoded)))
+    fields(ui, about, ["red", "green", "blue"], albedo, (0.0..=1.0, 0.005), &|_| None);
 }
 
 /// Formats a number in few characters.
@@ -575,7 +528,9 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
         let words = if state.is_open() { "open" } else { "folded" };
         let name = format!("{}, {words}", header.title);
         response.widget_info(|| WidgetInfo::labeled(Role::DisclosureTriangle, true, &name));
-        if response.clicked() {
+        if take_focus(&response, header.title) {
+            state.set_open(true);
+        } else if response.clicked() {
             state.toggle(ui);
         }
         let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));
@@ -606,12 +561,28 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
             if !is_open && !header.summary.is_empty() {
-                let color = ui.visuals().weak_text_color();
-                ui.label(RichText::new(header.summary).small().color(color));
+                small(ui, header.summary);
             }
         },
     );
     is_reset
+}
+
+/// A tab of a panel or of the dock.
+pub fn tab(ui: &mut Ui, name: &str, is_on: bool) -> Response {
+    let colours = theme::colours(ui);
+    let text = RichText::new(name).color(if is_on { colours.strong } else { colours.weak });
+    ui.scope(|ui| {
+        ui.spacing_mut().button_padding.x = 0.0;
+        let response = ui.add(Button::new(text).frame(false).min_size(vec2(0.0, TABS)));
+        response.widget_info(|| WidgetInfo::selected(Role::Tab, true, is_on, name));
+        if is_on {
+            let line = response.rect.x_range().expand(8.0);
+            ui.painter().hline(line, response.rect.bottom() - 1.0, Stroke::new(2.0, colours.accent));
+        }
+        response
+    })
+    .inner
 }
 
 /// A line over the whole width of a panel.
@@ -704,14 +675,5 @@ mod tests {
         }
         assert_eq!(point_words(DVec3::new(12.974, 2.08e-17, -3.0)), "13, 0, −3");
         assert_eq!(point_words(DVec3::ZERO), "0, 0, 0");
-    }
-
-    #[test]
-    fn a_colour_is_typed_as_the_picture_shows_it_or_as_shares_of_light() {
-        assert_eq!(colour_of("#FF8000"), Some(DVec3::new(1.0, 0.252, 0.0)));
-        assert_eq!(colour_of("0.1, 0.2, .5"), Some(DVec3::new(0.1, 0.2, 0.5)));
-        for wrong in ["", "red", "12345", "1 2", "0.1 0.2 1.5", "+12345"] {
-            assert_eq!(colour_of(wrong), None, "{wrong}");
-        }
     }
 }

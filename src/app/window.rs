@@ -8,11 +8,12 @@ use super::display::Display;
 use super::facts::Facts;
 use super::files::Files;
 use super::input;
+use super::kept::Subject;
 use super::model::Model;
 use super::model::device::{Device, DeviceOptions};
 use super::model::document::Document;
 use super::model::origin::{Origin, Source};
-use super::model::remembered::Stored;
+use super::model::remembered::{Stored, Tab};
 use super::model::view::ViewState;
 use super::shell::Shell;
 use super::theme;
@@ -53,7 +54,7 @@ impl Window {
     /// # Errors
     /// Those of [`Window::new`].
     pub fn with(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
-        let (mut remembered, exposure) = Stored::read(storage);
+        let (mut remembered, view) = Stored::read(storage);
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
@@ -76,8 +77,7 @@ impl Window {
             (None, Some((document, path))) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
-        let mut view = ViewState::default();
-        view.tone.exposure = exposure;
+        let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
             changes: Changes::new(document.clone()),
             model: Model {
@@ -114,10 +114,14 @@ impl Window {
     pub(super) fn facts(&self) -> Facts {
         Facts {
             status: self.tracing.main.status().clone(),
-            speed: self.tracing.speed.paths_per_second(),
             seconds_before: self.tracing.seconds_before,
-            can_undo: self.changes.can_undo(self.document()),
-            can_redo: self.changes.can_redo(self.document()),
+            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
+            redo: self.changes.later().map(|other| self.document().difference(other)),
+            is_coarse: self.tracing.main.is_coarse(),
+            is_moving: self.changes.is_in_gesture(),
+            is_held: self.tracing.main.is_held(),
+            is_lost: self.display.is_lost,
+            checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
             has_pixel: self.tools.inspector.hovered().is_some(),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
@@ -130,7 +134,6 @@ impl Window {
     pub fn ui_in(&mut self, ui: &mut egui::Ui) {
         let context = ui.ctx().clone();
         self.dress(&context);
-        self.shell.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
         self.take_input(&context);
@@ -225,7 +228,7 @@ impl Window {
         }
         let room = self.display.viewport.room_pixels();
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
-        if self.changes.follow(context, &self.model.document, false) {
+        if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.look(None);
             if let Some(log) = &mut self.shell.frame_log {
@@ -240,6 +243,10 @@ impl Window {
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
         let Window { model, tracing, display, tools, files, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
+        let subject = Subject::new(&model.view, (&model.document, &tracing.main), None);
+        if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
+            model.view.denoised = Some(found);
+        }
         let subject = display.subject(model, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
@@ -251,7 +258,6 @@ impl Window {
             shell.toasts.bad(words);
         }
         tools.follow(context, model, &subject, is_moving);
-        display.place_divider(model, tracing);
         if !has_second {
             model.view.end_comparison();
         }
@@ -294,7 +300,7 @@ impl Window {
 
 impl eframe::App for Window {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        Stored::new(&self.model.remembered, self.model.view.tone.exposure).write(storage);
+        Stored::write(&self.model, storage);
     }
 
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
@@ -309,13 +315,6 @@ impl eframe::App for Window {
         let begin = Instant::now();
         self.ui_in(ui);
         self.shell.frame_times.ui = begin.elapsed();
-    }
-
-    fn raw_input_hook(&mut self, context: &egui::Context, raw: &mut egui::RawInput) {
-        input::part_at_tab(&mut self.shell.late_events, &mut raw.events);
-        if !self.shell.late_events.is_empty() {
-            context.request_repaint();
-        }
     }
 
     fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {

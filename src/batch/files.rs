@@ -1,7 +1,8 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
 use crate::cli::RenderOptions;
-use crate::film::{Description, Film, LockedFilm, SampleRanges, key};
+use crate::denoise::{self, DenoisedError};
+use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
 use crate::job::output::{Forms, OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::render::panic_text;
@@ -33,6 +34,8 @@ pub(super) struct Written {
     /// Notes on the files, for the user.
     pub notes: Vec<String>,
     pub failures: Vec<String>,
+    /// The error of the denoised picture, if there is one.
+    pub denoised: Option<DenoisedError>,
 }
 
 impl Files {
@@ -93,29 +96,41 @@ impl Files {
 
     /// Writes the film of `--checkpoint`. Returns a note for the user if the file already holds more.
     pub fn save_checkpoint(&self, film: &Film, status: &Status) -> Result<Option<String>, String> {
-        self.films.first().map_or(Ok(None), |place| self.save(place, film, status))
+        self.films.first().map_or(Ok(None), |place| self.save(place, film, None, status))
     }
 
     fn save(
         &self,
         (path, file): &(PathBuf, Mutex<LockedFilm>),
         film: &Film,
+        denoised: Option<&Film>,
         status: &Status,
     ) -> Result<Option<String>, String> {
         let description = self.described(film, status);
         caught(path, || {
             let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-            file.save(film, &description).map_err(|error| error.to_string())
+            file.save(film, denoised, &description).map_err(|error| error.to_string())
         })
     }
 
     /// Writes the films and the picture, calling `say` before each. A failed write does not stop the others. If no film
-    /// could be written, it is saved elsewhere, since its samples may have taken hours.
+    /// could be written, it is saved elsewhere, since its samples may have taken hours. If the film cannot be denoised as
+    /// requested, the picture is that of the film, and a note says so.
     pub fn write(&self, film: &Film, status: &Status, mut say: impl FnMut(&Path)) -> Written {
         let (render, mut written) = (&self.render, Written::default());
+        let denoised = match render.plan.stop.is_denoised.then(|| denoise::of_film(film)) {
+            Some(Err(reason)) => {
+                written.notes.push(format!("the picture is not denoised: {reason}"));
+                None
+            }
+            Some(Ok(denoised)) => Some(denoised),
+            None => None,
+        };
+        written.denoised = denoised.as_ref().map(|denoised| denoised.error);
+        let picture = denoised.as_ref().map(|denoised| &denoised.film);
         for place in &self.films {
             say(&place.0);
-            match self.save(place, film, status) {
+            match self.save(place, film, picture.filter(|_| place.0 == render.out), status) {
                 Ok(note) => {
                     written.files.push(place.0.clone());
                     written.notes.extend(note);
@@ -124,13 +139,23 @@ impl Files {
             }
         }
         let is_film_kept = !written.files.is_empty();
-        let description = self.described(film, status);
+        let mut description = self.described(film, status);
         if !is_film(&render.out) {
+            if let Some(error) = &written.denoised {
+                description.set(key::DENOISED, error.words());
+            }
             say(&render.out);
-            let forms = Forms { ppm: render.ppm, ..Forms::default() };
+            let forms = Forms { ppm: render.ppm, format: Some(render.format), ..Forms::default() };
             let transfer = render.job.rules().transfer;
-            let write = || write_image_as(&render.out, film, transfer, &description, forms);
-            match caught(&render.out, || write().map_err(|error| error.to_string())) {
+            let write = || match render.format {
+                OutputFormat::Exr => {
+                    checkpoint::save_with(&render.out, film, picture, &self.described(film, status))
+                        .map_err(|error| error.to_string())
+                }
+                _ => write_image_as(&render.out, picture.unwrap_or(film), transfer, &description, forms)
+                    .map_err(|error| error.to_string()),
+            };
+            match caught(&render.out, write) {
                 Ok(()) => written.files.push(render.out.clone()),
                 Err(reason) => written.failures.push(reason),
             }
@@ -191,7 +216,6 @@ pub(super) fn is_film(path: &Path) -> bool {
 mod tests {
     use super::*;
     use crate::batch::tests::options;
-    use crate::film::checkpoint;
     use std::ops::Range;
 
     /// Writes a film of `render` with these samples to `path`.

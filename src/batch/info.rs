@@ -59,6 +59,8 @@ struct Info {
     json: Value,
     /// The estimated error of a film, or why there is none.
     error: Option<String>,
+    /// Why a picture that was a film is none any more.
+    note: Option<String>,
 }
 
 impl Info {
@@ -94,7 +96,7 @@ impl Info {
     fn new(kind: &str, path: &Path, recipe: &Recipe) -> Info {
         let settings = &recipe.settings;
         let empty = OPTIONAL.into_iter().map(|key| (key.to_owned(), Value::Null)).collect();
-        Info { json: Value::Object(empty), error: None }.with(json!({
+        Info { json: Value::Object(empty), error: None, note: None }.with(json!({
             "schema": SCHEMA,
             "kind": kind,
             "file": path.to_string_lossy(),
@@ -142,6 +144,9 @@ impl Info {
     fn with_film(self, path: &Path) -> anyhow::Result<Info> {
         let head = match checkpoint::read_head(path) {
             Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => return Ok(self),
+            Err(error @ CheckpointError::Resaved { .. }) => {
+                return Ok(Info { note: Some(error.to_string()), ..self });
+            }
             head => head?,
         };
         let (estimate, error) = match checkpoint::load(path) {
@@ -201,6 +206,7 @@ impl Info {
             ("backend", text("backend")),
             ("program", text("program")),
             ("command", text("command")),
+            ("note", self.note.clone()),
         ];
         let lines = lines.into_iter().filter_map(|(name, value)| Some((name, value?)));
         lines.map(|(name, value)| format!("{name:<8} {}\n", printable(&value))).collect()

@@ -27,7 +27,7 @@ use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{ShownPath, check_replaceable, check_writable, write_text};
+use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::Context;
 use picture::Picture;
@@ -59,12 +59,14 @@ fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<Exit
     if let (Some(path), [only]) = (&options.save_scene, options.renders.as_slice()) {
         write_text(path, &file::to_toml(&only.recipe)).map_err(Failure::run)?;
     }
+    let has_stdout = options.renders.iter().any(|render| render.out == Path::new(STANDARD));
+    let beside = if has_stdout { Some(&JsonTarget::StandardOutput) } else { options.json.as_ref() };
     let mut summaries = Vec::new();
     let (mut failure, mut printed) = (None, Ok(()));
     for picture in pictures {
         let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
         // Render the pictures even if the figures cannot be printed.
-        printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
+        printed = printed.and(print_beside(beside, &format!("{summary}\n")));
         summaries.push(summary.json());
         failure = outcome.err();
         if failure.is_some() || interrupt.is_set() {
@@ -111,7 +113,8 @@ fn ended(
 /// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
 pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
     write_text(path, &file::to_toml(recipe)).map_err(Failure::input)?;
-    print(&format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
+    let beside = (path == Path::new(STANDARD)).then_some(&JsonTarget::StandardOutput);
+    print_beside(beside, &format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 

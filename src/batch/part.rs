@@ -9,7 +9,7 @@ use crate::cli::{
     BatchOptions, FramesOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths,
 };
 use crate::film::CheckpointError;
-use crate::job::output::PpmForm;
+use crate::job::output::{OutputFormat, PpmForm};
 use crate::job::plan::{Frames, Part, Plan, Samples, Work};
 use crate::job::saved::{self, OpenError, SavedFilm};
 use crate::progressive::{self, EndReason, Phase, Status};
@@ -69,6 +69,7 @@ fn render_samples(
         stage: plan.stage(),
         plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
         out: path.clone(),
+        format: OutputFormat::Exr,
         checkpoint: Some(path.clone()),
         every: options.every,
         resume: Some(path.clone()),
@@ -113,7 +114,8 @@ fn summary_of_whole<'a>(render: &'a RenderOptions, found: &SavedFilm) -> Summary
         ..Status::default()
     };
     let samples = Some(film.samples().to_string());
-    Summary { render, samples, status, files: vec![render.out.clone()], writing: Duration::ZERO }
+    let files = vec![render.out.clone()];
+    Summary { render, samples, status, denoised: None, files, writing: Duration::ZERO }
 }
 
 /// The part's film, if there is one to continue. A damaged one is moved aside.
@@ -134,7 +136,8 @@ fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Fail
         Err(OpenError::Film(
             damaged @ (CheckpointError::Damaged { .. }
             | CheckpointError::NotExr { .. }
-            | CheckpointError::NotFilm { .. }),
+            | CheckpointError::NotFilm { .. }
+            | CheckpointError::Resaved { .. }),
         )) => put_aside(path, &damaged).map(|()| None).map_err(Failure::Input),
         Err(OpenError::OtherPicture { path, difference }) => Err(Failure::Input(anyhow!(
             "{} is the film of another picture: {difference}; {REMEDY}",

@@ -9,6 +9,7 @@ use crate::cli::{BatchOptions, RenderOptions};
 use crate::film::Film;
 use crate::job::saved::SavedFilm;
 use crate::progressive::{Phase, Status};
+use crate::system::clock::Instant;
 use crate::system::failure::Failure;
 use crate::system::files::ShownPath;
 use crate::system::interrupt::Interrupt;
@@ -16,7 +17,6 @@ use crate::system::journal;
 use anyhow::anyhow;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// A picture to render, whose films are locked.
 pub(super) struct Picture<'a> {
@@ -99,7 +99,8 @@ impl<'a> Picture<'a> {
         }
         let outcome = outcome(render, &status, film.as_ref(), &written, kept);
         let samples = film.map(|film| film.samples().to_string());
-        (Summary { render, samples, status, files: written.files, writing: begin.elapsed() }, outcome)
+        let (denoised, writing) = (written.denoised, begin.elapsed());
+        (Summary { render, samples, status, denoised, files: written.files, writing }, outcome)
     }
 }
 

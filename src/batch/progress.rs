@@ -25,13 +25,14 @@ fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
     if status.phase == Phase::Preparing {
         return "preparing the scene".to_owned();
     }
-    let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
-    let error = status.error.map_or_else(String::new, |e| format!(", error {:.2e}", e.rmse));
+    // On a narrow terminal, the last parts are left out.
+    let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
+    let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
     format!(
-        "tracing: {} spp, {:.1} Mpaths/s, {}{left}{error}",
+        "{error}{} spp, {left}{}, {:.1} Mpaths/s",
         status.samples_per_pixel,
-        status.paths_per_second() / 1e6,
         seconds(elapsed.as_secs_f64()),
+        status.paths_per_second() / 1e6,
     )
 }
 

@@ -1,6 +1,7 @@
 //! The final figures of a picture, as text and as JSON.
 
 use crate::cli::RenderOptions;
+use crate::denoise::DenoisedError;
 use crate::progressive::describe::{counted, seconds};
 use crate::progressive::{Contribution, Phase, Status};
 use crate::system::console::printable;
@@ -36,6 +37,8 @@ pub(super) struct Summary<'a> {
     /// The samples in the film.
     pub samples: Option<String>,
     pub status: Status,
+    /// The error of the denoised picture.
+    pub denoised: Option<DenoisedError>,
     pub files: Vec<PathBuf>,
     /// Time spent writing the files.
     pub writing: Duration,
@@ -95,6 +98,8 @@ impl Summary<'_> {
             "rmse_estimate": error.map(|error| error.rmse),
             "rmse_deviation": error.map(|error| error.rmse_deviation),
             "rel_mse_estimate": error.map(|error| error.rel_mse),
+            "denoised_rmse_estimate": self.denoised.map(|error| error.rmse()),
+            "denoised_rmse_deviation": self.denoised.map(|error| error.rmse_deviation()),
             "rejected_samples": status.rejected_samples,
             "ended_by": self.ended_by().0,
             "backends": status.contributions,
@@ -162,11 +167,12 @@ impl fmt::Display for Summary<'_> {
             Some(error) => format!("{} (estimated from the two halves), {rejected}", error.words()),
             None => format!("not estimated, {rejected}"),
         };
+        let denoised = self.denoised.map(|error| ("denoised", error.words()));
         let files = self.files.iter().map(ShownPath::shown).collect::<Vec<_>>().join(", ");
         let files = if files.is_empty() { "none".to_owned() } else { files };
-        let figures =
-            [("samples", samples), ("time", time), ("speed", speed), ("error", error), ("files", files)];
+        let figures = [("samples", samples), ("time", time), ("speed", speed), ("error", error)];
         let lines = std::iter::once(("scene", scene)).chain(self.backend_lines()).chain(figures);
+        let lines = lines.chain(denoised).chain([("files", files)]);
         lines.into_iter().try_for_each(|(name, value)| writeln!(f, "{name:<8} {value}"))
     }
 }
@@ -199,7 +205,14 @@ mod tests {
         };
         let samples = Some("0..8".to_owned());
         let files = vec![PathBuf::from("a.png"), PathBuf::from("b.exr")];
-        let summary = Summary { render: &render, samples, status, files, writing: Duration::from_secs(1) };
+        let summary = Summary {
+            render: &render,
+            samples,
+            status,
+            denoised: None,
+            files,
+            writing: Duration::from_secs(1),
+        };
         let text = summary.to_string();
         for words in [
             "scene    three-spheres, 4x3, depth 24, sobol, seed 7\n",

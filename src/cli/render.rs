@@ -12,9 +12,10 @@ use crate::job::render::RenderJob;
 use crate::job::saved;
 use crate::progressive::{Plan, Stop};
 use crate::stages::Stage;
+use crate::system::files::{STANDARD, ShownPath};
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
@@ -71,10 +72,17 @@ pub(super) struct StopFlags {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub(super) struct FileFlags {
-    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory; with
-    /// --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
+    /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --stage all, the
+    /// directory; with --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
+    /// The format of --out, if its name does not tell it
+    #[arg(long, value_enum, requires = "out", conflicts_with = "AnimationFlags")]
+    format: Option<OutputFormat>,
+    /// Write the denoised picture, with an estimate of its error; the film of a .exr gets it as a layer and stays as it
+    /// is; --noise-target is then for the denoised picture
+    #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
+    denoise: bool,
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
     #[arg(long, value_enum, requires = "batch", conflicts_with = "AnimationFlags")]
     ppm: Option<PpmForm>,
@@ -164,6 +172,7 @@ pub struct RenderOptions {
     pub plan: Plan,
     /// File of the picture.
     pub out: PathBuf,
+    pub format: OutputFormat,
     /// File of the film, if it is kept.
     pub checkpoint: Option<PathBuf>,
     /// Interval at which the film is written.
@@ -249,7 +258,8 @@ fn batch(flags: RenderFlags, line: &Line) -> Result<Request> {
         let of_stage = |stage: &'static Stage| {
             let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
             let chosen = sources::changed(chosen, picture, samples)?;
-            render(chosen, &flags, directory.join(format!("{}.png", stage.id)), line)
+            let ending = files.format.unwrap_or(OutputFormat::Png).ending();
+            render(chosen, &flags, directory.join(format!("{}{ending}", stage.id)), line)
         };
         (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>>>()?, Some(directory))
     } else {
@@ -276,12 +286,29 @@ fn render(
     out: PathBuf,
     line: &Line,
 ) -> Result<RenderOptions> {
-    let (files, format) = (&flags.files, OutputFormat::from_path(&out)?);
+    let (files, named) = (&flags.files, OutputFormat::from_path(&out));
+    let format = match (files.format, named) {
+        (Some(format), Ok(named)) if format != named => bail!(
+            "--format {} contradicts the name {}; leave one of them out",
+            &format.ending()[1..],
+            out.shown()
+        ),
+        (Some(format), _) => format,
+        (None, named) => named?,
+    };
+    let to_stdout = |path: &Path| path == Path::new(STANDARD);
+    ensure!(
+        !to_stdout(&out) || files.json != Some(JsonTarget::StandardOutput),
+        "--out - and --json - would both write to standard output; write one of them to a file"
+    );
     if files.ppm.is_some() && format != OutputFormat::P6 {
-        bail!("--ppm needs --out FILE.ppm: it is about how a PPM holds its numbers");
+        bail!("--ppm needs --out FILE.ppm or --format ppm: it is about how a PPM holds its numbers");
     }
     if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
         bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
+    }
+    if files.denoise && !job.settings().estimate_error {
+        bail!("--denoise needs --estimate-error on: the filter compares the film's two halves");
     }
     Ok(RenderOptions {
         plan: plan(flags, &chosen.recipe),
@@ -289,6 +316,7 @@ fn render(
         job,
         stage: chosen.stage,
         out,
+        format,
         checkpoint: files.checkpoint.clone(),
         every: files.every,
         resume: files.resume.clone(),
@@ -317,7 +345,7 @@ fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    let stop = Stop { samples, seconds, noise };
+    let stop = Stop { samples, seconds, noise, is_denoised: flags.files.denoise };
     Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 

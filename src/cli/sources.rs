@@ -6,6 +6,7 @@ use crate::job::recipe::{Recipe, file};
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
 use crate::job::saved::Saved;
 use crate::stages::Stage;
+use crate::system::files::STANDARD;
 use anyhow::Result;
 use clap::Args;
 use clap::builder::BoolishValueParser;
@@ -91,10 +92,10 @@ pub(super) fn scene(name: &str) -> Result<Recipe> {
     }
 }
 
-/// The scene file that `--scene` names, if it is one: the name has an extension or a directory.
+/// The scene file that `--scene` names, if it is one: standard input, or a name with an extension or a directory.
 pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
     let path = Path::new(scene?);
-    (path.extension().is_some() || path.components().count() > 1).then_some(path)
+    (scene == Some(STANDARD) || path.extension().is_some() || path.components().count() > 1).then_some(path)
 }
 
 /// Reduces the picture to at most `width` pixels across, keeping its shape, unless its size was given.

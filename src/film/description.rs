@@ -25,6 +25,8 @@ pub mod key {
     pub const FRAME: &str = "Frame";
     pub const COMMAND: &str = "Command";
     pub const BACKEND: &str = "Backend";
+    /// That the picture is denoised, with its estimated error.
+    pub const DENOISED: &str = "Denoised";
 }
 
 /// Longest key, bytes: PNG's limit.

@@ -30,14 +30,19 @@ impl LockedFilm {
         self.held = samples.clone();
     }
 
-    /// Replaces the file with `film`. If the file already holds all of the film's samples and more, writes nothing and
+    /// Replaces the file with `film`, with a denoised picture of it as a layer. If the file already holds all of the film's samples and more, writes nothing and
     /// returns a note for the user.
     ///
     /// # Errors
     /// [`WriteError`], also if the film and the file each have samples that the other lacks. The file is unchanged.
-    pub fn save(&mut self, film: &Film, description: &Description) -> Result<Option<String>, WriteError> {
+    pub fn save(
+        &mut self,
+        film: &Film,
+        denoised: Option<&Film>,
+        description: &Description,
+    ) -> Result<Option<String>, WriteError> {
         if film.samples().contains(&self.held) {
-            checkpoint::save(&self.path, film, description)?;
+            checkpoint::save_with(&self.path, film, denoised, description)?;
             self.held = film.samples().clone();
             return Ok(None);
         }
@@ -71,7 +76,7 @@ mod tests {
         let path = directory.path().join("g.exr");
         let mut run = LockedFilm::new(&path).unwrap();
         for samples in [0..2, 0..4] {
-            assert_eq!(run.save(&film(&[samples]), &Description::new("r")).unwrap(), None);
+            assert_eq!(run.save(&film(&[samples]), None, &Description::new("r")).unwrap(), None);
             let message = LockedFilm::new(&path).unwrap_err().to_string();
             assert!(
                 message.contains("g.exr is locked") && message.contains("or name another file"),
@@ -80,7 +85,7 @@ mod tests {
         }
         drop(run);
         let mut next = LockedFilm::new(&path).unwrap();
-        next.save(&film(&[0..2]), &Description::new("r")).unwrap();
+        next.save(&film(&[0..2]), None, &Description::new("r")).unwrap();
         assert!(checkpoint::load(&path).unwrap().film == film(&[0..2]), "nobody said what must not be lost");
         drop(next);
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1, "the film alone");
@@ -93,7 +98,7 @@ mod tests {
         checkpoint::save(&path, &film(&[0..4]), &Description::new("r")).unwrap();
         let mut run = LockedFilm::new(&path).unwrap();
         run.holds(film(&[0..4]).samples());
-        let mut save = |samples: &[Range<u64>]| run.save(&film(samples), &Description::new("r"));
+        let mut save = |samples: &[Range<u64>]| run.save(&film(samples), None, &Description::new("r"));
         let held = || checkpoint::load(&path).unwrap().film.samples().to_string();
         let note = save(&[0..2]).unwrap().unwrap();
         assert!(note.contains("g.exr holds the samples 0..4") && note.contains("unchanged"), "{note}");

@@ -88,6 +88,15 @@ impl Film {
         Ok(copy)
     }
 
+    /// A black film of one half that counts the same samples, for a picture made from this film.
+    ///
+    /// # Errors
+    /// [`FilmError::Memory`], before any memory is allocated.
+    pub fn try_blank(&self) -> Result<Self, FilmError> {
+        let blank = Film::try_new(self.width, self.height, 1)?;
+        Ok(Film { samples: self.samples.clone(), ..blank })
+    }
+
     /// Assembles a film from parts that were read from a file.
     ///
     /// # Errors

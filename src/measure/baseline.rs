@@ -146,7 +146,7 @@ impl Renderer for Baseline {
         self.prepare(job, cancel)?;
         let stats = self.run(job, &range, cancel)?;
         // The encoding applies only to integers; a PFM holds floats.
-        let picture = read_picture(&self.file("picture.pfm"), Encoding::Srgb).map_err(failed)?;
+        let picture = read_picture(&self.file("picture.pfm"), None).map_err(failed)?.linear(Encoding::Srgb);
         let scale = (range.end - range.start) as f64 * FIXED_POINT_SCALE;
         film.record(range, 0)?;
         for (sum, mean) in film.halves_mut()[0].iter_mut().zip(picture.pixels) {

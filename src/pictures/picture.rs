@@ -1,7 +1,8 @@
 //! A picture in linear radiance, from a film, any program's file, or a backend.
 
+use crate::film::checkpoint::DENOISED_LAYER;
 use crate::film::{Film, key};
-use crate::job::output::{Encoding, read_picture};
+use crate::job::output::{Encoding, Linear, Values, read_picture};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
 use crate::job::saved::{OpenError, Saved};
@@ -18,23 +19,31 @@ pub struct Picture {
     pub about: String,
     pub width: u32,
     pub height: u32,
-    /// Linear RGB, row by row from the top. With `steps`, NaN stands for an integer format's largest value or anything
-    /// above it.
+    /// Linear RGB, row by row from the top. With a finite limit, NaN stands for it or anything above it.
     pub pixels: Vec<[f64; 3]>,
     /// Largest quantisation error of each channel, either way; `None` if the format has none.
     pub steps: Option<Vec<[f64; 3]>>,
-    /// The format's limit, at and above which a channel is NaN; infinite for floats.
+    /// The limit of an integer format, at and above which a channel is NaN; infinite for floats.
     pub limit: f64,
+    /// What reading the file left out or assumed.
+    pub notes: Vec<String>,
     pub film: Option<Arc<Film>>,
     /// The film's job.
     pub job: Option<RenderJob>,
 }
 
 impl Picture {
-    /// Reads a file. `encoding` applies to integer pictures without a description.
+    /// Reads a file, or a layer of one (`FILE:LAYER`). `encoding` applies to integer pictures without a description.
     pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
         let name = path.display().to_string();
-        let saved = match Saved::read(path) {
+        let (path, layer) = match name.rsplit_once(':') {
+            Some((file, layer)) if !path.exists() && Path::new(file).exists() => {
+                (Path::new(file), Some(layer))
+            }
+            _ => (path, None),
+        };
+        // A film's layers are pictures.
+        let saved = match if layer.is_some() { Saved::describe(path) } else { Saved::read(path) } {
             Ok(saved) => Some(saved),
             // Most pictures have no description. Reading the picture below reports its own errors.
             Err(OpenError::Picture(_)) => None,
@@ -44,6 +53,9 @@ impl Picture {
         let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
         let samples = saved.as_ref().and_then(|saved| saved.description.get(key::SAMPLES));
         let samples = samples.map_or_else(String::new, |samples| format!(", {samples} samples"));
+        let denoised =
+            saved.as_ref().and_then(|saved| saved.description.get(key::DENOISED)).map(str::to_owned);
+        let denoised = denoised.or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         if let Some(film) = saved.and_then(|saved| saved.film) {
             check_memory(film.width(), film.height(), 0)?;
             let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
@@ -51,16 +63,28 @@ impl Picture {
             return Ok(Picture { job, ..Picture::of_film(name, about, film) });
         }
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
-        let read = read_picture(path, encoding)?;
-        let kind = if read.steps.is_some() { "integers" } else { "floats" };
+        let read = read_picture(path, layer)?;
+        let kind = match &read.values {
+            Values::Integers { .. } => "integers",
+            Values::Floats { halves, .. } if halves.contains(&true) => "16-bit floats",
+            Values::Floats { .. } => "floats",
+        };
+        let Linear { pixels, steps, limit } = read.linear(encoding);
+        let damages = read.damages.into_iter().map(|damage| damage.title);
+        let bias = denoised.as_ref().map(|error| {
+            let error = if error.is_empty() { String::new() } else { format!(", estimated as {error}") };
+            format!("it is denoised: besides noise it has an error of its own{error}")
+        });
+        let what = if denoised.is_some() { "denoised picture" } else { "picture" };
         Ok(Picture {
-            about: format!("picture, {}x{}, {kind}{samples}", read.width, read.height),
+            about: format!("{what}, {}x{}, {kind}{samples}", read.width, read.height),
             name,
             width: read.width,
             height: read.height,
-            pixels: read.pixels,
-            steps: read.steps,
-            limit: read.limit,
+            pixels,
+            steps,
+            limit,
+            notes: damages.chain(read.notes).chain(bias).collect(),
             film: None,
             job: None,
         })
@@ -71,7 +95,7 @@ impl Picture {
         let (width, height) = (film.width(), film.height());
         let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
         let (limit, film) = (f64::INFINITY, Some(film));
-        Picture { name, about, width, height, pixels, steps: None, limit, film, job: None }
+        Picture { name, about, width, height, pixels, steps: None, limit, notes: Vec::new(), film, job: None }
     }
 
     /// The picture of a film rendered by this program. Fails if a comparison of this size does not fit into memory.
@@ -84,7 +108,7 @@ impl Picture {
     /// A channel's value; `None` if it is at or above an integer format's limit.
     pub(super) fn value(&self, pixel: usize, channel: usize) -> Option<f64> {
         let value = self.pixels[pixel][channel];
-        (self.steps.is_none() || !value.is_nan()).then_some(value)
+        (self.limit.is_infinite() || !value.is_nan()).then_some(value)
     }
 }
 

@@ -17,6 +17,8 @@ pub struct Stop {
     /// Target RMSE in linear radiance, as estimated from the halves: see [`crate::film::Film::meets`]. Needs a film with
     /// two halves.
     pub noise: Option<f64>,
+    /// Whether the picture is denoised. The target is then for [`crate::denoise::DenoisedError::upper_rmse`].
+    pub is_denoised: bool,
 }
 
 impl Stop {

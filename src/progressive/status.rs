@@ -1,6 +1,7 @@
 //! The status of a progressive render.
 
 use super::EndReason;
+use crate::denoise::DenoisedError;
 use crate::film::{ErrorEstimate, Film};
 use crate::job::render::{BackendInfo, Stats};
 use serde::Serialize;
@@ -82,6 +83,8 @@ pub struct Status {
     pub elapsed: Duration,
     /// The latest estimate of the film's error; it can be a few passes old.
     pub error: Option<ErrorEstimate>,
+    /// The error of the denoised picture, as old as `error`, if the plan asks for it.
+    pub denoised: Option<DenoisedError>,
     /// Why the estimate is doubtful.
     pub doubt: Option<String>,
     /// The error at powers of two of samples per pixel, each at the end of the first pass that reaches it.

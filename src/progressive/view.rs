@@ -1,10 +1,10 @@
 //! What to show of a film: the picture itself, or a heat map of one of its properties.
 
+use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::job::render::TileOccupancy;
 use crate::numbers::heat::HeatScale;
 use crate::stages::Transfer;
-use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 /// What a [`super::Picture`] shows.
@@ -23,6 +23,9 @@ pub enum View {
     Difference(Arc<ReferenceMeans>),
     /// How full the packets were, per tile; dark where unknown.
     Occupancy,
+    /// The denoised picture in another view, in which [`View::StandardError`] is the error of the denoised picture. Another
+    /// film is shown as it is.
+    Denoised(Arc<Denoised>, Box<View>),
 }
 
 /// A picture to compare with, linear RGB.
@@ -32,48 +35,18 @@ pub struct ReferenceMeans {
     pub height: u32,
     /// Linear RGB, row by row from the top.
     pub means: Vec<[f32; 3]>,
-    /// The film's identity, if it is known.
-    pub identity: Option<FilmIdentity>,
 }
 
 impl ReferenceMeans {
     /// A reference with the film's current means.
     pub fn of(film: &Film) -> Self {
-        ReferenceMeans { width: film.width(), height: film.height(), means: film.means(), identity: None }
+        ReferenceMeans { width: film.width(), height: film.height(), means: film.means() }
     }
 
     /// The mean of a pixel, column and row from the upper left; linear RGB.
     pub fn mean(&self, [x, y]: [u32; 2]) -> Option<[f64; 3]> {
         let index = (x < self.width).then_some(y as usize * self.width as usize + x as usize)?;
         self.means.get(index).map(|mean| mean.map(f64::from))
-    }
-}
-
-/// Distinguishes films: those with the same identity have the same samples and, but for a chance of 2^-64, the same
-/// sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FilmIdentity {
-    samples: u64,
-    sums: u64,
-}
-
-impl FilmIdentity {
-    /// The identity of a film, from all its sums.
-    pub fn of(film: &Film) -> Self {
-        let mut hasher = DefaultHasher::new();
-        for half in film.halves() {
-            for sum in half {
-                sum.0.hash(&mut hasher);
-            }
-        }
-        (film.width(), film.height(), film.rejected()).hash(&mut hasher);
-        film.samples().iter().for_each(|range| range.hash(&mut hasher));
-        FilmIdentity { samples: film.sample_count(), sums: hasher.finish() }
-    }
-
-    /// Whether this is the identity of `film`. Its sums are read only if it has as many samples.
-    pub fn is_of(&self, film: &Film) -> bool {
-        self.samples == film.sample_count() && *self == FilmIdentity::of(film)
     }
 }
 
@@ -98,6 +71,7 @@ impl View {
             View::StandardError => Some(HeatScale::ERROR),
             View::Difference(_) => Some(HeatScale::DIFFERENCE),
             View::Occupancy => Some(HeatScale::OCCUPANCY),
+            View::Denoised(_, view) => view.scale(),
         }
     }
 
@@ -105,6 +79,9 @@ impl View {
     pub fn is_same(&self, other: &View) -> bool {
         match (self, other) {
             (View::Difference(mine), View::Difference(theirs)) => Arc::ptr_eq(mine, theirs),
+            (View::Denoised(mine, view), View::Denoised(theirs, other)) => {
+                Arc::ptr_eq(mine, theirs) && view.is_same(other)
+            }
             (mine, theirs) => mine == theirs,
         }
     }
@@ -141,6 +118,13 @@ impl View {
                 rgb8
             }
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
+            View::Denoised(denoised, view) if !denoised.is_of(film) => {
+                view.resolve(film, transfer, occupancy)
+            }
+            View::Denoised(denoised, view) if **view == View::StandardError => {
+                heat(&|pixel| f64::from(denoised.errors[pixel]))
+            }
+            View::Denoised(denoised, view) => view.resolve(&denoised.film, transfer, occupancy),
         }
     }
 }
@@ -166,21 +150,6 @@ mod tests {
         }
         film.record(0..2, 0).unwrap();
         film
-    }
-
-    #[test]
-    fn films_are_identical_or_not() {
-        let identity = FilmIdentity::of(&film(1, 3));
-        assert!(identity.is_of(&film(1, 3)) && !identity.is_of(&film(3, 1)));
-        let mut off_by_one = film(1, 3);
-        off_by_one.halves_mut()[1][0].0[2] += 1;
-        assert!(!identity.is_of(&off_by_one));
-        let mut longer = film(1, 3);
-        longer.record(2..4, 0).unwrap();
-        assert!(!identity.is_of(&longer), "the same sums of more samples");
-        let mut other = film(1, 3);
-        other.record(2..4, 1).unwrap();
-        assert!(!FilmIdentity::of(&longer).is_of(&other), "a rejected sample");
     }
 
     #[test]
@@ -257,7 +226,7 @@ mod tests {
     #[test]
     fn references_compare_by_address_and_check_bounds() {
         let means = (0_u8..6).map(|pixel| [f32::from(pixel), 0.5, 0.25]).collect();
-        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means, identity: None });
+        let reference = Arc::new(ReferenceMeans { width: 3, height: 2, means });
         assert_eq!([[2, 1], [1, 1]].map(|at| reference.mean(at).unwrap()[0]), [5.0, 4.0]);
         assert_eq!([[3, 0], [0, 2]].map(|at| reference.mean(at)), [None; 2]);
         let copy = View::Difference(Arc::new(ReferenceMeans::clone(&reference)));

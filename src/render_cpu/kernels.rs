@@ -1,7 +1,7 @@
 //! The path loop at every level and lane count, and the choice among the variants.
 //!
-//! Each variant costs compile time, so there are few. At a level's native lane count and with one lane, the loop is
-//! specialised for what scenes commonly need. Other lane counts and the reference have only the general variant. All
+//! Each variant costs compile time, so there are few. At a level's native lane count (at both of NEON) and with one lane,
+//! the loop is specialised for what scenes commonly need. Other lane counts and the reference have only the general variant. All
 //! variants render the same bits; tests check this.
 
 use super::Isa;
@@ -28,8 +28,9 @@ const GENERAL: u32 = parts::ALL;
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
         _ if lanes == 1 => &[GLASS],
-        (Isa::Sse42 | Isa::Neon, true) => &[GLASS],
-        (Isa::Avx2 | Isa::Avx512, true) => &[OPAQUE, GLASS, FINISHED],
+        (Isa::Sse42, true) => &[GLASS],
+        // Which of NEON's counts is faster depends on the processor.
+        (Isa::Avx2 | Isa::Avx512, true) | (Isa::Neon, _) => &[OPAQUE, GLASS, FINISHED],
         _ => &[],
     };
     variants.iter().copied().find(|variant| within(needed, *variant)).unwrap_or(GENERAL)
@@ -90,8 +91,13 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             match lanes {
                 1 if offered == GLASS => Some(scalar::<_, true, GLASS>(simd)),
                 1 => Some(scalar::<_, true, GENERAL>(simd)),
+                4 if offered == OPAQUE => Some(four::<_, OPAQUE>(simd)),
                 4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
+                4 if offered == FINISHED => Some(four::<_, FINISHED>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
+                8 if offered == OPAQUE => Some(eight::<_, OPAQUE>(simd)),
+                8 if offered == GLASS => Some(eight::<_, GLASS>(simd)),
+                8 if offered == FINISHED => Some(eight::<_, FINISHED>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
                 _ => None,
             }
@@ -136,6 +142,7 @@ fn eight<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
+#[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only x86-64 has 16 lanes"))]
 fn sixteen<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |prepared, work| {
         simd.vectorize(
@@ -156,7 +163,8 @@ mod tests {
             (Isa::Portable, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
             (Isa::Sse42, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
             (Isa::Sse42, 4, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
-            (Isa::Neon, 4, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Neon, 4, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
+            (Isa::Neon, 8, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
             (Isa::Sse42, 8, [GENERAL; 5]),
             (Isa::Avx2, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
             (Isa::Avx2, 4, [GENERAL; 5]),

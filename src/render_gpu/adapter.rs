@@ -93,6 +93,16 @@ impl AdapterInfo {
         !self.is_software && self.lacks.is_none()
     }
 
+    /// What else can be done if this adapter's kernels cannot be compiled.
+    pub(super) fn compiler_remedy(&self) -> &'static str {
+        if self.backend == "DX12" {
+            "Direct3D compiles by FXC unless dxcompiler.dll lies beside the program: put it there, install the graphics \
+             card's Vulkan driver, or render on the CPU"
+        } else {
+            "choose another adapter, or render on the CPU"
+        }
+    }
+
     /// The sort key for adapters: the smallest comes first.
     fn rank(&self) -> (bool, bool, u8, u8) {
         let kind = match self.kind {
@@ -101,7 +111,13 @@ impl AdapterInfo {
             "virtual GPU" => 2,
             _ => 3,
         };
-        (self.lacks.is_some(), self.is_software, kind, u8::from(self.backend == "GL"))
+        // Vulkan's drivers compile kernels in a second; Direct3D's FXC can take minutes.
+        let backend = match self.backend.as_str() {
+            "GL" => 2,
+            "DX12" => 1,
+            _ => 0,
+        };
+        (self.lacks.is_some(), self.is_software, kind, backend)
     }
 }
 
@@ -164,10 +180,10 @@ pub fn adapters() -> Vec<AdapterInfo> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn adapter(kind: &'static str, backend: &str, is_software: bool, lacks: Option<&str>) -> AdapterInfo {
+    pub fn adapter(kind: &'static str, backend: &str, is_software: bool, lacks: Option<&str>) -> AdapterInfo {
         AdapterInfo {
             name: "an adapter".to_owned(),
             kind,
@@ -186,6 +202,7 @@ mod tests {
     fn the_fastest_adapter_comes_first() {
         let ordered = [
             adapter("discrete GPU", "Vulkan", false, None),
+            adapter("discrete GPU", "DX12", false, None),
             adapter("discrete GPU", "GL", false, None),
             adapter("integrated GPU", "Vulkan", false, None),
             adapter("virtual GPU", "Vulkan", false, None),

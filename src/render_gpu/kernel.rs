@@ -1,6 +1,7 @@
 //! Kernels: a shader specialised to a job by pipeline overrides. Each set of features is compiled once, on a background
 //! thread, and stays in the cache.
 
+use super::adapter::AdapterInfo;
 use super::device::Gpu;
 use super::failed;
 use super::shader_source::{EntryPoint, source};
@@ -14,6 +15,9 @@ use std::time::{Duration, Instant};
 
 /// How often a wait for a kernel checks whether the kernel is still wanted.
 const LOOK: Duration = Duration::from_millis(2);
+
+/// How long a driver may compile. The slowest known one that finishes takes some seconds.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A compiled kernel.
 #[derive(Clone, Debug)]
@@ -30,7 +34,7 @@ type Key = (EntryPoint, Features, u32);
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
 enum Slot {
-    Compiling(Receiver<Result<Kernel, String>>),
+    Compiling(Receiver<Result<Kernel, String>>, Instant),
     Done(Result<Kernel, String>),
 }
 
@@ -65,19 +69,29 @@ impl Kernels {
         probe: u32,
         cancel: &AtomicBool,
     ) -> Result<Kernel, RenderError> {
-        let slot = self.slot(gpu, (entry_point, *features, probe));
+        self.slot(gpu, (entry_point, *features, probe)).wait(&gpu.adapter, cancel)
+    }
+}
+
+impl Slot {
+    fn wait(&mut self, adapter: &AdapterInfo, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
         loop {
-            match slot {
-                Slot::Done(kernel) => {
-                    return kernel.clone().map_err(failed);
-                }
-                Slot::Compiling(kernel) => match kernel.recv_timeout(LOOK) {
-                    Ok(kernel) => *slot = Slot::Done(kernel),
+            match self {
+                Slot::Done(kernel) => return kernel.clone().map_err(failed),
+                Slot::Compiling(kernel, begin) => match kernel.recv_timeout(LOOK) {
+                    Ok(kernel) => *self = Slot::Done(kernel),
                     Err(RecvTimeoutError::Disconnected) => {
-                        *slot = Slot::Done(Err("the kernel's compiler ended unexpectedly".to_owned()));
+                        *self = Slot::Done(Err("the kernel's compiler ended unexpectedly".to_owned()));
                     }
                     Err(RecvTimeoutError::Timeout) if cancel.load(Ordering::Relaxed) => {
                         return Err(RenderError::Cancelled);
+                    }
+                    Err(RecvTimeoutError::Timeout) if begin.elapsed() >= PATIENCE => {
+                        return Err(failed(format!(
+                            "{adapter} has been compiling the kernel for {:.0} s; {}",
+                            begin.elapsed().as_secs_f64(),
+                            adapter.compiler_remedy()
+                        )));
                     }
                     Err(RecvTimeoutError::Timeout) => {}
                 },
@@ -95,7 +109,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
         move || drop(sender.send(compiled(&gpu, key, &modules)))
     };
     match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {
-        Ok(_) => Slot::Compiling(kernel),
+        Ok(_) => Slot::Compiling(kernel, Instant::now()),
         Err(_) => Slot::Done(compiled(&gpu, key, &modules)),
     }
 }
@@ -133,6 +147,26 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
             },
             cache: None,
         })
-    })?;
+    });
+    let pipeline = pipeline.map_err(|reason| format!("{reason}; {}", gpu.adapter.compiler_remedy()))?;
     Ok(Kernel { pipeline, compile_time: start.elapsed() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::adapter::tests::adapter;
+    use super::*;
+
+    #[test]
+    fn a_driver_that_does_not_stop_compiling_is_given_up() {
+        let (_sender, kernel) = mpsc::channel();
+        let begin = Instant::now().checked_sub(PATIENCE).unwrap();
+        let mut slot = Slot::Compiling(kernel, begin);
+        let adapter = adapter("discrete GPU", "DX12", false, None);
+        assert!(matches!(slot.wait(&adapter, &AtomicBool::new(true)), Err(RenderError::Cancelled)));
+        let message = slot.wait(&adapter, &AtomicBool::new(false)).unwrap_err().to_string();
+        for part in ["compiling the kernel for 60 s", "dxcompiler.dll", "Vulkan", "CPU"] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first requests an orderly end. Another Ctrl-C ends the program
 //! at once, but never while files are being written. The exit code tells which signal it was. On Linux, a signal that
-//! was ignored at the start, such as SIGHUP under nohup, stays ignored.
+//! was ignored at the start, such as SIGHUP under nohup, stays ignored. On Windows they are the console's events.
 
 use crate::system::console;
 use crate::system::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
@@ -60,10 +60,31 @@ fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
     Ok(())
 }
 
-/// As on Unix, but the system does not say which signal it was.
-#[cfg(not(unix))]
+/// Closing the console counts as a hangup, and the end of the session as SIGTERM. After these the system waits some
+/// seconds, then ends the program.
+#[cfg(windows)]
 fn watch(answer: impl Fn(u8) + Send + 'static) -> Result<()> {
-    Ok(ctrlc::set_handler(move || answer(INTERRUPTED))?)
+    use std::task::Poll;
+    use tokio::signal::windows::{ctrl_break, ctrl_c, ctrl_close, ctrl_logoff, ctrl_shutdown};
+    let (mut by_key, mut by_break, mut close) = (ctrl_c()?, ctrl_break()?, ctrl_close()?);
+    let (mut log_off, mut shut_down) = (ctrl_logoff()?, ctrl_shutdown()?);
+    let listen = move || {
+        loop {
+            answer(pollster::block_on(std::future::poll_fn(|context| {
+                if by_key.poll_recv(context).is_ready() | by_break.poll_recv(context).is_ready() {
+                    Poll::Ready(INTERRUPTED)
+                } else if close.poll_recv(context).is_ready() {
+                    Poll::Ready(HUNG_UP)
+                } else if log_off.poll_recv(context).is_ready() | shut_down.poll_recv(context).is_ready() {
+                    Poll::Ready(TERMINATED)
+                } else {
+                    Poll::Pending
+                }
+            })));
+        }
+    };
+    std::thread::Builder::new().name("signals".to_owned()).spawn(listen)?;
+    Ok(())
 }
 
 /// The signals that the program ignores, as a bit mask with signal 1 lowest. Called before any is handled, it returns

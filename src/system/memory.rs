@@ -79,8 +79,20 @@ pub fn zeroed<T: bytemuck::Zeroable>(
 /// Available bytes: the least of what the system and the limits of the process's control groups allow. `None` if the
 /// system does not tell.
 pub fn free_bytes() -> Option<u64> {
-    let of_system = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text));
-    [of_system, free_of_groups()].into_iter().flatten().min()
+    let of_linux = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available(&text));
+    [of_linux, of_other_systems(), free_of_groups()].into_iter().flatten().min()
+}
+
+#[cfg(any(windows, target_vendor = "apple"))]
+fn of_other_systems() -> Option<u64> {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    Some(system.available_memory()).filter(|bytes| *bytes > 0)
+}
+
+#[cfg(not(any(windows, target_vendor = "apple")))]
+fn of_other_systems() -> Option<u64> {
+    None
 }
 
 /// The value of the line `MemAvailable:  2048 kB`, in bytes.

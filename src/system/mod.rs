@@ -1,5 +1,6 @@
 //! What every room stands on: files written whole or not at all, the log, signals, the memory check, the console.
 
+pub mod clock;
 pub mod console;
 pub mod failure;
 pub mod files;

@@ -7,19 +7,20 @@ numbers: system
 scene: system
 stages: system scene
 film: system stages
+denoise: system film
 job: system scene stages film
 kernel: scene stages film job
 prepared: scene stages film job kernel
 render_cpu: system stages film job kernel prepared
 render_gpu: stages film job kernel prepared
 backends: system scene stages film job kernel render_cpu render_gpu
-progressive: numbers scene stages film job backends
+progressive: system numbers scene stages film denoise job backends
 cli: system numbers scene stages film job render_cpu render_gpu backends progressive
-batch: system scene stages film job backends progressive cli
+batch: system scene stages film denoise job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
-measure: system numbers scene stages film job kernel prepared render_cpu render_gpu backends progressive cli pictures
+measure: system numbers scene stages film denoise job kernel prepared render_cpu render_gpu backends progressive cli pictures
 page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch measure
-app: system numbers scene stages film job render_cpu render_gpu backends progressive cli pictures measure page";
+app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli pictures measure page";
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
@@ -29,8 +30,8 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("egui_plot", &["app"]),
     ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
-    ("rayon", &["prepared", "render_cpu", "render_gpu", "backends", "pictures"]),
-    ("fearless_simd", &["render_cpu"]),
+    ("rayon", &["denoise", "measure", "prepared", "render_cpu", "render_gpu", "backends", "pictures"]),
+    ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
     ("image", &["numbers", "job", "pictures", "app"]),

@@ -160,13 +160,14 @@ impl Material for Dielectric {
         let reflectance = r0 + (1.0 - r0) * (1.0 - cos_theta).powf(5.0);
         let by_chance =
             !book.makes("schlick-missing") && !book.makes("always-refract") && reflectance > rng.double();
-        let dir = if cannot_refract || by_chance {
+        let dir = if (cannot_refract || by_chance) != book.makes("glass-swapped") {
             reflect(unit, rec.normal)
         } else {
             let perp = (unit + rec.normal * cos_theta) * ri;
             perp + rec.normal * -(1.0 - dot(perp, perp)).abs().sqrt()
         };
-        Some((Vec3(1.0, 1.0, 1.0), Ray { orig: rec.p, dir }))
+        let attenuation = if book.makes("glass-black") { 0.0 } else { 1.0 };
+        Some((Vec3(attenuation, attenuation, attenuation), Ray { orig: rec.p, dir }))
     }
 }
 
@@ -333,19 +334,27 @@ impl Book {
         let mut picture = Vec::new();
         for j in 0..height {
             for i in 0..width {
+                if self.makes("same-seed") {
+                    rng = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+                }
                 let mut sum = Vec3(0.0, 0.0, 0.0);
                 for _ in 0..samples {
                     let shift = if self.makes("half-pixel-down") { 0.0 } else { 0.5 };
                     let (x, y) =
                         if is_jittered { (rng.double() - shift, rng.double() - shift) } else { (0.0, 0.0) };
                     let pixel = pixel00 + delta_u * (f64::from(i) + x) + delta_v * (f64::from(j) + y);
-                    let orig = if self.defocus_angle <= 0.0 || self.makes("lens-centre") {
+                    let on_lens = if self.defocus_angle <= 0.0 || self.makes("lens-centre") {
                         self.look_from
                     } else {
                         let p = rng.in_unit_disk();
                         self.look_from + u * (p.0 * radius) + v * (p.1 * radius)
                     };
-                    sum = sum + self.ray_color(&Ray { orig, dir: pixel - orig }, self.max_depth, &mut rng);
+                    let ray = match self.mistake {
+                        "lens-origin" => Ray { orig: self.look_from, dir: pixel - on_lens },
+                        "lens-aim" => Ray { orig: on_lens, dir: pixel - self.look_from },
+                        _ => Ray { orig: on_lens, dir: pixel - on_lens },
+                    };
+                    sum = sum + self.ray_color(&ray, self.max_depth, &mut rng);
                 }
                 let mean = sum * (1.0 / f64::from(samples));
                 picture.push([mean.0, mean.1, mean.2].map(|x| self.byte(x, is_gamma)));
@@ -365,10 +374,15 @@ impl Book {
         let gamma = |x: f64| if x > 0.0 { x.sqrt() } else { 0.0 };
         let is_gamma = (is_gamma && !self.makes("no-gamma")) || self.makes("gamma-early");
         let mut x = if is_gamma { gamma(linear) } else { linear };
-        if self.makes("gamma-twice") {
-            x = gamma(x);
+        match self.mistake {
+            "gamma-twice" => x = gamma(x),
+            "gamma-2.2" => x = linear.max(0.0).powf(1.0 / 2.2),
+            "gamma-srgb" if linear <= 0.003_130_8 => x = 12.92 * linear,
+            "gamma-srgb" => x = 1.055 * linear.powf(1.0 / 2.4) - 0.055,
+            _ => {}
         }
         match self.mistake {
+            "wraps-to-0" => ((256.0 * x) as u32 % 256) as u8,
             "scale-255" => (255.0 * x) as u8,
             "truncated" => (x as u8) * 255,
             _ => (256.0 * x.clamp(0.0, 0.999)) as u8,

@@ -82,10 +82,10 @@ fn chapter_errors_name_line() {
 #[test]
 fn other_errors_name_file() {
     let texts = texts();
-    let extra = "\n[extra]\nterm = \"x\"\narea = \"rendering\"\ntext = \"x\"\n";
-    let glossary = "docs/companion/glossary.toml";
-    let stderr = refused(&texts, glossary, &|text| format!("{text}{extra}"));
-    assert!(stderr.contains(glossary) && stderr.contains("no chapter links the term \"extra\""), "{stderr}");
+    let path = "docs/companion/glossary.toml";
+    let added = "[extra]\nterm = \"x\"\narea = \"rendering\"\ntext = \"x\"";
+    let stderr = refused(&texts, path, &|text| format!("{text}\n{added}\n"));
+    assert!(stderr.contains(path) && stderr.contains("no chapter links the term \"extra\""), "{stderr}");
     let stderr = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
     assert!(stderr.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{stderr}");
     let stderr = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));

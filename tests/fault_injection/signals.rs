@@ -156,6 +156,28 @@ fn repeated_signal_counts_once() {
 }
 
 #[test]
+fn stopped_time_does_not_count() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let limit =
+        ["--time-limit", "3", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png", "--json", "-"];
+    let begin = Instant::now();
+    let mut child = batch(at, "off", &limit).spawn().unwrap();
+    until("the film is not written", || at.join("g.exr").exists());
+    signal(&child, "STOP");
+    sleep(Duration::from_secs(5));
+    signal(&child, "CONT");
+    assert!(wait(&mut child).success());
+    let all = begin.elapsed().as_secs_f64();
+    let mut json = String::new();
+    child.stdout.take().unwrap().read_to_string(&mut json).unwrap();
+    let seconds =
+        serde_json::from_str::<serde_json::Value>(&json).unwrap()["trace_seconds"].as_f64().unwrap();
+    // A second of the five may count.
+    assert!(all > 7.0 && seconds < 4.5, "{seconds} of {all}");
+}
+
+#[test]
 fn a_second_signal_ends_the_program_at_once() {
     // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];

@@ -182,11 +182,11 @@ fn film(input: &[u8]) -> usize {
 }
 
 fn picture(input: &[u8]) -> usize {
-    let encoding = Encoding::Book(Transfer::Gamma2);
     // A chunk is read completely before it is checked.
     let chunk = 16 << 20;
-    let Ok(picture) = decode_picture(Cursor::new(input), input.len() as u64, encoding) else { return chunk };
-    let count = picture.width as usize * picture.height as usize;
+    let Ok(read) = decode_picture(Cursor::new(input), input.len() as u64, None) else { return chunk };
+    let count = read.width as usize * read.height as usize;
+    let picture = read.linear(Encoding::Book(Transfer::Gamma2));
     assert_eq!(picture.pixels.len(), count);
     assert!(picture.steps.is_none_or(|steps| steps.len() == count));
     chunk + 100 * count

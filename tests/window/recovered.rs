@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use std::collections::HashMap;
 use std::path::Path;
 use std::time::Duration;
-use weekender::app::{Command, Device, Dock, Theme, Window};
+use weekender::app::{Command, Device, Dock, Show, Theme, Window};
 use weekender::cli::{self, Request, WindowOptions};
 use weekender::film::checkpoint;
 use weekender::progressive::Stop;
@@ -130,17 +130,20 @@ fn settings_are_remembered_and_those_of_another_version_ignored() {
     ] {
         send(&mut harness, command);
     }
+    send(&mut harness, Command::Show(Show::Luminance));
     harness.state_mut().remembered_mut().threads = Some(1);
     let kept = harness.state_mut().remembered_mut().clone();
     harness.state_mut().save(&mut stored);
     assert_eq!((kept.theme, kept.dock, kept.has_info), (Theme::Light, Some(Dock::Error), false));
     assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
+    assert_eq!(remembering("--device cpu", &stored).state().show(), Show::Luminance);
     let mut again = remembering("--stage metal", &stored);
+    assert_eq!(again.state().show(), Show::Picture, "a picture that was asked for is shown");
     assert_eq!(*again.state_mut().remembered_mut(), kept);
     let mut told = remembering("--stage metal --device cpu", &stored);
     assert_eq!(told.state_mut().remembered_mut().device, Device::Cpu, "flags override settings");
 
-    for (from, to) in [("version:1", "version:2"), ("version:1", "damaged")] {
+    for (from, to) in [("version:2", "version:1"), ("version:2", "damaged")] {
         let changed = stored.0.iter().map(|(key, value)| (key.clone(), value.replace(from, to)));
         let mut other = remembering("--stage metal", &Stored(changed.collect()));
         assert_eq!(other.state_mut().remembered_mut().theme, Theme::System, "{to}");

@@ -68,10 +68,15 @@ fn a_picture_of_another_program_is_checked() {
 fn the_code_of_a_stage_is_shown_and_copied() {
     let mut harness = open(SMALL);
     send(&mut harness, Command::Code);
-    assert!(harness.query_by_label_contains("fn reflectance(cosine: f32").is_some());
-    control(&harness, "CPU (Rust)").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label_contains("fn reflectance(cosine: f32").is_none());
+    for (language, code) in [
+        ("C", "static double reflectance("),
+        ("WGSL", "fn reflectance(cosine: f32"),
+        ("Rust", "fn reflectance<"),
+    ] {
+        control(&harness, language).click();
+        harness.run_steps(2);
+        assert!(harness.query_by_label_contains(code).is_some(), "{language}");
+    }
     harness.get_all_by_label("Copy").next().unwrap().click();
     harness.step();
     let is_code = |command: &egui::OutputCommand| matches!(command, egui::OutputCommand::CopyText(text) if text.contains("fn reflectance"));

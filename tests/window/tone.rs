@@ -4,7 +4,8 @@ use crate::common::{SMALL, control, open, save, send, until, until_seen};
 use eframe::egui::vec2;
 use egui_kittest::Harness;
 use weekender::app::{Command, Show, Window};
-use weekender::film::to_byte;
+use weekender::film::{key, to_byte};
+use weekender::job::output::read_description;
 use weekender::numbers::heat::HeatScale;
 use weekender::progressive::{Phase, luminance};
 
@@ -67,4 +68,24 @@ fn the_histogram_counts_what_is_brighter_than_white() {
         send(&mut harness, Command::Brighter);
     }
     until_seen(&mut harness, "lose detail");
+}
+
+#[test]
+fn a_denoised_picture_is_shown_measured_and_saved() {
+    let mut harness = finished();
+    let raw = harness.state().shown_pixel(AT);
+    send(&mut harness, Command::Denoise);
+    until(&mut harness, "the denoised picture", |window| window.shown_pixel(AT) != raw);
+    until_seen(&mut harness, "denoised: error");
+    let mean = mean(&mut harness);
+    let transfer = harness.state().shown_document().rules().transfer;
+    let seen = mean.map(|x| to_byte(x, transfer, AT[1] as usize, 18));
+    assert_eq!(harness.state().shown_pixel(AT), Some(seen), "the panel tells the denoised pixel");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("saved.png");
+    save(&mut harness, Command::Save, &path);
+    assert_eq!(image::open(&path).unwrap().to_rgb8().get_pixel(AT[0], AT[1]).0, seen);
+    assert!(read_description(&path).unwrap().get(key::DENOISED).is_some());
+    send(&mut harness, Command::Denoise);
+    until(&mut harness, "the picture with its noise", |window| window.shown_pixel(AT) == raw);
 }

@@ -1,6 +1,6 @@
 //! The dialog about the program.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::facts::Facts;
 use crate::app::model::device::adapter;
 use crate::app::widgets::{Header, fold, hint, tip};

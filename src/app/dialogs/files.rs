@@ -1,18 +1,21 @@
 //! Dialogs about files: saving, the system's own dialog, and a field for a path where the system has none.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::answers::Answers;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
-use crate::app::widgets::{About, Number, hint, primary};
+use crate::app::status::time;
+use crate::app::theme;
+use crate::app::widgets::{About, Number, hint, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
-use crate::system::files::home_directory;
+use crate::system::files::{home_directory, pictures_directory};
 use crate::system::memory;
-use eframe::egui::{self, Key, RichText, TextEdit, Ui};
+use eframe::egui::text::{CCursor, CCursorRange};
+use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf, is_separator};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
@@ -25,33 +28,17 @@ pub enum What {
 }
 
 impl What {
-    const ALL: [What; 4] = [
-        What::Picture(OutputFormat::Png),
-        What::Picture(OutputFormat::P6),
-        What::Picture(OutputFormat::Exr),
-        What::Scene,
+    /// All of them, with name, use and ending.
+    const ALL: [(What, &str, &str, &str); 5] = [
+        (What::Picture(OutputFormat::Png), "PNG picture", "To look at; remembers how it was made", "png"),
+        (What::Picture(OutputFormat::P6), "PPM picture (P6)", "The format of the book", "ppm"),
+        (What::Picture(OutputFormat::Pfm), "PFM picture", "Linear numbers for other programs", "pfm"),
+        (What::Picture(OutputFormat::Exr), "Film (EXR)", "All light and samples; can go on later", "exr"),
+        (What::Scene, "Scene (TOML)", "Text to edit; no picture in it", "toml"),
     ];
 
-    fn words(self) -> [&'static str; 2] {
-        match self {
-            What::Picture(OutputFormat::Png) => ["PNG picture", "To look at; remembers how it was made"],
-            What::Picture(OutputFormat::P6) => ["PPM picture (P6)", "The format of the book"],
-            What::Picture(OutputFormat::Exr) => ["Film (EXR)", "All light and samples; can go on later"],
-            What::Scene => ["Scene (TOML)", "Text to edit; no picture in it"],
-        }
-    }
-
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            What::Picture(OutputFormat::Png) => &["png"],
-            What::Picture(OutputFormat::P6) => &["ppm"],
-            What::Picture(OutputFormat::Exr) => &["exr"],
-            What::Scene => &["toml"],
-        }
-    }
-
     fn ending(self) -> &'static str {
-        self.endings()[0]
+        What::ALL.into_iter().find(|(what, ..)| *what == self).map_or("", |(_, _, _, ending)| ending)
     }
 }
 
@@ -86,13 +73,13 @@ impl Purpose {
         matches!(self, Purpose::Save(..) | Purpose::Place(_) | Purpose::SavePlot)
     }
 
-    fn endings(self) -> &'static [&'static str] {
+    fn endings(self) -> Vec<&'static str> {
         match self {
-            Purpose::Open => &["png", "ppm", "exr", "toml"],
-            Purpose::Check => &["png", "ppm"],
-            Purpose::ReferenceFilm => &["exr"],
-            Purpose::SavePlot => &["csv"],
-            Purpose::Save(what, _) | Purpose::Place(what) => what.endings(),
+            Purpose::Open => vec!["png", "ppm", "exr", "toml"],
+            Purpose::Check => vec!["png", "ppm"],
+            Purpose::ReferenceFilm => vec!["exr"],
+            Purpose::SavePlot => vec!["csv"],
+            Purpose::Save(what, _) | Purpose::Place(what) => vec![what.ending()],
         }
     }
 }
@@ -124,30 +111,24 @@ pub struct System {
     pub is_there: bool,
     /// Can be upgraded as long as the dialog is open.
     open: Weak<()>,
-    chosen: Answers<Chosen>,
-}
-
-/// What the user has chosen, if there was a dialog to choose in.
-pub struct Chosen {
-    pub purpose: Purpose,
-    pub from: PathBuf,
-    pub path: Option<PathBuf>,
+    /// What the dialog was for, where it began, and the path that was chosen, if there was a dialog to choose in.
+    chosen: Answers<(Purpose, PathBuf, Option<PathBuf>)>,
 }
 
 impl System {
     /// A dialog that closes sooner than this was never visible.
     const SEEN: Duration = Duration::from_millis(300);
 
-    pub fn chosen(&self) -> Option<Chosen> {
+    pub fn chosen(&self) -> Option<(Purpose, PathBuf, Option<PathBuf>)> {
         self.chosen.take()
     }
 
     /// Opens the dialog at a folder or a file, on a thread of its own, because it can block for any time.
     pub fn ask(&mut self, context: &egui::Context, purpose: Purpose, from: PathBuf) {
         let start = from.clone();
-        let answer = self.chosen.answer_or(context, move |_| Chosen { purpose, from: start, path: None });
+        let answer = self.chosen.answer_or(context, move |_| (purpose, start, None));
         if !self.is_there {
-            return answer.give(Chosen { purpose, from, path: None });
+            return answer.give((purpose, from, None));
         }
         if self.open.strong_count() > 0 {
             return answer.wake();
@@ -160,16 +141,17 @@ impl System {
                 Some(name) => (from.parent().unwrap_or(&from), name.to_string_lossy().into_owned()),
                 None => (from.as_path(), String::new()),
             };
+            let endings = purpose.endings();
             let dialog = rfd::FileDialog::new()
                 .set_title(purpose.title())
-                .add_filter(purpose.endings().join(", "), purpose.endings())
+                .add_filter(endings.join(", "), &endings)
                 .set_directory(folder);
             let path =
                 if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
             drop(token);
             match path {
                 None if begin.elapsed() >= System::SEEN => answer.wake(),
-                path => answer.give(Chosen { purpose, from, path }),
+                path => answer.give((purpose, from, path)),
             }
         };
         // Without a thread the answer is that there is no dialog.
@@ -182,77 +164,70 @@ pub struct PathField {
     purpose: Purpose,
     folder: PathBuf,
     text: String,
-    is_new: bool,
 }
 
 impl PathField {
     pub fn new(purpose: Purpose, from: PathBuf) -> Self {
         let text = if purpose.is_saving() { from.display().to_string() } else { String::new() };
-        let folder = if from.is_dir() { from } else { PathBuf::new() };
-        PathField { purpose, folder, text, is_new: true }
+        PathField { purpose, folder: if from.is_dir() { from } else { PathBuf::new() }, text }
     }
 
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Outcome {
         ui.heading(self.purpose.title());
-        ui.add_space(8.0);
         let field = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
-        let field = field.hint_text("File name; or drop the file on the window");
-        let response = named(ui.add(field), "File name");
-        if std::mem::take(&mut self.is_new) {
-            response.request_focus();
-        }
-        let path = (!self.text.trim().is_empty()).then(|| typed_path(&self.text, &self.folder));
-        let (path, refused) = match path {
-            Some(path) if self.purpose.is_saving() => {
-                let path = with_ending(path, self.purpose.endings()[0]);
-                let refused = missing_folder(&path);
-                (Some(path), refused)
-            }
-            Some(path) if path.is_file() => (Some(path), None),
-            Some(path) => (None, Some(format!("{} is not there", path.display()))),
-            None => (None, None),
-        };
-        note(ui, refused.as_deref(), path.as_deref().filter(|_| self.purpose.is_saving()));
-        let label = if self.purpose.is_saving() { "Save" } else { "Open" };
-        match buttons(ui, &response, label, path.is_some() && refused.is_none()) {
-            Some(true) => path.map_or(Outcome::Stay, |path| Outcome::Named(self.purpose, path)),
+        let field = ui.add(field.hint_text("File name; or drop the file on the window"));
+        named(&field, "File name");
+        focus(ui, &field, &self.text);
+        let is_saving = self.purpose.is_saving();
+        let path = typed_path(&self.text, &self.folder);
+        let path = if is_saving { with_ending(path, self.purpose.endings()[0]) } else { path };
+        let reason = if is_saving { missing_folder(&path) } else { None };
+        note(ui, reason.as_deref(), is_saving && path.exists());
+        let label = if is_saving { "Save" } else { "Open" };
+        let is_usable = !self.text.trim().is_empty() && reason.is_none();
+        match buttons(ui, &field, label, is_usable) {
+            Some(true) => Outcome::Named(self.purpose, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
     }
 }
 
-fn named(response: egui::Response, name: &str) -> egui::Response {
-    crate::app::widgets::named(&response, name);
-    response
-}
-
 fn missing_folder(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir())?;
-    Some(format!("The folder {} is not there: choose another", folder.display()))
+    let is_default = default_folder().as_deref() == Some(folder);
+    (!is_default).then(|| format!("The folder {} is not there: choose another", folder.display()))
 }
 
 /// Says why a path cannot be used, or that its file would be replaced.
-fn note(ui: &mut Ui, refused: Option<&str>, saved: Option<&Path>) {
-    let [bad, replaced] = [ui.visuals().error_fg_color, ui.visuals().warn_fg_color];
-    if let Some(reason) = refused {
-        ui.colored_label(bad, reason);
-    } else if saved.is_some_and(Path::exists) {
-        ui.colored_label(replaced, "A file of this name is there already.");
-    } else {
-        ui.label("");
+fn note(ui: &mut Ui, reason: Option<&str>, is_replaced: bool) {
+    let [bad, warn] = [ui.visuals().error_fg_color, ui.visuals().warn_fg_color];
+    match reason {
+        Some(reason) => ui.colored_label(bad, reason),
+        None if is_replaced => ui.colored_label(warn, "A file of this name is there already."),
+        None => ui.label(""),
+    };
+}
+
+/// Focuses a field of text, all of which is selected, until something else takes the focus.
+fn focus(ui: &Ui, field: &egui::Response, text: &str) {
+    if ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+        if let Some(mut state) = TextEdit::load_state(ui.ctx(), field.id) {
+            let end = CCursor::new(text.chars().count());
+            state.cursor.set_char_range(Some(CCursorRange::two(CCursor::default(), end)));
+            state.store(ui.ctx(), field.id);
+        }
     }
 }
 
 /// The buttons at the lower right. True for the main one, or Enter in the field; false for Cancel.
 fn buttons(ui: &mut Ui, field: &egui::Response, label: &str, is_usable: bool) -> Option<bool> {
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+    let is_enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.spacing_mut().interact_size.y = 32.0;
         let is_pressed = ui.add_enabled_ui(is_usable, |ui| primary(ui, label)).inner.clicked();
         let is_cancelled = ui.button("Cancel").clicked();
-        let is_enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        if is_enter && !is_usable {
-            field.request_focus();
-        }
         if is_pressed || is_enter && is_usable { Some(true) } else { is_cancelled.then_some(false) }
     })
     .inner
@@ -273,12 +248,11 @@ pub struct SaveBox {
     what: What,
     size: Size,
     other: [u32; 2],
-    is_new: bool,
 }
 
 impl SaveBox {
     pub fn new(name: &str, folder: PathBuf, what: What, size: [u32; 2]) -> Self {
-        SaveBox { name: name.to_owned(), folder, what, size: Size::Seen, other: size, is_new: true }
+        SaveBox { name: name.to_owned(), folder, what, size: Size::Seen, other: size }
     }
 
     /// Takes name and folder from the system's dialog.
@@ -302,69 +276,50 @@ impl SaveBox {
     }
 
     pub(super) fn ui(&mut self, ui: &mut Ui, facts: &Facts, system: &mut System) -> Outcome {
-        ui.set_width(ui.available_width().min(512.0));
         ui.heading("Save");
-        ui.add_space(12.0);
-        let ending = format!(".{}", self.what.ending());
-        let field = ui.horizontal(|ui| {
-            ui.add_sized([64.0, 24.0], egui::Label::new("Name").halign(egui::Align::Min));
-            let width = ui.available_width() - 44.0;
-            let field = TextEdit::singleline(&mut self.name).desired_width(width).show(ui);
-            ui.weak(&ending);
-            field
+        ui.add_space(8.0);
+        let field = labelled(ui, "Name", |ui| {
+            ui.weak(format!(".{}", self.what.ending()));
+            ui.add(TextEdit::singleline(&mut self.name).desired_width(f32::INFINITY))
         });
-        let mut output = field.inner;
+        named(&field, "Name");
+        focus(ui, &field, &self.name);
         // A typed ending chooses the format.
         let typed = Path::new(self.name.trim()).extension();
-        let named = |what: &What| typed.is_some_and(|typed| typed.eq_ignore_ascii_case(what.ending()));
-        self.what = What::ALL.into_iter().find(named).unwrap_or(self.what);
-        let field = self::named(output.response.response, "Name");
-        if std::mem::take(&mut self.is_new) {
-            field.request_focus();
-            let all = egui::text::CCursor::new(self.name.chars().count());
-            let range = egui::text::CCursorRange::two(egui::text::CCursor::default(), all);
-            output.state.cursor.set_char_range(Some(range));
-            output.state.store(ui.ctx(), field.id);
-        }
-        ui.horizontal(|ui| {
-            ui.add_sized([64.0, 24.0], egui::Label::new("Folder").halign(egui::Align::Min));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if system.is_there && ui.button("Change…").clicked() {
-                    system.ask(ui.ctx(), Purpose::Place(self.what), self.path());
-                }
-                let folder = self.folder.display().to_string();
-                ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                    let help = "A name can also begin with another folder";
-                    ui.add(egui::Label::new(folder).truncate()).on_hover_text(help);
-                });
+        let is_typed = |ending: &str| typed.is_some_and(|typed| typed.eq_ignore_ascii_case(ending));
+        let of_ending = What::ALL.into_iter().find(|(.., ending)| is_typed(ending));
+        self.what = of_ending.map_or(self.what, |(what, ..)| what);
+        labelled(ui, "Folder", |ui| {
+            if system.is_there && ui.button("Change…").clicked() {
+                system.ask(ui.ctx(), Purpose::Place(self.what), self.path());
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let folder = Label::new(self.folder.display().to_string()).truncate();
+                ui.add(folder).on_hover_text("A name can also begin with another folder");
             });
         });
-        ui.add_space(12.0);
-        let shown = facts.shown();
+        ui.add_space(8.0);
         ui.columns_const(|[left, right]| {
-            left.weak("What");
-            for what in What::ALL {
-                let [label, help] = what.words();
+            small(left, "What");
+            for (what, label, help, _) in What::ALL {
                 option(left, &mut self.what, what, label, help);
             }
             right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, facts));
         });
-        let path = self.path();
-        let is_empty = self.name.trim().is_empty() || path.is_dir();
-        let default = default_folder();
-        let refused = missing_folder(&path).filter(|_| path.parent() != default.as_deref());
+        let (path, shown) = (self.path(), facts.shown());
         let size = self.pixels(self.size, shown);
-        if refused.is_none() && !path.exists() && self.what != What::Scene && !is_ready(facts, size) {
+        let (reason, is_replaced) = (missing_folder(&path), path.exists());
+        if reason.is_none() && !is_replaced && self.what != What::Scene && shown.size() != size {
             hint(ui, "Renders first, and you can go on meanwhile.");
         } else {
-            note(ui, refused.as_deref(), Some(&path));
+            note(ui, reason.as_deref(), is_replaced);
         }
-        let label = if path.exists() { "Replace" } else { "Save" };
+        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
         let pressed = ui.horizontal(|ui| {
             if let What::Picture(format) = self.what {
                 ui.weak(format!("About {}", memory::words(file_bytes(format, size, shown))));
             }
-            buttons(ui, &field, label, !is_empty && refused.is_none())
+            buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable)
         });
         match pressed.inner {
             Some(true) => Outcome::Named(Purpose::Save(self.what, size), path),
@@ -374,7 +329,7 @@ impl SaveBox {
     }
 
     fn sizes(&mut self, ui: &mut Ui, facts: &Facts) {
-        ui.weak("Size");
+        small(ui, "Size");
         for (size, label) in [
             (Size::Seen, "As you see it"),
             (Size::Book, "As in the book"),
@@ -382,12 +337,16 @@ impl SaveBox {
             (Size::Other, "Other"),
         ] {
             let [width, height] = self.pixels(size, facts.shown());
-            let time = match seconds_at(facts, [width, height]) {
-                _ if is_ready(facts, [width, height]) => ", ready".to_owned(),
-                Some(seconds) => format!(", about {}", about(seconds)),
+            let when = match seconds_at(facts, [width, height]) {
+                _ if facts.shown().size() == [width, height] => ", ready".to_owned(),
+                Some(seconds) => format!(", about {}", time(seconds.ceil())),
                 None => String::new(),
             };
-            option(ui, &mut self.size, size, label, &format!("{width} × {height}{time}"));
+            let help = match size {
+                Size::Other if self.size != size => "Width and height".to_owned(),
+                _ => format!("{width} × {height}{when}"),
+            };
+            option(ui, &mut self.size, size, label, &help);
         }
         if self.size == Size::Other {
             ui.horizontal(|ui| {
@@ -402,18 +361,39 @@ impl SaveBox {
     }
 }
 
-fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help: &str) {
-    ui.radio_value(chosen, value, label);
+/// A label, and what follows it over the rest of the width, from the right to the left.
+fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        ui.add_space(24.0);
-        ui.label(RichText::new(help).small().weak());
+        let size = vec2(64.0, 24.0);
+        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_size(size);
+            ui.label(label);
+        });
+        ui.with_layout(Layout::right_to_left(Align::Center), add).inner
+    })
+    .inner
+}
+
+fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help: &str) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let (colours, is_on) = (theme::colours(ui), *chosen == value);
+        let widgets = &mut ui.visuals_mut().widgets;
+        for widget in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+            widget.bg_stroke = Stroke::new(1.0, if is_on { colours.accent } else { colours.edge });
+        }
+        ui.radio_value(chosen, value, label);
+        ui.spacing_mut().interact_size.y = 16.0;
+        ui.horizontal(|ui| {
+            ui.add_space(24.0);
+            small(ui, help);
+        });
     });
 }
 
 /// Where pictures go unless the user has chosen another folder; it is created when needed.
 pub fn default_folder() -> Option<PathBuf> {
-    let pictures = home_directory()?.join("Pictures");
-    pictures.is_dir().then(|| pictures.join("Weekender"))
+    pictures_directory().map(|pictures| pictures.join("Weekender"))
 }
 
 /// The name for a file of this picture.
@@ -425,16 +405,13 @@ pub fn file_name(document: &Document) -> String {
     title.replace(['/', '\\', ':', '?', '*', '"', '<', '>', '|'], "")
 }
 
-fn is_ready(facts: &Facts, size: [u32; 2]) -> bool {
-    facts.shown().size() == size
-}
-
 /// Roughly.
 fn file_bytes(format: OutputFormat, [width, height]: [u32; 2], document: &Document) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
     match format {
         OutputFormat::Png => pixels,
         OutputFormat::P6 => 3 * pixels,
+        OutputFormat::Pfm => 12 * pixels,
         OutputFormat::Exr => Film::bytes(width, height, document.settings.half_count()) / 2,
     }
 }
@@ -447,31 +424,17 @@ pub fn samples_wanted(document: &Document, status: &Status) -> u64 {
 
 /// About how many seconds the picture takes at this size.
 fn seconds_at(facts: &Facts, [width, height]: [u32; 2]) -> Option<f64> {
-    let speed = facts.speed.or_else(|| {
-        let status = &facts.status;
-        let paths = status.added() as f64 * facts.document().size().map(f64::from).iter().product::<f64>();
-        (paths > 0.0).then(|| paths / status.trace.as_secs_f64().max(1e-3))
-    })?;
+    let speed = Some(facts.status.paths_per_second()).filter(|speed| *speed > 0.0)?;
     let samples = samples_wanted(facts.document(), &facts.status) as f64;
     Some(f64::from(width) * f64::from(height) * samples / speed)
 }
 
-fn about(seconds: f64) -> String {
-    let whole = seconds.ceil() as u64;
-    match whole {
-        0..90 => format!("{} s", whole.max(1)),
-        90..5400 => format!("{} min", whole.div_ceil(60)),
-        5400..86_400 => format!("{} h", whole.div_ceil(3600)),
-        _ => "more than a day".to_owned(),
-    }
-}
-
 /// A size that needs much memory or time, and asks before it is rendered.
 pub struct LargeSize {
-    pub size: [u32; 2],
+    /// The one that is asked for, or the largest of its shape that fits into the free memory.
+    size: [u32; 2],
     words: String,
-    /// The largest size of the same shape that fits into the free memory, if this one does not.
-    fitting: Option<[u32; 2]>,
+    label: &'static str,
 }
 
 impl LargeSize {
@@ -485,39 +448,31 @@ impl LargeSize {
         let bytes_of = |[width, height]: [u32; 2]| {
             Film::bytes(width, height, halves) + 7 * u64::from(width) * u64::from(height)
         };
-        let bytes = bytes_of(size);
-        let seconds = seconds_at(facts, size);
+        let (bytes, seconds) = (bytes_of(size), seconds_at(facts, size));
         let is_slow = |size| seconds_at(facts, size).is_some_and(|seconds| seconds > LargeSize::SECONDS);
         if bytes_of(before) >= bytes || bytes <= LargeSize::BYTES && (!is_slow(size) || is_slow(before)) {
             return None;
         }
         let [width, height] = size;
         let needs = format!("{width} × {height} needs {}", memory::words(bytes));
-        let refused = memory::check(|| needs.clone(), bytes, "choose a smaller size").err();
-        let time = seconds.map_or_else(String::new, |seconds| format!(" and about {}", about(seconds)));
-        let Some(refused) = refused else {
-            return Some(LargeSize { size, words: format!("{needs}{time}."), fitting: None });
+        let Err(refused) = memory::check(|| needs.clone(), bytes, "choose a smaller size") else {
+            let words = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
+            return Some(LargeSize { size, words: format!("{needs}{words}."), label: "Render" });
         };
         let share = (0.9 * refused.free_bytes as f64 / refused.needed_bytes as f64).sqrt();
         let [x, y] = size.map(|side| ((f64::from(side) * share) as u32).max(1));
         let free = memory::words(refused.free_bytes);
         let words = format!("{needs}; {free} are free. The largest that fits is {x} × {y}.");
-        Some(LargeSize { size, words, fitting: Some([x, y]) })
+        Some(LargeSize { size: [x, y], words, label: "Use that" })
     }
 
     pub(super) fn ui(&self, ui: &mut Ui) -> Outcome {
-        ui.label(&self.words);
+        let words = ui.label(&self.words);
         ui.add_space(12.0);
-        let (label, size) = self.fitting.map_or(("Render", self.size), |fitting| ("Use that", fitting));
-        let choice = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let is_chosen = primary(ui, label).clicked();
-            let is_cancelled = ui.button("Cancel").clicked();
-            [is_chosen, is_cancelled]
-        });
-        match choice.inner {
-            [true, _] => Outcome::Size(size),
-            [_, true] => Outcome::Close,
-            _ => Outcome::Stay,
+        match buttons(ui, &words, self.label, true) {
+            Some(true) => Outcome::Size(self.size),
+            Some(false) => Outcome::Close,
+            None => Outcome::Stay,
         }
     }
 }

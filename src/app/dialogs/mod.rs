@@ -3,21 +3,28 @@
 mod about;
 mod files;
 mod help;
-mod outcome;
 mod palette;
 mod sky;
 
-pub use files::{
-    Chosen, LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
-};
+pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
 pub use help::Keys;
-pub use outcome::Outcome;
 pub use palette::Palette;
 
 use super::command::Command;
 use super::facts::Facts;
 use super::model::edit::Edit;
 use eframe::egui::{self, Context, Id, Modal, PointerState, Ui};
+use std::path::PathBuf;
+
+/// What happens to a dialog after a frame.
+pub enum Outcome {
+    Stay,
+    Close,
+    /// It closes: the user chose a file.
+    Named(Purpose, PathBuf),
+    /// It closes: the picture gets this size.
+    Size([u32; 2]),
+}
 
 /// The dialog that is open.
 pub enum Dialog {
@@ -112,7 +119,7 @@ impl Dialogs {
     /// Takes what was chosen in the system's dialog: a file and its purpose. If there was no dialog, opens a field
     /// for the path.
     pub fn chosen(&mut self) -> Option<Outcome> {
-        let Chosen { purpose, from, path } = self.system.chosen()?;
+        let (purpose, from, path) = self.system.chosen()?;
         match (purpose, path, &mut self.open) {
             (Purpose::Place(_), Some(path), Some(Dialog::Save(save))) => save.place(&path),
             (Purpose::Place(_), ..) => self.system.is_there = false,

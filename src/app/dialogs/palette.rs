@@ -1,10 +1,10 @@
 //! Finds a command by what it does: type a few words, then press Enter.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
 use crate::app::menu::line;
-use crate::app::widgets::hint;
+use crate::app::widgets::{caption, hint};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::accesskit::Toggled;
@@ -15,10 +15,11 @@ const USUAL: [Command; 5] =
     [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
 /// Fields of the left panel that are found by other words, too.
-const FIELDS: [(&str, &str); 3] = [
+const FIELDS: [(&str, &str); 4] = [
     ("Field of view", "fov angle zoom lens"),
     ("Defocus angle", "blur defocus depth of field dof aperture bokeh"),
     ("Focus distance", "focus sharp"),
+    ("Size and samples", "noise grain quality spp resolution pixels stop"),
 ];
 
 /// The search text and the selected line; none is selected in an empty box, so that Enter does nothing.
@@ -66,7 +67,11 @@ struct Found {
 /// last one first.
 fn found(text: &str, facts: &Facts, used: &[Command]) -> Vec<Found> {
     let is_on = |command: &Command| facts.disabled_reason(*command).is_none();
-    let of = |command, is_place| Found { name: facts.name(command), command, is_place };
+    let name = |command| match command {
+        Command::Theme(_) => format!("Theme: {}", facts.name(command)),
+        _ => facts.name(command),
+    };
+    let of = |command, is_place| Found { name: name(command), command, is_place };
     if text.trim().is_empty() {
         let usual = USUAL.iter().filter(|command| is_on(command) && !used.contains(command));
         return used.iter().chain(usual).take(5).map(|command| of(*command, false)).collect();
@@ -145,10 +150,7 @@ impl Palette {
             let mut was_place = false;
             for Found { command, name, is_place } in &found {
                 if *is_place && !std::mem::replace(&mut was_place, true) {
-                    let color = ui.visuals().weak_text_color();
-                    ui.add_space(8.0);
-                    ui.label(RichText::new("Stages, scenes, files and bookmarks").small().color(color));
-                    ui.add_space(4.0);
+                    caption(ui, "Stages, scenes, files and bookmarks");
                 }
                 let is_chosen = chosen == Some(*command);
                 let response = row(ui, facts, *command, name, is_chosen);
@@ -223,6 +225,7 @@ mod tests {
             ("fov", Command::Field("Field of view")),
             ("beamer", Command::Present),
             ("homework", Command::CheckPicture),
+            ("resolution", Command::Field("Size and samples")),
             ("11.4", Command::Stage(Stage::find("glass-schlick").unwrap())),
         ] {
             assert_eq!(first(text), Some(expected), "{text}");

@@ -1,6 +1,6 @@
 //! The dialog for the colours of the sky.
 
-use super::outcome::Outcome;
+use super::Outcome;
 use crate::app::facts::Facts;
 use crate::app::model::edit::Edit;
 use crate::app::widgets::{About, Header, colour, group, hint};

@@ -10,7 +10,7 @@ fn key(key: Key, modifiers: Modifiers) -> egui::Event {
 fn taken(events: Vec<egui::Event>, context: &egui::Context) -> (Vec<Command>, bool) {
     let input = egui::RawInput { events, ..egui::RawInput::default() };
     let (mut commands, mut is_free) = (Vec::new(), false);
-    let _ = context.run_ui(input, |ui| is_free = take_keys(ui.ctx(), false, &mut commands));
+    context.run_ui(input, |ui| is_free = take_keys(ui.ctx(), false, &mut commands)).textures_delta.clear();
     (commands, is_free)
 }
 
@@ -67,10 +67,13 @@ fn flown_in(seconds: f32, keys: &[(Key, Modifiers)], modifiers: Modifiers) -> Op
     events.push(egui::Event::ModifiersChanged(modifiers));
     for events in [events, Vec::new()] {
         let input = egui::RawInput { events, predicted_dt: seconds, ..egui::RawInput::default() };
-        let _ = context.run_ui(input, |ui| {
-            camera = before;
-            has_moved = fly(ui.ctx(), &mut camera);
-        });
+        context
+            .run_ui(input, |ui| {
+                camera = before;
+                has_moved = fly(ui.ctx(), &mut camera);
+            })
+            .textures_delta
+            .clear();
     }
     assert_eq!(has_moved, camera != before);
     has_moved.then(|| camera.look_from - before.look_from)

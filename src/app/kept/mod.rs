@@ -2,15 +2,15 @@
 //! the screen, which is the traced one or a kept one.
 
 mod actions;
-#[cfg(test)]
-pub mod on_screen;
 mod picture;
 mod subject;
+#[cfg(test)]
+pub mod tests;
 mod verdict;
 
 pub use actions::{KeptActions, Reopened};
 pub use picture::KeptPicture;
-pub use subject::{FilmId, Subject};
+pub use subject::{FilmId, Query, Subject};
 pub use verdict::Verdict;
 
 use super::answers::caught;

@@ -1,12 +1,15 @@
 //! The film on the screen: the live one, or one that was kept.
 
+use crate::app::answers::Answers;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::ViewState;
 use crate::app::tracer::Tracer;
+use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::progressive::Status;
-use std::sync::Arc;
+use eframe::egui::Context;
+use std::sync::{Arc, Weak};
 
 /// Tells films apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +18,8 @@ pub enum FilmId {
     Live(u64),
     /// The film of a kept picture.
     Kept(u64),
+    /// The denoised picture of a film, by its samples.
+    Denoised(u64),
 }
 
 /// The film on the screen.
@@ -23,6 +28,7 @@ pub struct Subject<'a> {
     live: &'a Document,
     main: &'a Tracer,
     kept: Option<&'a Arc<Kept>>,
+    denoised: Option<&'a Arc<Denoised>>,
     seconds_before: Option<f64>,
 }
 
@@ -34,7 +40,13 @@ impl<'a> Subject<'a> {
         (live, main): (&'a Document, &'a Tracer),
         seconds_before: Option<f64>,
     ) -> Self {
-        Subject { live, main, kept: view.kept.shown(), seconds_before }
+        let subject = Subject { live, main, kept: view.kept.shown(), denoised: None, seconds_before };
+        Subject { denoised: view.denoised_of(subject.raw_id()), ..subject }
+    }
+
+    /// The denoised picture that is shown instead of the film.
+    pub fn denoised(&self) -> Option<&'a Arc<Denoised>> {
+        self.denoised
     }
 
     /// Whether it is a kept film.
@@ -47,8 +59,13 @@ impl<'a> Subject<'a> {
         self.kept.map_or(self.live, |kept| &kept.document)
     }
 
-    /// Which film it is.
+    /// Which picture it is.
     pub fn film_id(&self) -> FilmId {
+        self.denoised.map_or(self.raw_id(), |denoised| FilmId::Denoised(denoised.film.sample_count()))
+    }
+
+    /// Which film it is, denoised or not.
+    pub fn raw_id(&self) -> FilmId {
         self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number()))
     }
 
@@ -84,6 +101,14 @@ impl<'a> Subject<'a> {
         self.kept.is_some() || self.main.has_samples(self.live)
     }
 
+    /// Runs `look` with what is shown, the film or its denoised picture, on another thread.
+    pub fn inspect_shown(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self.denoised.map(Arc::clone) {
+            Some(denoised) => super::run(move || look(&denoised.film)),
+            None => self.inspect(look),
+        }
+    }
+
     /// Runs `look` with the film on another thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         match self.kept {
@@ -93,6 +118,56 @@ impl<'a> Subject<'a> {
             }
             None => self.main.inspect(look),
         }
+    }
+}
+
+/// A question about the film on the screen, which is asked again when `K` has changed, one at a time.
+pub struct Query<K, T> {
+    asked: Option<K>,
+    /// Can be upgraded as long as the question waits for the film.
+    waiting: Weak<()>,
+    answers: Answers<T>,
+}
+
+impl<K, T> Default for Query<K, T> {
+    fn default() -> Self {
+        Query { asked: None, waiting: Weak::new(), answers: Answers::default() }
+    }
+}
+
+impl<K: PartialEq, T: Send + 'static> Query<K, T> {
+    /// What was asked last.
+    pub fn asked(&self) -> Option<&K> {
+        self.asked.as_ref()
+    }
+
+    /// Takes the newest answer.
+    pub fn take(&self) -> Option<T> {
+        std::iter::from_fn(|| self.answers.take()).last()
+    }
+
+    /// Asks about `key`, unless that was asked last, or the question before is open. `look` finds the answer, if any, in the
+    /// film. Returns whether it was asked.
+    pub fn ask(
+        &mut self,
+        context: &Context,
+        subject: &Subject<'_>,
+        key: K,
+        look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
+    ) -> bool {
+        if self.waiting.strong_count() > 0 || self.asked.as_ref() == Some(&key) {
+            return false;
+        }
+        let question = Arc::new(());
+        (self.waiting, self.asked) = (Arc::downgrade(&question), Some(key));
+        let answer = self.answers.answer(context);
+        subject.inspect_shown(move |film| {
+            let found = look(film);
+            // Dropped first: the answer wakes a frame, which may ask the next question.
+            drop(question);
+            found.into_iter().for_each(|found| answer.give_one(found));
+        });
+        true
     }
 }
 
@@ -126,5 +201,25 @@ mod tests {
         let (answer, answers) = channel();
         subject.inspect(move |film| answer.send(film.sample_count()).unwrap());
         assert_eq!(answers.recv().unwrap(), 7);
+    }
+
+    #[test]
+    fn a_question_is_asked_again_when_its_subject_has_changed() {
+        use crate::app::kept::tests::{OnScreen, small_film};
+        let (screen, context) = (OnScreen::new(small_film(5, 0.5)), Context::default());
+        let mut query = Query::default();
+        let count = |film: &Film| Some(film.sample_count());
+        for key in [1, 2] {
+            screen.before_answers(|subject| {
+                assert!(query.ask(&context, subject, key, count));
+                assert!(!query.ask(&context, subject, key + 1, count), "the one before is open");
+            });
+            assert_eq!((query.take(), query.take()), (Some(5), None));
+            screen
+                .before_answers(|subject| assert!(!query.ask(&context, subject, key, count), "it is known"));
+        }
+        screen.before_answers(|subject| assert!(query.ask(&context, subject, 3, |_| None)));
+        assert_eq!(query.take(), None);
+        screen.before_answers(|subject| assert!(query.ask(&context, subject, 4, count)));
     }
 }

@@ -115,7 +115,7 @@ fn place_of(test: &BlockTest, size: [u32; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::on_screen::small_film;
+    use crate::app::kept::tests::small_film;
     use crate::app::model::origin::Origin;
     use crate::stages::Stage;
 

@@ -60,42 +60,28 @@ impl Device {
     /// All devices, in the order of the toggle.
     pub const ALL: [Device; 4] = [Device::Cpu, Device::Gpu, Device::Both, Device::Reference];
 
-    /// The name used by `--device`.
+    /// The name used by `--device`, the label in the window, and a short description.
+    fn words(self) -> [&'static str; 3] {
+        match self {
+            Device::Cpu => ["cpu", "CPU", "Trace on the processor"],
+            Device::Gpu => ["gpu", "GPU", "Trace on the graphics card, usually many times faster"],
+            Device::Both => ["cpu,gpu", "Both", "Trace one picture on processor and graphics card together"],
+            Device::Reference => {
+                ["reference", "f64", "Trace with 16 digits instead of 7, slowly, to show rounding errors"]
+            }
+        }
+    }
+
     pub fn name(self) -> &'static str {
-        match self {
-            Device::Cpu => "cpu",
-            Device::Gpu => "gpu",
-            Device::Both => "cpu,gpu",
-            Device::Reference => "reference",
-        }
+        self.words()[0]
     }
 
-    /// The label in the window.
     pub fn label(self) -> &'static str {
-        match self {
-            Device::Cpu => "CPU",
-            Device::Gpu => "GPU",
-            Device::Both => "Both",
-            Device::Reference => "f64",
-        }
+        self.words()[1]
     }
 
-    /// A short description.
     pub fn help(self) -> &'static str {
-        match self {
-            Device::Cpu => "Trace on the processor",
-            Device::Gpu => "Trace on the graphics card, usually many times faster",
-            Device::Both => "Trace one picture on processor and graphics card together",
-            Device::Reference => "Trace with 16 digits instead of 7, slowly, to show rounding errors",
-        }
-    }
-
-    /// As the palette calls it.
-    pub fn long_label(self) -> &'static str {
-        match self {
-            Device::Both => "CPU and GPU together",
-            _ => self.label(),
-        }
+        self.words()[2]
     }
 
     /// The device of a backend.

@@ -113,18 +113,12 @@ impl Document {
         } else if mine != theirs {
             "camera"
         } else if settings != of_other {
-            "settings"
+            "tracer"
         } else if self.stop != other.stop {
-            "stop"
+            "samples"
         } else {
             "size"
         }
-    }
-
-    /// Whether scene, camera or settings are not the origin's, apart from size and stop.
-    pub fn is_edited(&self) -> bool {
-        let unchanged = Document::of(Arc::clone(&self.origin));
-        !matches!(self.difference(&unchanged), "size" | "stop")
     }
 
     /// The scene, as edited.
@@ -137,9 +131,10 @@ impl Document {
         !Arc::ptr_eq(&self.checked, &self.origin.scene)
     }
 
-    /// Whether scene, camera or settings are not the origin's. A size that follows the viewport is no change.
+    /// Whether scene, camera or settings are not the origin's, apart from size and stop.
     pub fn is_changed(&self) -> bool {
-        *self != Document { stop: self.stop, ..Document::of(Arc::clone(&self.origin)) }
+        let unchanged = Document::of(Arc::clone(&self.origin));
+        !matches!(self.difference(&unchanged), "size" | "samples")
     }
 
     /// What `camera` sees at a place in the picture, `0..=1` from the upper left.
@@ -180,17 +175,15 @@ impl Document {
         if self.has_changed_scene() { format!("{title} (changed)") } else { title }
     }
 
+    /// A short name for sentences: the section of the book, else the title.
+    pub fn place(&self) -> String {
+        self.stage().map_or_else(|| self.title(), |stage| stage.section.to_owned())
+    }
+
     /// The name for files: a changed scene has its own, so that it does not replace the file that it came from.
     pub fn name(&self) -> String {
         let name = &self.origin.recipe.name;
         if self.has_changed_scene() { changed(name) } else { name.clone() }
-    }
-
-    /// The name for its scene file, which is not that of a file that holds something else by now.
-    pub fn scene_name(&self) -> String {
-        let is_from_file = matches!(self.origin.source, Source::File(_)) && !self.has_changed_scene();
-        let name = self.name();
-        if is_from_file && !self.origin.is_in_file() { changed(&name) } else { name }
     }
 
     /// Width divided by height.
@@ -316,7 +309,7 @@ mod tests {
             (|document| document.stop = Stop::at_samples(9), false),
             (|document| document.camera.vfov_degrees = 33.0, true),
             (|document| document.settings.seed = 9, true),
-            (|document| document.give_size([480, 270]), true),
+            (|document| document.give_size([480, 270]), false),
             (|document| *document = edited(document), true),
         ];
         for (index, (change, is_change)) in changes.into_iter().enumerate() {

@@ -5,56 +5,44 @@ use crate::job::render::SAMPLE_LIMIT;
 use crate::progressive::{EndReason, Phase, Status, Stop};
 use crate::stages::Shading;
 
-/// A later end of a render.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Further {
-    /// The stop conditions.
-    pub stop: Stop,
-    /// The new end, to follow "Go on to".
-    pub words: String,
-}
-
 impl Document {
+    /// Whether the picture depends on random numbers.
+    pub fn is_random(&self) -> bool {
+        self.rules().antialiasing || self.rules().shading == Shading::Path
+    }
+
     /// The next end after the one that a render has reached; `None` while it is rendered, or if more samples would
     /// change nothing.
-    pub fn further(&self, status: &Status) -> Option<Further> {
+    pub fn further(&self, status: &Status) -> Option<Stop> {
         let Phase::Done(reason) = status.phase else { return None };
-        let is_random = self.rules().antialiasing || self.rules().shading == Shading::Path;
-        if !is_random || status.samples_per_pixel >= SAMPLE_LIMIT {
+        if !self.is_random() || status.samples_per_pixel >= SAMPLE_LIMIT {
             return None;
         }
         let stop = self.stop;
         match reason {
             EndReason::NoiseTarget => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
-                let target = next_round(reached);
-                (target > 0.0).then(|| Further {
-                    stop: Stop { noise: Some(target), ..stop },
-                    words: format!("{target}"),
-                })
+                Some(Stop { noise: Some(next_round(reached)?), ..stop })
             }
             EndReason::Samples => {
                 let samples = stop.samples?.max(status.samples_per_pixel).saturating_mul(2).min(SAMPLE_LIMIT);
-                Some(Further {
-                    stop: Stop { samples: Some(samples), ..stop },
-                    words: format!("{samples} spp"),
-                })
+                Some(Stop { samples: Some(samples), ..stop })
             }
             EndReason::TimeLimit => {
                 let seconds = 2.0 * stop.seconds?.max(status.elapsed.as_secs_f64().floor());
-                Some(Further { stop: Stop { seconds: Some(seconds), ..stop }, words: format!("{seconds} s") })
+                Some(Stop { seconds: Some(seconds), ..stop })
             }
             EndReason::Stopped => None,
         }
     }
 }
 
-/// The next number below `error` of the form 1, 2 or 5 times a power of ten, at most about half of it; 0 below 1e-6.
-fn next_round(error: f64) -> f64 {
+/// The next number below `error` of the form 1, 2 or 5 times a power of ten, at most about half of it; none below 1e-6.
+fn next_round(error: f64) -> Option<f64> {
     let rounds = (-6..=0).rev().flat_map(|power| ["5", "2", "1"].map(|digit| format!("{digit}e{power}")));
     // Read from text, so that .002 is the same number as when it is typed.
-    let rounds = rounds.filter_map(|text| text.parse::<f64>().ok());
-    rounds.into_iter().find(|round| *round < 0.55 * error).unwrap_or(0.0)
+    let mut rounds = rounds.filter_map(|text| text.parse::<f64>().ok());
+    rounds.find(|round| *round < 0.55 * error)
 }
 
 #[cfg(test)]
@@ -77,17 +65,17 @@ mod tests {
     fn a_render_goes_on_to_the_next_end_of_its_kind() {
         let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
         let further = document.further(&done(EndReason::NoiseTarget, 0.00195)).unwrap();
-        assert_eq!((further.words.as_str(), further.stop.noise), ("0.001", Some(0.001)));
+        assert_eq!(further.noise, Some(0.001));
         document.stop = Stop::at_samples(100);
         let further = document.further(&done(EndReason::Samples, 0.01)).unwrap();
-        assert_eq!((further.words.as_str(), further.stop.samples), ("200 spp", Some(200)));
+        assert_eq!(further.samples, Some(200));
         document.stop = Stop { seconds: Some(10.0), ..Stop::default() };
-        assert_eq!(document.further(&done(EndReason::TimeLimit, 0.01)).unwrap().stop.seconds, Some(20.0));
+        assert_eq!(document.further(&done(EndReason::TimeLimit, 0.01)).unwrap().seconds, Some(20.0));
         // The last pass ended after the limit.
         let elapsed = std::time::Duration::from_secs_f64(12.7);
         let late = Status { elapsed, ..done(EndReason::TimeLimit, 0.01) };
         let further = document.further(&late).unwrap();
-        assert_eq!((further.words.as_str(), further.stop.seconds), ("24 s", Some(24.0)));
+        assert_eq!(further.seconds, Some(24.0));
         assert_eq!(document.further(&Status { phase: Phase::Tracing, ..Status::default() }), None);
         let tiny = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(tiny.further(&done(EndReason::Samples, 0.0)), None, "nothing in it is random");
@@ -99,14 +87,14 @@ mod tests {
         let noise = |noise: f64| Stop { noise: Some(noise), ..Stop::default() };
         let after = |samples_per_pixel| Status { samples_per_pixel, ..done(EndReason::Samples, 0.01) };
         let unknown = Status { error: None, ..done(EndReason::NoiseTarget, 0.0) };
-        for (stop, status, words) in [
+        for (stop, status, expected) in [
             // The last pass went on after the end, or a stop was chosen that lies further ahead.
-            (samples(60), after(100), Some("200 spp")),
-            (samples(300), after(100), Some("600 spp")),
-            (samples(SAMPLE_LIMIT - 1), after(SAMPLE_LIMIT - 1), Some("4294967296 spp")),
+            (samples(60), after(100), Some(samples(200))),
+            (samples(300), after(100), Some(samples(600))),
+            (samples(SAMPLE_LIMIT - 1), after(SAMPLE_LIMIT - 1), Some(samples(SAMPLE_LIMIT))),
             (samples(SAMPLE_LIMIT), after(SAMPLE_LIMIT), None),
-            (noise(0.002), unknown, Some("0.001")),
-            (noise(0.002), done(EndReason::NoiseTarget, 0.01), Some("0.001")),
+            (noise(0.002), unknown, Some(noise(0.001))),
+            (noise(0.002), done(EndReason::NoiseTarget, 0.01), Some(noise(0.001))),
             (noise(0.002), done(EndReason::NoiseTarget, 1e-6), None),
             (samples(100), done(EndReason::Stopped, 0.01), None),
             // There is no such end by now.
@@ -116,8 +104,7 @@ mod tests {
         ] {
             let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
             document.stop = stop;
-            let found = document.further(&status).map(|further| further.words);
-            assert_eq!(found.as_deref(), words, "{stop:?} {:?}", status.phase);
+            assert_eq!(document.further(&status), expected, "{stop:?} {:?}", status.phase);
         }
     }
 }

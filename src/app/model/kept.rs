@@ -1,48 +1,24 @@
 //! The pictures that the user has kept to compare with. They live in memory until the window closes.
 
 use super::document::Document;
-use crate::film::{Film, to_byte};
-use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
+use crate::film::Film;
+use crate::progressive::{ReferenceMeans, Status};
 use crate::system::memory::words;
-use glam::DVec3;
+use image::{RgbImage, imageops};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// A small copy of a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Thumbnail {
-    /// Pixels across and down.
-    pub size: [u32; 2],
-    /// Three bytes per pixel, top row first.
-    pub rgb8: Vec<u8>,
-}
+/// The longer side of a small copy, pixels.
+const SMALL: u32 = 264;
 
-impl Thumbnail {
-    /// The longer side, pixels.
-    const SIDE: u32 = 264;
-
-    /// Pixels across and down that are averaged for one pixel of the thumbnail.
-    const TAPS: usize = 4;
-
-    /// The thumbnail of a film with samples.
-    pub fn of(film: &Film, document: &Document) -> Self {
-        let full = [film.width(), film.height()];
-        let scale = (f64::from(Self::SIDE) / f64::from(full[0].max(full[1]))).min(1.0);
-        let size = full.map(|length| ((f64::from(length) * scale).round() as u32).max(1));
-        let [[width, height], [columns, rows]] = [full, size].map(|size| size.map(|length| length as usize));
-        let transfer = document.rules().transfer;
-        let pixel = |at: usize| {
-            let (x, y) = (at % columns, at / columns);
-            let row = |tap: usize| (y * Self::TAPS + tap) * height / (rows * Self::TAPS);
-            let taps = (0..Self::TAPS * Self::TAPS).map(|tap| {
-                let column = (x * Self::TAPS + tap % Self::TAPS) * width / (columns * Self::TAPS);
-                DVec3::from(film.mean(row(tap / Self::TAPS) * width + column))
-            });
-            let mean = taps.sum::<DVec3>() / (Self::TAPS * Self::TAPS) as f64;
-            mean.to_array().map(|value| to_byte(value, transfer, row(0), height))
-        };
-        Thumbnail { size, rgb8: (0..columns * rows).flat_map(pixel).collect() }
-    }
+/// A small copy of the picture of a film.
+fn small_copy(film: &Film, document: &Document) -> RgbImage {
+    let (width, height) = (film.width(), film.height());
+    let rgb8 = film.to_rgb8(document.rules().transfer);
+    let full = RgbImage::from_raw(width, height, rgb8).unwrap_or_default();
+    let scale = (f64::from(SMALL) / f64::from(width.max(height))).min(1.0);
+    let [width, height] = [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1));
+    imageops::thumbnail(&full, width, height)
 }
 
 /// A picture that was kept. It never changes.
@@ -57,7 +33,7 @@ pub struct Kept {
     /// Tracing time of the samples from before that render, if known.
     pub seconds_before: Option<f64>,
     /// A small copy.
-    pub thumbnail: Thumbnail,
+    pub thumbnail: RgbImage,
     number: u64,
     means: OnceLock<Arc<ReferenceMeans>>,
 }
@@ -66,7 +42,7 @@ impl Kept {
     /// Keeps a film of `document` that has samples.
     pub fn new(document: Document, film: Film, status: Arc<Status>, seconds_before: Option<f64>) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
-        let thumbnail = Thumbnail::of(&film, &document);
+        let thumbnail = small_copy(&film, &document);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let (film, means) = (Arc::new(film), OnceLock::new());
         Kept { document, film, status, seconds_before, thumbnail, number, means }
@@ -100,10 +76,7 @@ impl Kept {
 
     /// Its picture to subtract from another. The first call takes as long as resolving the picture.
     pub fn means(&self) -> &Arc<ReferenceMeans> {
-        self.means.get_or_init(|| {
-            let identity = Some(FilmIdentity::of(&self.film));
-            Arc::new(ReferenceMeans { identity, ..ReferenceMeans::of(&self.film) })
-        })
+        self.means.get_or_init(|| Arc::new(ReferenceMeans::of(&self.film)))
     }
 
     /// Bytes that it takes.
@@ -255,6 +228,5 @@ mod tests {
         assert!(kept.known_means().is_none());
         let means = Arc::clone(kept.means());
         assert!(kept.known_means().is_some_and(|known| Arc::ptr_eq(known, &means)));
-        assert!(means.identity.as_ref().is_some_and(|identity| identity.is_of(&kept.film)));
     }
 }

@@ -8,11 +8,9 @@ pub mod device;
 pub mod document;
 pub mod edit;
 pub mod first_steps;
-pub mod fitted;
 pub mod further;
 pub mod kept;
 pub mod origin;
-pub mod presentation;
 pub mod reload;
 pub mod remembered;
 pub mod show;
@@ -25,9 +23,19 @@ use crate::backends::BackendChoice;
 use crate::progressive::Stop;
 use device::DeviceOptions;
 use document::Document;
-use presentation::Presentation;
-use remembered::Remembered;
+use remembered::{Remembered, Tab};
 use view::ViewState;
+
+/// A presentation: full screen, the picture with large captions, no panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Presentation {
+    /// The window was in full-screen mode before, and stays in it.
+    pub was_full_screen: bool,
+    /// Whether titles and texts are shown.
+    pub has_captions: bool,
+    /// Whether the screen is black.
+    pub is_blank: bool,
+}
 
 /// Everything that the user has chosen.
 #[derive(Clone, Debug)]
@@ -58,6 +66,11 @@ impl Model {
     /// Whether panels are shown. A presentation has none.
     pub fn has_panels(&self) -> bool {
         self.remembered.has_panels && self.presentation.is_none()
+    }
+
+    /// Whether the right panel shows this tab.
+    pub fn shows(&self, tab: Tab) -> bool {
+        self.has_panels() && self.remembered.has_info && self.remembered.tab == tab
     }
 
     /// The backend for the chosen device, lanes and threads.

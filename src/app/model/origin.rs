@@ -1,12 +1,12 @@
 //! The origin of a picture.
 
-use super::checked::{CheckedScene, Stamp, stamp_of};
+use super::checked::CheckedScene;
 use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
 use crate::stages::{Shading, Stage, SurfaceRule};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Where a picture comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,38 +34,18 @@ pub struct Origin {
     pub source: Source,
     /// The scene of the recipe.
     pub scene: Arc<CheckedScene>,
-    /// How the scene file was when it was last found to hold the recipe; `Some(None)` once it has held something else.
-    found: Mutex<Option<Option<Stamp>>>,
 }
 
 impl Origin {
     /// An origin from its parts.
     pub fn new(recipe: Recipe, source: Source) -> Self {
         let scene = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
-        Origin { recipe, source, scene, found: Mutex::default() }
+        Origin { recipe, source, scene }
     }
 
     /// The same with another recipe of the same scene.
     pub fn with_recipe(&self, recipe: Recipe) -> Self {
-        Origin {
-            recipe,
-            source: self.source.clone(),
-            scene: Arc::clone(&self.scene),
-            found: Mutex::default(),
-        }
-    }
-
-    /// Notes that the scene file was found to hold the recipe when it had this stamp; without a stamp, that it no longer
-    /// does.
-    pub(crate) fn note_file(&self, stamp: Option<Stamp>) {
-        *self.found.lock().unwrap_or_else(PoisonError::into_inner) = Some(stamp);
-    }
-
-    /// Whether the scene file still holds the recipe, as far as is known; `false` without a scene file.
-    pub fn is_in_file(&self) -> bool {
-        let Source::File(path) = &self.source else { return false };
-        let found = *self.found.lock().unwrap_or_else(PoisonError::into_inner);
-        found.is_none_or(|stamp| stamp.is_some() && stamp_of(path) == stamp)
+        Origin { recipe, source: self.source.clone(), scene: Arc::clone(&self.scene) }
     }
 
     /// The origin of a stage.
@@ -163,7 +143,7 @@ mod tests {
     fn pictures_without_chance_end_with_their_samples() {
         let stop = |id| Origin::of_stage(Stage::find(id).unwrap()).usual_stop();
         assert_eq!(stop("ppm-tiny").samples, Some(1));
-        assert_eq!(stop("book"), Stop { samples: None, seconds: None, noise: Some(Stop::NOISE) });
+        assert_eq!(stop("book"), Stop { noise: Some(Stop::NOISE), ..Stop::default() });
     }
 
     #[test]

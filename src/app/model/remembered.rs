@@ -1,8 +1,10 @@
 //! Settings that the window keeps from one run to the next.
 
+use super::Model;
 use super::device::{self, Device};
 use super::first_steps::FirstSteps;
 use super::sizing::Sizing;
+use super::view::ViewState;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;
@@ -28,28 +30,12 @@ pub enum Theme {
 impl Theme {
     pub const ALL: [Theme; 3] = [Theme::System, Theme::Dark, Theme::Light];
 
-    pub fn name(self) -> &'static str {
+    /// Its name, one sentence about it, and other words by which the palette finds it.
+    pub fn words(self) -> [&'static str; 3] {
         match self {
-            Theme::System => "As the system",
-            Theme::Dark => "Dark",
-            Theme::Light => "Light",
-        }
-    }
-
-    pub fn help(self) -> &'static str {
-        match self {
-            Theme::System => "Follows the system",
-            Theme::Dark => "Light text on dark panels",
-            Theme::Light => "Dark text on light panels",
-        }
-    }
-
-    /// Other words by which the palette finds it.
-    pub fn synonyms(self) -> &'static str {
-        match self {
-            Theme::System => "theme",
-            Theme::Dark => "theme night",
-            Theme::Light => "theme bright",
+            Theme::System => ["As the system", "Follows the system", "theme"],
+            Theme::Dark => ["Dark", "Light text on dark panels", "theme night"],
+            Theme::Light => ["Light", "Dark text on light panels", "theme bright"],
         }
     }
 }
@@ -166,32 +152,28 @@ impl Default for Remembered {
     }
 }
 
-/// What eframe stores for the next window.
+/// What eframe stores for the next window: settings and view. Those of another version are not read.
 #[derive(Serialize, Deserialize)]
 pub struct Stored {
     version: u32,
     remembered: Remembered,
-    exposure: f64,
+    view: ViewState,
 }
 
 impl Stored {
-    /// Settings of another version are not read.
-    const VERSION: u32 = 1;
+    const VERSION: u32 = 2;
     const KEY: &str = "settings";
 
-    pub fn new(remembered: &Remembered, exposure: f64) -> Self {
-        Stored { version: Stored::VERSION, remembered: remembered.clone(), exposure }
-    }
-
-    /// Settings and exposure of the last window, or the usual ones.
-    pub fn read(storage: Option<&dyn Storage>) -> (Remembered, f64) {
+    /// Settings and view of the last window, or the usual ones.
+    pub fn read(storage: Option<&dyn Storage>) -> (Remembered, ViewState) {
         let stored: Option<Stored> = storage.and_then(|storage| eframe::get_value(storage, Stored::KEY));
         let stored = stored.filter(|stored| stored.version == Stored::VERSION);
-        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.exposure))
+        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.view.mended()))
     }
 
-    pub fn write(&self, storage: &mut dyn Storage) {
-        eframe::set_value(storage, Stored::KEY, self);
+    pub fn write(model: &Model, storage: &mut dyn Storage) {
+        let Model { remembered, view, .. } = model.clone();
+        eframe::set_value(storage, Stored::KEY, &Stored { version: Stored::VERSION, remembered, view });
     }
 }
 

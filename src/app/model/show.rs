@@ -54,46 +54,44 @@ impl Show {
         }
     }
 
-    /// As menus call it.
+    /// Its name in menus, one sentence about it, and other words by which the palette finds it.
+    pub fn words(self) -> [&'static str; 3] {
+        match self {
+            Show::Picture => ["Picture", "The picture as it will be saved", "view"],
+            Show::Normals => {
+                ["Normals", "Which way each surface faces: x is red, y green, z blue", "view direction"]
+            }
+            Show::Albedo => {
+                ["Surface colours", "What surfaces reflect (albedo), without light and shadow", "view albedo"]
+            }
+            Show::Bounces => {
+                ["Rays per path", "How many rays a path has: where the time goes", "view heat depth bounces"]
+            }
+            Show::Error => [
+                "Noise",
+                "How uncertain each pixel still is (standard error)",
+                "view grain quality standard error spp samples",
+            ],
+            Show::Occupancy => [
+                "Lanes at work",
+                "How full the lanes of the processor were",
+                "view simd avx packet occupancy",
+            ],
+            Show::Difference => [
+                "Difference from a film…",
+                "Subtracts a film that you choose; asks for it the first time",
+                "view reference subtract",
+            ],
+            Show::Luminance => [
+                "Brightness",
+                "How bright each pixel is, in false colours with a scale",
+                "view heat false colour luminance",
+            ],
+        }
+    }
+
     pub fn name(self) -> &'static str {
-        match self {
-            Show::Picture => "Picture",
-            Show::Normals => "Normals",
-            Show::Albedo => "Surface colours",
-            Show::Bounces => "Rays per path",
-            Show::Error => "Noise",
-            Show::Occupancy => "Lanes at work",
-            Show::Difference => "Difference from a film…",
-            Show::Luminance => "Brightness",
-        }
-    }
-
-    /// One sentence about it.
-    pub fn help(self) -> &'static str {
-        match self {
-            Show::Picture => "The picture as it will be saved",
-            Show::Normals => "Which way each surface faces: x is red, y green, z blue",
-            Show::Albedo => "What surfaces reflect (albedo), without light and shadow",
-            Show::Bounces => "How many rays a path has: where the time goes",
-            Show::Error => "How uncertain each pixel still is (standard error)",
-            Show::Occupancy => "How full the lanes of the processor were",
-            Show::Difference => "Subtracts a film that you choose; asks for it the first time",
-            Show::Luminance => "How bright each pixel is, in false colours with a scale",
-        }
-    }
-
-    /// Other words by which the palette finds it.
-    pub fn synonyms(self) -> &'static str {
-        match self {
-            Show::Picture => "view",
-            Show::Normals => "view direction",
-            Show::Albedo => "view albedo",
-            Show::Bounces => "view heat depth bounces",
-            Show::Error => "view grain quality standard error spp samples",
-            Show::Occupancy => "view simd avx packet occupancy",
-            Show::Difference => "view reference subtract",
-            Show::Luminance => "view heat false colour luminance",
-        }
+        self.words()[0]
     }
 
     /// The layer, if the view shows one.

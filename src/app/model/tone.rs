@@ -3,9 +3,10 @@
 use crate::numbers::heat::HeatScale;
 use crate::progressive::View;
 use eframe::egui::Key;
+use serde::{Deserialize, Serialize};
 
 /// The exposure of the picture, and the range of the luminance view.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tone {
     /// Radiance is multiplied by two to the power of this many stops.
     pub exposure: f64,
@@ -16,7 +17,7 @@ pub struct Tone {
 }
 
 /// A channel of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Channel {
     Red,
     Green,

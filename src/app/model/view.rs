@@ -2,11 +2,13 @@
 
 use super::checked::CheckedScene;
 use super::document::Document;
-use super::fitted::Fitted;
 use super::kept::{Kept, KeptList};
 use super::origin::Origin;
 use super::show::Show;
 use super::tone::Tone;
+use crate::app::denoising::Found;
+use crate::app::kept::FilmId;
+use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
 use crate::stages::Stage;
@@ -23,7 +25,7 @@ pub enum Mode {
 }
 
 /// The kind of picture to compare with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum With {
     /// The stage that belongs to this one; without a stage, the book's own arithmetic.
     Stage,
@@ -70,7 +72,7 @@ impl Other {
 }
 
 /// The current view, which is exactly one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
@@ -79,11 +81,16 @@ pub struct ViewState {
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
-    /// The divider waits to be put where the pictures differ most.
-    pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
+    #[serde(skip)]
     pub reference: Option<Arc<ReferenceMeans>>,
+    /// Whether the picture is denoised.
+    pub is_denoised: bool,
+    /// The latest denoised picture.
+    #[serde(skip)]
+    pub denoised: Option<Found>,
     /// Pictures that are kept; one of them can be shown instead of the traced one.
+    #[serde(skip)]
     pub kept: KeptList,
 }
 
@@ -95,14 +102,26 @@ impl Default for ViewState {
             with: With::Stage,
             divider: 0.5,
             tone: Tone::default(),
-            is_divider_unplaced: false,
             reference: None,
+            is_denoised: false,
+            denoised: None,
             kept: KeptList::default(),
         }
     }
 }
 
 impl ViewState {
+    /// The view without films and kept pictures, which are gone with their window.
+    pub fn mended(mut self) -> Self {
+        if matches!(self.with, With::Kept(_)) {
+            self.end_comparison();
+        }
+        if self.show == Show::Difference {
+            self.show = Show::Picture;
+        }
+        self
+    }
+
     /// The current view of the film.
     pub fn show(&self) -> Show {
         self.show
@@ -152,7 +171,7 @@ impl ViewState {
         }
         self.show = Show::Picture;
         (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
-        (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
+        self.divider = 0.5;
     }
 
     /// Shows a kept picture, or the traced one.
@@ -170,8 +189,9 @@ impl ViewState {
         self.look(if self.kept.looked().is_some() { None } else { self.kept.chosen() });
     }
 
-    /// Deletes a kept picture. A comparison with it ends.
-    pub fn delete_kept(&mut self, place: usize) {
+    /// Deletes the chosen kept picture. A comparison with it ends.
+    pub fn delete_kept(&mut self) {
+        let Some(place) = self.kept.chosen() else { return };
         if matches!(self.with, With::Kept(_)) {
             self.end_comparison();
         }
@@ -188,6 +208,23 @@ impl ViewState {
         match (self.mode, other) {
             (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
             _ => self.show.of_film(self.reference.as_ref(), &self.tone),
+        }
+    }
+
+    /// As [`ViewState::of_film`], of the denoised picture of this film, if it is to be shown.
+    pub fn of_shown(&self, film: FilmId, other: Option<&Arc<ReferenceMeans>>) -> View {
+        match (self.of_film(other), self.denoised_of(film)) {
+            (View::Occupancy, _) => View::Occupancy,
+            (view, Some(denoised)) => View::Denoised(Arc::clone(denoised), Box::new(view)),
+            (view, None) => view,
+        }
+    }
+
+    /// The denoised picture of a film, if it is to be shown.
+    pub fn denoised_of(&self, film: FilmId) -> Option<&Arc<Denoised>> {
+        match &self.denoised {
+            Some((of, Ok(denoised))) if self.is_denoised && *of == film => Some(denoised),
+            _ => None,
         }
     }
 
@@ -215,11 +252,10 @@ impl ViewState {
         }
     }
 
-    /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
-    pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
+    /// The kept picture at the other side of a wipe, which is as large as the shown one.
+    pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        let kept = &self.kept.get(place)?.kept;
-        Some((kept, Fitted::new(kept.size(), self.shown_document(live).size())))
+        self.kept.get(place).map(|named| &named.kept)
     }
 
     /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.

@@ -142,7 +142,7 @@ fn is_ground(sphere: &Sphere) -> bool {
 }
 
 /// The pixel of a picture of another size that contains the middle of this one.
-fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
+pub fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
     [0, 1].map(|axis| {
         let middle = 2 * u64::from(pixel[axis]) + 1;
         let place = middle * u64::from(after[axis]) / (2 * u64::from(before[axis]).max(1));

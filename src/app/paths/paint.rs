@@ -31,7 +31,7 @@ impl Paths {
     pub fn paint(&self, document: &Document, ui: &Ui, painter: &Painter, rect: Rect) {
         let (Some(listed), Some(shown)) = (&self.listed, self.path()) else { return };
         let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-        let accent = theme::accent(ui);
+        let accent = theme::colours(ui).accent;
         let view = View { camera: &document.camera, aspect: document.aspect(), rect };
         // From the eye, first rays are points.
         let first = usize::from(listed.document.camera == document.camera);

@@ -2,7 +2,7 @@
 
 use super::{Path, Paths, is_ground, side};
 use crate::app::theme;
-use crate::app::widgets::{Sign, compact, hint, point_words, sign_button, tip};
+use crate::app::widgets::{Sign, compact, hint, point_words, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::scene::Scene;
 use eframe::egui::{
@@ -40,8 +40,7 @@ impl Paths {
                         let title = format!("Path {} of {}", self.selected + 1, listed.paths.len());
                         ui.label(RichText::new(title).strong());
                         let [x, y] = listed.pixel;
-                        let pixel = RichText::new(format!("pixel {x}, {y}")).small();
-                        ui.label(pixel.color(ui.visuals().weak_text_color()));
+                        small(ui, format!("pixel {x}, {y}"));
                     },
                     |ui| {
                         let last = listed.paths.len() - 1;
@@ -65,8 +64,7 @@ impl Paths {
             });
             ui.vertical(|ui| {
                 ui.spacing_mut().item_spacing.y = 4.0;
-                let weak = ui.visuals().weak_text_color();
-                ui.label(RichText::new("Seen from the side").small().color(weak));
+                small(ui, "Seen from the side");
                 side::ui(ui, path, self.point, &listed.document);
             });
         });

@@ -108,7 +108,7 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
 /// such place.
 pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
     let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
-    let (radius, eye, basis) = (original.radius, camera.look_from, camera.basis());
+    let (radius, basis) = (original.radius, camera.basis());
     let overlaps = |center: DVec3, other: &Sphere| {
         center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
     };
@@ -117,16 +117,13 @@ pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DV
         let is_obstacle = |other: &Sphere| overlaps(center, other) && !overlaps(original.center, other);
         !scene.spheres.iter().any(is_obstacle)
     };
-    let is_seen = |center: DVec3| {
-        let place = camera.place_of(center, aspect);
-        let is_in_picture = place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)));
-        let (direction, distance) = ((center - eye).normalize_or_zero(), eye.distance(center));
-        let hiding = || scene.pick(eye, direction).is_some_and(|pick| pick.distance < distance - radius);
-        is_in_picture && distance > 2.0 * radius && !hiding()
-    };
     let (right, up, back) = (basis.u, basis.v, basis.w);
     let directions = [right, -right, up, right + up, up - right, right - back, -right - back, back];
     let places = directions.map(|direction| COPY_RADII * radius * direction.normalize());
+    let is_seen = |center: DVec3| {
+        let place = camera.place_of(center, aspect);
+        place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)))
+    };
     let is_good = |by: &&DVec3| is_free(original.center + **by) && is_seen(original.center + **by);
     *places.iter().find(is_good).unwrap_or(&places[2])
 }

@@ -80,8 +80,13 @@ pub fn inside(document: &Document) -> bool {
         && spheres.iter().any(|sphere| clearance(sphere, eye) < 0.0)
 }
 
-/// Whether the camera sees nothing but sky and ground.
-pub fn is_lost(document: &Document, camera: &Camera) -> bool {
+/// Whether the camera sees nothing but sky and ground, and that of the stage sees more.
+pub fn is_lost(document: &Document) -> bool {
+    let home = document.origin.recipe.camera;
+    document.camera != home && sees_nothing(document, &document.camera) && !sees_nothing(document, &home)
+}
+
+fn sees_nothing(document: &Document, camera: &Camera) -> bool {
     /// Rays across and down.
     const RAYS: usize = 9;
     let scene = document.scene();
@@ -142,10 +147,11 @@ mod tests {
     fn a_camera_in_a_sphere_and_one_that_sees_nothing_are_noticed() {
         let mut window = window("weekender --stage view-distant --size 16x9 --device cpu");
         let document = &mut window.model.document;
-        assert!(!inside(document) && !is_lost(document, &document.camera));
+        assert!(!inside(document) && !is_lost(document));
         let away =
             Camera { look_at: document.camera.look_from + DVec3::new(0.0, 0.5, 9.0), ..document.camera };
-        assert!(is_lost(document, &away));
+        document.camera = away;
+        assert!(is_lost(document));
         document.camera.look_from = document.scene().spheres[1].center;
         assert!(inside(document));
     }

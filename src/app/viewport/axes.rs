@@ -86,7 +86,7 @@ pub(super) fn ui(
 }
 
 fn paint_end(ui: &Ui, middle: Pos2, (side, at, depth): (Viewpoint, Pos2, f64), is_hot: bool) {
-    let (painter, surround) = (ui.painter(), theme::surround(ui));
+    let (painter, surround) = (ui.painter(), theme::colours(ui).surround);
     // What points away is paler.
     let colour = surround.lerp_to_gamma(COLOURS[side.axis()], 0.81 + 0.19 * depth as f32);
     let edge = if is_hot { Stroke::new(1.5, ui.visuals().strong_text_color()) } else { Stroke::NONE };

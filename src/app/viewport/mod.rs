@@ -2,7 +2,7 @@
 
 mod axes;
 mod moving;
-mod paint;
+pub mod paint;
 mod placement;
 mod selection;
 
@@ -72,8 +72,6 @@ pub struct Touch {
     pub is_refused: bool,
     /// The camera was dragged around a point.
     pub is_orbit: bool,
-    /// A drag has ended that leaves nothing but sky and ground in sight.
-    pub is_lost: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
@@ -82,7 +80,6 @@ pub struct Touch {
     pub said: Option<String>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
-    pub is_divider_moved: bool,
     pub edit: Option<Edit>,
     /// The area of the viewport.
     pub room: Option<Rect>,
@@ -124,9 +121,8 @@ impl Viewport {
         let rect = self.place(ui, room, facts);
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = view.mode() == Some(Mode::Wipe);
-        let before = (*divider, *camera);
+        let before = *camera;
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        touch.is_divider_moved = *divider != before.0;
         if is_kept && !is_held {
             moving::move_picture(ui, &response, &mut self.placement);
             is_held = true;
@@ -140,7 +136,7 @@ impl Viewport {
             self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
             self.handle_click(ui, &response, live, camera, &mut touch);
         }
-        if touch.is_move && camera.basis().w != before.1.basis().w {
+        if touch.is_move && camera.basis().w != before.basis().w {
             self.turned = Some(Instant::now());
         }
         let document = match is_kept {

@@ -4,7 +4,6 @@ use super::placement::Placement;
 use super::{Touch, place_at, point_at};
 use crate::app::model::document::Document;
 use crate::app::navigation;
-use crate::app::spheres::is_lost;
 use crate::scene::Camera;
 use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
 use glam::DVec3;
@@ -48,8 +47,8 @@ impl Moving {
         let is_primary = response.dragged_by(PointerButton::Primary);
         let is_panning = response.dragged_by(PointerButton::Middle) || (is_primary && modifiers.shift);
         let is_orbit = is_primary && !is_panning;
-        if !is_orbit && self.pivot.take().is_some() {
-            touch.is_lost = is_lost(document, camera);
+        if !is_orbit {
+            self.pivot = None;
         }
         if is_panning {
             pan(ui, response, placement);

@@ -3,7 +3,6 @@
 use super::placement::Placement;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
-use crate::app::model::fitted::Fitted;
 use crate::app::model::show::Show;
 use crate::app::model::view::Mode;
 use crate::app::paths::Paths;
@@ -43,8 +42,6 @@ pub struct Pictures<'a> {
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first, each from the longest to the shortest.
     pub titles: [Vec<String>; 2],
-    /// Whether a difference is nothing anywhere.
-    pub is_same: bool,
 }
 
 /// The picture at the other side of a wipe.
@@ -52,8 +49,8 @@ pub struct SecondPicture<'a> {
     pub texture: &'a mut Texture,
     /// The factor by which it is smaller than its full size.
     pub divisor: u32,
-    /// Where it lies in the place of the first picture.
-    pub fitted: Fitted,
+    /// Its full size is another than that of the first picture.
+    pub is_scaled: bool,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -74,10 +71,10 @@ pub(super) fn paint(
         let is_square = divisor == 1 && !is_scaled && (is_exact || times >= SQUARES);
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
-    let Pictures { main, has_film, second, paths, values, titles, is_same } = pictures;
+    let Pictures { main, has_film, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
-    fill_around(&painter, room, hole, theme::surround(ui));
+    fill_around(&painter, room, hole, theme::colours(ui).surround);
     let view = &facts.model.view;
     if let Some((texture, divisor)) = main {
         painter.image(texture.id(ui.ctx(), options(divisor, false)), rect, WHOLE, Color32::WHITE);
@@ -90,11 +87,11 @@ pub(super) fn paint(
     let [theirs, mine] = titles.each_ref().map(Vec::as_slice);
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some(second)) => {
-            let texture = second.texture.id(ui.ctx(), options(second.divisor, !second.fitted.is_exact()));
+            let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
             let x = rect.lerp_inside(vec2(divider, 0.0)).x;
             let side = Rect { max: pos2(x, rect.bottom()), ..rect };
-            paint_second(ui, &painter, rect, side, (texture, &second.fitted));
-            paint_divider(&painter, corners, x);
+            painter.image(texture, side, Rect { max: pos2(divider, 1.0), ..WHOLE }, Color32::WHITE);
+            self::divider(&painter, corners, x);
             title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
             title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
         }
@@ -105,9 +102,6 @@ pub(super) fn paint(
         _ => {}
     }
     let is_difference = view.mode() == Some(Mode::Difference);
-    if is_same {
-        title(ui, &painter, corners, Align2::RIGHT_TOP, &["Identical to the bit".to_owned()]);
-    }
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         paint_scale(ui, &painter, corners, &scale);
@@ -144,25 +138,8 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
-/// Draws the second picture at its `side` of the divider.
-fn paint_second(
-    ui: &Ui,
-    painter: &Painter,
-    rect: Rect,
-    side: Rect,
-    (texture, fitted): (egui::TextureId, &Fitted),
-) {
-    let [left, top, right, bottom] = fitted.part().map(|share| share as f32);
-    let place = Rect::from_min_max(rect.lerp_inside(vec2(left, top)), rect.lerp_inside(vec2(right, bottom)));
-    let seen = place.intersect(side);
-    fill_around(painter, side, seen, theme::surround(ui));
-    if seen.is_positive() {
-        let [min, max] = [seen.min, seen.max].map(|corner| ((corner - place.min) / place.size()).to_pos2());
-        painter.image(texture, seen, Rect { min, max }, Color32::WHITE);
-    }
-}
-
-fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
+/// The divider of a wipe, with a round handle.
+pub fn divider(painter: &Painter, rect: Rect, x: f32) {
     const HANDLE: f32 = 24.0;
     painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
@@ -193,7 +170,7 @@ fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
 }
 
 /// The longest of these titles that has room in a corner of the area; none if none has.
-fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
+pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
     let area = area.shrink(CORNER);
     let at = corner.pos_in_rect(&area);
     if let Some(text) =
@@ -224,7 +201,7 @@ pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: 
     let inwards = (clip.min - rect.min).max(egui::Vec2::ZERO) - (rect.max - clip.max).max(egui::Vec2::ZERO);
     let rect = rect.translate(inwards);
     let fill = match ui.visuals().dark_mode {
-        true => theme::surround(ui).gamma_multiply(0.88),
+        true => theme::colours(ui).surround.gamma_multiply(0.88),
         false => ui.visuals().panel_fill.gamma_multiply(0.93),
     };
     painter.rect_filled(rect, CornerRadius::same(4), fill);
@@ -263,7 +240,7 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     let layer = egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop"));
     let painter = ui.ctx().layer_painter(layer);
     painter.rect_filled(room, 0.0, ui.visuals().panel_fill.gamma_multiply(0.8));
-    let edge = Stroke::new(2.0, theme::accent(ui));
+    let edge = Stroke::new(2.0, theme::colours(ui).accent);
     painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
     let font = TextStyle::Heading.resolve(ui.style());
     painter.text(

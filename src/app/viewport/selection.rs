@@ -86,7 +86,7 @@ impl Selection {
             let pointer = ui.input(|input| input.pointer.hover_pos());
             let is_near = || pointer.is_some_and(|to| to.distance(at) < GRIP);
             let is_hot = self.0.map_or_else(is_near, |held| held.grip == Grip::Radius);
-            let fill = if is_hot { theme::accent(ui) } else { Color32::WHITE };
+            let fill = if is_hot { theme::colours(ui).accent } else { Color32::WHITE };
             painter.circle(at, 5.0, fill, Stroke::new(1.5, Color32::from_black_alpha(190)));
         }
         let Body { center, radius, .. } = selected.body;

@@ -5,11 +5,12 @@ use crate::system::console;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
+use terminal_size::{Width, terminal_size_of};
 
 /// How progress is shown.
 pub enum Display {
-    /// A progress bar.
-    Bar(ProgressBar),
+    /// A progress bar with its template, and the columns that this takes without the message.
+    Bar(ProgressBar, String, usize),
     /// Single lines.
     Lines {
         /// When the next line may be printed.
@@ -28,8 +29,17 @@ impl Display {
         match (choice, stderr().is_terminal()) {
             (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
             (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },
-            (_, true) => Display::Bar(bar(ProgressDrawTarget::stderr(), steps, template, prefix)),
+            (_, true) => Display::bar(ProgressDrawTarget::stderr(), steps, template, prefix),
         }
+    }
+
+    fn bar(target: ProgressDrawTarget, steps: u64, template: &str, prefix: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(steps), target);
+        let prefix = console::printable(prefix).into_owned();
+        let filled = template.replace("{prefix}", &prefix).replace("{bar:24}", &"=".repeat(24));
+        let beside = filled.replace("{eta}", "00m00s").replace(MESSAGE, "").chars().count();
+        bar.set_prefix(prefix);
+        Display::Bar(bar, template.to_owned(), beside)
     }
 
     /// Shows `text` at step `position`. A line is printed only if one is due.
@@ -40,12 +50,23 @@ impl Display {
         }
     }
 
-    /// Shows `text` at step `position` even if no line is due.
+    /// Shows `text` at step `position` even if no line is due. On a narrow terminal, the last of its parts, which commas
+    /// separate, are left out.
     pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
-            Display::Bar(bar) => {
+            Display::Bar(bar, template, beside) => {
+                let columns =
+                    terminal_size_of(stderr()).map_or(80, |(Width(columns), _)| usize::from(columns));
+                let text = text();
+                let text = console::printable(&text);
+                let first = text.split(", ").next().unwrap_or_default().chars().count();
+                let (template, beside) =
+                    if *beside + first <= columns { (template.as_str(), *beside) } else { (MESSAGE, 0) };
+                if let Ok(style) = ProgressStyle::with_template(template) {
+                    bar.set_style(style.progress_chars("=> "));
+                }
                 bar.set_position(position);
-                bar.set_message(console::printable(&text()).into_owned());
+                bar.set_message(fitted(&text, columns.saturating_sub(beside)).to_owned());
             }
             Display::Lines { next, interval } => {
                 *next = Instant::now() + *interval;
@@ -67,26 +88,27 @@ impl Display {
     /// Hides the bar while `print` writes to the terminal.
     pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
         match self {
-            Display::Bar(bar) => bar.suspend(print),
+            Display::Bar(bar, ..) => bar.suspend(print),
             _ => print(),
         }
     }
 
     /// Removes the bar.
     pub fn clear(&self) {
-        if let Display::Bar(bar) = self {
+        if let Display::Bar(bar, ..) = self {
             bar.finish_and_clear();
         }
     }
 }
 
-fn bar(target: ProgressDrawTarget, steps: u64, template: &str, prefix: &str) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(steps), target);
-    if let Ok(style) = ProgressStyle::with_template(template) {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.set_prefix(console::printable(prefix).into_owned());
-    bar
+/// The placeholder of the text in a template.
+const MESSAGE: &str = "{wide_msg}";
+
+/// The first parts of a text that fit into `columns`, at least one.
+fn fitted(text: &str, columns: usize) -> &str {
+    let ends = text.match_indices(", ").map(|(end, _)| end).chain([text.len()]);
+    let fitting = ends.clone().take_while(|end| text[..*end].chars().count() <= columns).last();
+    &text[..fitting.or(ends.clone().next()).unwrap_or(text.len())]
 }
 
 #[cfg(test)]
@@ -114,9 +136,22 @@ mod tests {
     }
 
     #[test]
+    fn whole_parts_of_a_text_fit() {
+        let text = "error 1e-3, 64 spp, ö left";
+        for (columns, shown) in
+            [(80, text), (26, text), (25, "error 1e-3, 64 spp"), (12, "error 1e-3"), (3, "error 1e-3")]
+        {
+            assert_eq!(fitted(text, columns), shown, "{columns}");
+        }
+        assert_eq!(fitted("", 5), "");
+    }
+
+    #[test]
     fn bar_escapes_control_characters() {
-        let bar = bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:8}] {wide_msg}", "a\u{1b}b");
-        let mut display = Display::Bar(bar.clone());
+        let mut display =
+            Display::bar(ProgressDrawTarget::hidden(), 4, "{prefix} [{bar:24}] {wide_msg}", "a\u{1b}b");
+        let Display::Bar(bar, ..) = &display else { panic!("no bar") };
+        let bar = bar.clone();
         display.update(2, || "half\u{1b} done".to_owned());
         assert_eq!((bar.position(), bar.length()), (2, Some(4)));
         assert_eq!((bar.prefix(), bar.message()), ("a\\u{1b}b".to_owned(), "half\\u{1b} done".to_owned()));

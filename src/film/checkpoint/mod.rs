@@ -5,6 +5,7 @@
 //! `rest.R.lo`, `rest.R.hi` and so on (32-bit unsigned) are the low and high words of what the rounding of the mean
 //! loses: mean times samples times 2^24, rounded, plus the rest is the exact sum. The rest is small, so it takes little
 //! space. If there are two halves, `sum.a.R.lo` and so on are the sums of the first; the second's is the difference.
+//! Channels `denoised.R`, `.G` and `.B`, if present, are a denoised picture for other programs; they are not read.
 //! Three text attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
 //! `weekenderFilm` the `Head`.
 //!
@@ -24,8 +25,8 @@ pub(crate) use length::check_length;
 pub(crate) use open::read_description;
 pub use open::{FilmHead, read_head};
 pub use read::{check, load, read};
-pub use write::save;
 pub(crate) use write::write;
+pub use write::{save, save_with};
 
 use super::{Description, Film, FilmError, PixelSum, SOFTWARE, SampleRanges};
 use crate::system::files::{InputError, ShownPath};
@@ -41,6 +42,9 @@ pub const SAMPLE_VERSION: u32 = 3;
 
 /// The first bytes of an OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// The layer of a film file that has the denoised picture.
+pub const DENOISED_LAYER: &str = "denoised";
 
 const FILM_ATTRIBUTE: &str = "weekenderFilm";
 const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
@@ -64,6 +68,12 @@ pub enum CheckpointError {
         path.shown()
     )]
     NotFilm { path: PathBuf },
+    #[error(
+        "{} is no film any more: another program has saved it again, and its sums are lost ({what}); add samples to the film \
+         as Weekender saved it, or compare this one as a picture",
+        path.shown()
+    )]
+    Resaved { path: PathBuf, what: String },
     #[error(
         "{} is a film of layout {layout} with samples of version {samples}, written by {writer}, but this program \
          ({SOFTWARE}) has layout {VERSION} and samples of version {SAMPLE_VERSION}; continue with {writer}, or render it again",
@@ -112,7 +122,7 @@ mod tests {
         change(&mut head);
         head.head_checksum = head.checksum(TEXTS);
         let mut file = Cursor::new(Vec::new());
-        write_with(&film, TEXTS, &head, &mut file).unwrap();
+        write_with(&film, None, TEXTS, &head, &mut file).unwrap();
         file.into_inner()
     }
 
@@ -127,6 +137,10 @@ mod tests {
             let message = opened(&file(change)).unwrap_err().to_string();
             assert!(message.contains("x.exr is damaged") && message.contains(part), "{part}: {message}");
         };
+        let resaved = |change: fn(&mut Head), part: &str| {
+            let message = opened(&file(change)).unwrap_err().to_string();
+            assert!(message.contains("no film any more") && message.contains(part), "{part}: {message}");
+        };
         refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
         refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");
         refused(|head| head.samples = vec![[7, 7]], "7..7");
@@ -137,8 +151,8 @@ mod tests {
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
         refused(|head| head.halves = 3, "3 halves and 1 checksums of bands");
-        refused(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
-        refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
+        resaved(|head| head.halves = 1, "its channels are not those of a film: B, G, R, rest.B.hi");
+        resaved(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
 
     #[test]

@@ -60,8 +60,14 @@ impl<'a> Opened<'a> {
         let reader = Reader::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
         let not_film = || CheckpointError::NotFilm { path: path.to_owned() };
         let [header] = reader.headers() else { return Err(not_film()) };
-        let (head, description) = read_texts(header, path)?.ok_or_else(not_film)?;
-        let planes = planes::find(header, &head).map_err(|what| damaged(path, what))?;
+        let opened = Self::with(header, length, path).map_err(|error| resaved_or(error, header))?;
+        Ok((opened.ok_or_else(not_film)?, reader))
+    }
+
+    fn with(header: &Header, length: u64, path: &'a Path) -> Result<Option<Self>, CheckpointError> {
+        let Some((head, description)) = read_texts(header, path)? else { return Ok(None) };
+        let resaved = |what| CheckpointError::Resaved { path: path.to_owned(), what };
+        let planes = planes::find(header, &head).map_err(resaved)?;
         check_length(header, length).map_err(|what| damaged(path, what))?;
         let about = FilmHead {
             width: head.width,
@@ -72,7 +78,7 @@ impl<'a> Opened<'a> {
             description,
             bytes: length,
         };
-        Ok((Opened { path, header: header.clone(), about, bands: head.bands, planes }, reader))
+        Ok(Some(Opened { path, header: header.clone(), about, bands: head.bands, planes }))
     }
 }
 
@@ -87,7 +93,20 @@ pub(crate) fn read_description(
     check_magic(&mut reader, path)?;
     let meta = MetaData::read_from_buffered(reader, true).map_err(|error| damaged(path, error))?;
     let [header] = meta.headers.as_slice() else { return Ok(None) };
-    Ok(read_texts(header, path)?.map(|(_, description)| description))
+    match read_texts(header, path).map_err(|error| resaved_or(error, header)) {
+        Err(CheckpointError::Resaved { .. }) => Ok(None),
+        texts => Ok(texts?.map(|(_, description)| description)),
+    }
+}
+
+/// Turns damage into [`CheckpointError::Resaved`] if the file has attributes that this program doesn't write.
+pub(super) fn resaved_or(error: CheckpointError, header: &Header) -> CheckpointError {
+    let (own, shared) = (&header.own_attributes, &header.shared_attributes);
+    let is_ours = own.other.len() == 1 && shared.other.len() == 1 && own.capture_date.is_none();
+    match error {
+        CheckpointError::Damaged { path, what } if !is_ours => CheckpointError::Resaved { path, what },
+        error => error,
+    }
 }
 
 pub(super) fn damaged(path: &Path, what: impl Display) -> CheckpointError {

@@ -1,7 +1,7 @@
 //! What the channels of a film file hold, and how sums become words and back.
 
 use super::head::Head;
-use super::{Film, PixelSum};
+use super::{DENOISED_LAYER, Film, PixelSum};
 use crate::film::SIZE_LIMIT;
 use exr::block::UncompressedBlock;
 use exr::meta::BlockDescription;
@@ -14,6 +14,8 @@ use exr::prelude::{ChannelDescription, Compression, SampleType, Text, Vec2};
 pub(super) enum Plane {
     /// The picture.
     Mean { colour: usize },
+    /// A denoised picture, which is not part of the film and not read.
+    Denoised { colour: usize },
     /// Words of the sums of the first of two halves. Those of the last half follow from the others.
     Sum { colour: usize, shift: u32 },
     /// Words of the rest: see [`mean_and_rest`].
@@ -21,7 +23,7 @@ pub(super) enum Plane {
 }
 
 /// The channels of a film with this number of halves, sorted by name as the format requires, and what they hold.
-pub(super) fn channels(half_count: usize) -> Vec<(ChannelDescription, Plane)> {
+pub(super) fn channels(half_count: usize, is_denoised: bool) -> Vec<(ChannelDescription, Plane)> {
     let mut channels = Vec::new();
     let mut add = |name: &str, sample_type, plane| {
         let name = Text::from_slice_unchecked(name.as_bytes());
@@ -29,6 +31,9 @@ pub(super) fn channels(half_count: usize) -> Vec<(ChannelDescription, Plane)> {
     };
     for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
         add(name, SampleType::F32, Plane::Mean { colour });
+        if is_denoised {
+            add(&format!("{DENOISED_LAYER}.{name}"), SampleType::F32, Plane::Denoised { colour });
+        }
         for (shift, word) in [(0, "lo"), (32, "hi")] {
             add(&format!("rest.{name}.{word}"), SampleType::U32, Plane::Rest { colour, shift });
             if half_count == 2 {
@@ -53,11 +58,13 @@ pub(super) fn find(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
     if header.deep || header.blocks != BlockDescription::ScanLines || header.compression != Compression::RLE {
         return Err("its pixels are not stored as those of a film".to_owned());
     }
-    let known = channels(head.halves);
+    let list = &header.channels.list;
+    let is_denoised =
+        list.iter().any(|channel| channel.name.as_slice().starts_with(DENOISED_LAYER.as_bytes()));
+    let known = channels(head.halves, is_denoised);
     let is_known = |(found, (known, _)): (&ChannelDescription, &(ChannelDescription, Plane))| {
         (&found.name, found.sample_type) == (&known.name, known.sample_type)
     };
-    let list = &header.channels.list;
     if list.len() != known.len() || !list.iter().zip(&known).all(is_known) {
         let names: Vec<String> = list.iter().map(|channel| channel.name.to_string()).collect();
         return Err(format!("its channels are not those of a film: {}", names.join(", ")));
@@ -122,6 +129,7 @@ impl Row {
             for (pixel, word) in self.pixels.iter_mut().zip(&self.words) {
                 match plane {
                     Plane::Mean { colour } => pixel.means[colour] = *word,
+                    Plane::Denoised { .. } => {}
                     Plane::Sum { colour, shift } => pixel.first[colour] |= u64::from(*word) << shift,
                     Plane::Rest { colour, shift } => pixel.rests[colour] |= u64::from(*word) << shift,
                 }
@@ -151,9 +159,10 @@ impl Row {
     }
 }
 
-/// Appends a row of `film`: the words of each channel in turn.
+/// Appends a row of `film`, and of its denoised picture: the words of each channel in turn.
 pub(super) fn append_row(
     film: &Film,
+    denoised: Option<&Film>,
     channels: &[(ChannelDescription, Plane)],
     row: usize,
     data: &mut Vec<u8>,
@@ -166,6 +175,10 @@ pub(super) fn append_row(
         match *plane {
             Plane::Mean { colour } => {
                 data.extend(totals.iter().flat_map(|total| total[colour].0.to_ne_bytes()));
+            }
+            Plane::Denoised { colour } => {
+                let mean = |pixel: usize| denoised.map_or(0.0, |film| film.mean(pixel)[colour] as f32);
+                data.extend(pixels.clone().flat_map(|pixel| mean(pixel).to_ne_bytes()));
             }
             Plane::Rest { colour, shift } => {
                 data.extend(

@@ -1,7 +1,7 @@
 //! Reading the sums of a film file. The head, the file's length and the memory needed are checked first.
 
 use super::head::{BAND_ROWS, band_checksum, band_count, band_rows};
-use super::open::{FilmHead, Opened, damaged};
+use super::open::{FilmHead, Opened, damaged, resaved_or};
 use super::planes::Row;
 use super::{CheckpointError, Film, FilmError, FilmFile, PixelSum, threads};
 use crate::system::files;
@@ -23,7 +23,7 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     let (file, length) = files::open(path)?;
     let (opened, _) = Opened::new(At::start(&file), length, path)?;
     let mut halves = opened.halves()?;
-    opened.read_all(&file, &mut halves)?;
+    opened.read_all(&file, &mut halves).map_err(|error| resaved_or(error, &opened.header))?;
     opened.film(halves)
 }
 
@@ -46,7 +46,7 @@ pub fn read(reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFi
 pub fn check(path: &Path) -> Result<FilmHead, CheckpointError> {
     let (file, length) = files::open(path)?;
     let (opened, _) = Opened::new(At::start(&file), length, path)?;
-    opened.read_all(&file, &mut [])?;
+    opened.read_all(&file, &mut []).map_err(|error| resaved_or(error, &opened.header))?;
     Ok(opened.about)
 }
 

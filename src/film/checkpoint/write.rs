@@ -22,7 +22,20 @@ const ROWS_AT_ONCE: usize = 32;
 /// # Errors
 /// [`WriteError`]; the previous file is then unchanged.
 pub fn save(path: &Path, film: &Film, description: &Description) -> Result<(), WriteError> {
-    replace_file(path, |writer| write(film, description, writer))
+    save_with(path, film, None, description)
+}
+
+/// As [`save`], with a denoised picture of the film as a layer for other programs.
+///
+/// # Errors
+/// As [`save`].
+pub fn save_with(
+    path: &Path,
+    film: &Film,
+    denoised: Option<&Film>,
+    description: &Description,
+) -> Result<(), WriteError> {
+    replace_file(path, |writer| write(film, denoised, description, writer))
 }
 
 /// Writes a film file.
@@ -31,22 +44,24 @@ pub fn save(path: &Path, film: &Film, description: &Description) -> Result<(), W
 /// Those of `writer`.
 pub(crate) fn write(
     film: &Film,
+    denoised: Option<&Film>,
     description: &Description,
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
     let comments: String = description.lines().map(|line| line + "\n").collect();
     let texts = [description.recipe().as_bytes(), comments.as_bytes()];
-    write_with(film, texts, &Head::of(film, texts), writer)
+    write_with(film, denoised, texts, &Head::of(film, texts), writer)
 }
 
 /// Writes a film file with the given head.
 pub(super) fn write_with(
     film: &Film,
+    denoised: Option<&Film>,
     [recipe, comments]: Texts,
     head: &Head,
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
-    let planes = planes::channels(film.halves().len());
+    let planes = planes::channels(film.halves().len(), denoised.is_some());
     let channels: SmallVec<[ChannelDescription; 5]> =
         planes.iter().map(|(channel, _)| channel.clone()).collect();
     let size = (film.width() as usize, film.height() as usize);
@@ -70,7 +85,7 @@ pub(super) fn write_with(
     exr::block::write(writer, headers, true, |meta, chunks| {
         let blocks: Vec<(usize, BlockIndex)> = meta.enumerate_ordered_header_block_indices().collect();
         for batch in blocks.chunks(threads() * ROWS_AT_ONCE) {
-            for (index, chunk) in compressed(film, &planes, &meta, batch)? {
+            for (index, chunk) in compressed(film, denoised, &planes, &meta, batch)? {
                 chunks.write_chunk(index, chunk)?;
             }
         }
@@ -82,6 +97,7 @@ pub(super) fn write_with(
 /// Compresses blocks with several threads. They keep their order, so the file does not depend on the threads.
 fn compressed(
     film: &Film,
+    denoised: Option<&Film>,
     planes: &[(ChannelDescription, Plane)],
     meta: &MetaData,
     blocks: &[(usize, BlockIndex)],
@@ -91,7 +107,7 @@ fn compressed(
             let mut data =
                 Vec::with_capacity(film.width() as usize * meta.headers[0].channels.bytes_per_pixel);
             // With RLE, a block is a row.
-            planes::append_row(film, planes, index.pixel_position.y(), &mut data);
+            planes::append_row(film, denoised, planes, index.pixel_position.y(), &mut data);
             let block = UncompressedBlock { index: *index, data };
             Ok((*number, block.compress_to_chunk(&meta.headers)?))
         };

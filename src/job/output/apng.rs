@@ -92,8 +92,7 @@ pub fn check_frame(path: &Path, size: [u32; 2]) -> Result<(), OutputError> {
 
 fn pixels_of(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, OutputError> {
     let (file, _) = files::open(path)?;
-    png::read_pixels(BufReader::new(file), size)
-        .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+    png::read_pixels(BufReader::new(file), size).map_err(|reason| OutputError::unreadable(path, &reason))
 }
 
 #[cfg(test)]

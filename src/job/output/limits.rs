@@ -25,9 +25,9 @@ pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
 /// quantisation steps.
 const BYTES_PER_PIXEL: u64 = 80;
 
-/// Returns an error if the picture would not fit into memory.
-pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
-    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+/// Returns an error if the picture would not fit into memory, with `more` bytes for each pixel than usual.
+pub(super) fn check_memory(width: u32, height: u32, more: u64) -> io::Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
     let what = || format!("a picture of {width}x{height} pixels");
     memory::check(what, bytes, "close other programs or make it smaller")
         .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))

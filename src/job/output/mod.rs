@@ -1,15 +1,19 @@
-//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`].
+//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film, all with a [`Description`]; and
+//! PFM, which has no place for one.
 //! Pictures of other programs can be read, too: [`read_picture`].
 
 mod apng;
+mod exr;
 mod limits;
-mod pfm;
+mod netpbm;
 mod png;
 mod ppm;
 mod read;
 
 pub use apng::{FrameRate, animation_in, check_frame, write_animation};
-pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
+pub use read::{
+    Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
+};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 
@@ -23,18 +27,22 @@ use std::path::{Path, PathBuf};
 const RECIPE_LIMIT: usize = 256 << 20;
 
 /// File format of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
 pub enum OutputFormat {
     /// 8-bit RGB.
     Png,
     /// Binary PPM, 8-bit RGB: the book's format in binary form.
+    #[value(name = "ppm")]
     P6,
     /// Linear float RGB and the film's exact sums: see [`crate::film::checkpoint`].
     Exr,
+    /// Linear float RGB, without a description.
+    Pfm,
 }
 
 impl OutputFormat {
-    pub const ALL: [OutputFormat; 3] = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr];
+    pub const ALL: [OutputFormat; 4] =
+        [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr, OutputFormat::Pfm];
 
     /// File extension, with the dot.
     pub fn ending(self) -> &'static str {
@@ -42,6 +50,7 @@ impl OutputFormat {
             OutputFormat::Png => ".png",
             OutputFormat::P6 => ".ppm",
             OutputFormat::Exr => ".exr",
+            OutputFormat::Pfm => ".pfm",
         }
     }
 
@@ -62,7 +71,7 @@ impl OutputFormat {
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     #[error(
-        "cannot tell the picture format of {}; let the name end in one of {}",
+        "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
         path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
     )]
     UnknownEnding { path: PathBuf },
@@ -74,13 +83,20 @@ pub enum OutputError {
     /// The film is damaged or of another version.
     #[error(transparent)]
     Film(#[from] CheckpointError),
-    #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.shown())]
+    #[error("cannot read {}: {reason}", path.shown())]
     Read { path: PathBuf, reason: io::Error },
     #[error(
         "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
         path.shown()
     )]
     NoDescription { path: PathBuf },
+}
+
+impl OutputError {
+    fn unreadable(path: &Path, reason: &io::Error) -> Self {
+        let reason = limits::invalid(format!("{reason}; check whether the file is complete"));
+        OutputError::Read { path: path.to_owned(), reason }
+    }
 }
 
 /// How a PPM stores its numbers.
@@ -106,12 +122,14 @@ pub enum PngForm {
 /// Variants of the formats that have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Forms {
+    /// The format, if not that of the name's extension.
+    pub format: Option<OutputFormat>,
     pub ppm: PpmForm,
     pub png: PngForm,
 }
 
 /// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
-/// for 8-bit formats; an EXR file is linear and holds the film.
+/// for 8-bit formats; the others are linear, and an EXR file holds the film.
 ///
 /// # Errors
 /// [`OutputError`]; an existing file is then unchanged.
@@ -135,11 +153,12 @@ pub fn write_image_as(
     description: &Description,
     forms: Forms,
 ) -> Result<(), OutputError> {
-    let format = OutputFormat::from_path(path)?;
+    let format = forms.format.map_or_else(|| OutputFormat::from_path(path), Ok)?;
     replace_file(path, |writer| match format {
         OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
         OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
-        OutputFormat::Exr => checkpoint::write(film, description, writer),
+        OutputFormat::Exr => checkpoint::write(film, None, description, writer),
+        OutputFormat::Pfm => netpbm::write_pfm(film, writer),
     })?;
     Ok(())
 }
@@ -174,7 +193,7 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
 /// # Errors
 /// As for [`read_description`].
 pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description, OutputError> {
-    let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
+    let unreadable = |reason: io::Error| OutputError::unreadable(path, &reason);
     let start = start_of(&mut reader).map_err(unreadable)?;
     let found = match start.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,

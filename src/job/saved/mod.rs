@@ -59,7 +59,11 @@ impl Saved {
             Ok(FilmFile { film, description }) => {
                 Ok(Saved { path: path.to_owned(), description, film: Some(film) })
             }
-            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => Self::describe(path),
+            Err(
+                CheckpointError::NotExr { .. }
+                | CheckpointError::NotFilm { .. }
+                | CheckpointError::Resaved { .. },
+            ) => Self::describe(path),
             Err(error) => Err(OpenError::Film(error)),
         }
     }
@@ -178,7 +182,10 @@ pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
     checkpoint::read_head(path).map_err(OpenError::Film)?;
     match open(path)? {
         Opened { job, content: Content::Film(film), .. } => Ok((job, film)),
-        _ => Err(OpenError::Film(CheckpointError::NotFilm { path: path.to_owned() })),
+        _ => {
+            let reason = checkpoint::load(path).err();
+            Err(OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() })))
+        }
     }
 }
 

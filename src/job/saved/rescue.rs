@@ -57,7 +57,7 @@ fn save_in(directory: &Path, picture: &str, film: &Film, description: &Descripti
     let prefix = format!("weekender-{picture}-");
     let file = tempfile::Builder::new().prefix(&prefix).suffix(".exr").tempfile_in(directory)?;
     let mut writer = BufWriter::new(file.as_file());
-    checkpoint::write(film, description, &mut writer)?;
+    checkpoint::write(film, None, description, &mut writer)?;
     writer.flush()?;
     drop(writer);
     file.as_file().sync_data()?;

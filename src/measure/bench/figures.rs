@@ -29,6 +29,17 @@ pub struct SceneFigures {
     pub spheres: usize,
     /// Rows in the table's order.
     pub rows: Vec<Row>,
+    pub denoising: Option<Denoising>,
+}
+
+/// The filter's time for a film of a scene.
+#[derive(Serialize)]
+pub struct Denoising {
+    pub samples_per_pixel: u64,
+    pub threads: usize,
+    pub seconds: Spread,
+    /// By what factor the squared error falls, as estimated.
+    pub gain: f64,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -224,6 +235,7 @@ impl SceneFigures {
             sampler: settings.sampler.name(),
             spheres: job.scene().spheres.len(),
             rows,
+            denoising: None,
         }
     }
 }

@@ -13,13 +13,14 @@ use super::{Candidate, Source, Stop, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::denoise;
 use crate::job::render::RenderJob;
 use crate::numbers::chart;
 use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
-use figures::{BenchFigures, Kind, Row, Run, SceneFigures, Spread};
+use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -32,6 +33,9 @@ const SPREAD_LIMIT: f64 = 0.1;
 
 /// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
+
+/// Samples per pixel of the film that is denoised.
+const DENOISED_SAMPLES: u64 = 16;
 
 /// Shortest warm-up with a meaningful speed, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
@@ -108,11 +112,29 @@ impl Bench<'_> {
         self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs));
         for BenchScene { name, job, samples, .. } in scenes {
             let rows = self.rows(name, job, *samples, &mut candidates);
-            self.figures.scenes.push(SceneFigures::new(name, job, rows));
+            let mut figures = SceneFigures::new(name, job, rows);
+            figures.denoising = self.denoising(job);
+            self.figures.scenes.push(figures);
             if self.is_cancelled() {
                 break;
             }
         }
+    }
+
+    /// How long the filter takes for a film of the scene; `None` if it cannot be rendered or denoised.
+    fn denoising(&self, job: &RenderJob) -> Option<Denoising> {
+        let (level, threads) = (self.best_level(), self.options.threads());
+        let traced =
+            cpu(level, level.native_lanes(), threads).trace(job, DENOISED_SAMPLES, self.cancel).ok()?;
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;
+        let run = |_| {
+            let begin = Instant::now();
+            let error = pool.install(|| denoise::of_film(&traced.film)).ok()?.error;
+            Some((begin.elapsed().as_secs_f64(), error.raw_mse / error.mse))
+        };
+        let runs = (0..self.options.runs).map(run).collect::<Option<Vec<_>>>()?;
+        let seconds = Spread::of(runs.iter().map(|(seconds, _)| *seconds))?;
+        Some(Denoising { samples_per_pixel: DENOISED_SAMPLES, threads, seconds, gain: runs[0].1 })
     }
 
     /// All candidates in the table's order.

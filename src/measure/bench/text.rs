@@ -2,7 +2,9 @@
 
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
-use super::figures::{BenchFigures, DeviceFigures, GainRow, Row, ScaleFigures, SceneFigures, Spread};
+use super::figures::{
+    BenchFigures, Denoising, DeviceFigures, GainRow, Row, ScaleFigures, SceneFigures, Spread,
+};
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
@@ -28,14 +30,23 @@ pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
 }
 
 fn scene(scene: &SceneFigures) -> String {
-    let SceneFigures { scene: name, width, height, max_depth, sampler, spheres, rows } = scene;
+    let SceneFigures { scene: name, width, height, max_depth, sampler, spheres, rows, denoising } = scene;
     let spheres = counted(*spheres, "sphere");
     let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
     let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
     format!(
-        "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}",
+        "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}{}",
         text_row(&SCENE_WIDTHS, &heads),
-        rows.iter().map(scene_row).collect::<String>()
+        rows.iter().map(scene_row).collect::<String>(),
+        denoising.as_ref().map(denoising_line).unwrap_or_default()
+    )
+}
+
+fn denoising_line(Denoising { samples_per_pixel, threads, seconds, gain }: &Denoising) -> String {
+    let [median, min, max] = [seconds.median, seconds.min, seconds.max].map(|seconds| 1e3 * seconds);
+    let threads = counted(*threads, "thread");
+    format!(
+        "denoising {samples_per_pixel} spp, {threads}: {median:.0} ms ({min:.0} to {max:.0}), 1/{gain:.1} of the MSE\n"
     )
 }
 

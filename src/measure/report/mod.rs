@@ -16,7 +16,8 @@ use super::{Candidate, SCHEMA, Source, Stop, make_directory, write_json};
 use crate::backends;
 use crate::cli::terminal::print;
 use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
-use crate::film::SOFTWARE;
+use crate::denoise;
+use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, RenderSettings, SamplerKind, Stats};
 use crate::numbers::chart;
@@ -139,9 +140,20 @@ impl<'a> Report<'a> {
         if !self.data.runs.iter().any(|run| run.curve == curve && run.seed == seed) {
             let job = job(recipe, sampler, seed, self.options.estimate_error)?;
             let limits = Limits { seconds, samples: self.options.max_samples };
-            let (about, prepare_seconds, points) =
+            let (about, prepare_seconds, [raw, denoised]) =
                 measured(candidate, &job, reference, limits, self.interrupt.flag())?;
-            self.data.runs.push(Run { curve, seed, about, prepare_seconds, points });
+            // One denoised curve for each backend suffices.
+            if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
+                let curve = Curve { backend: format!("{} denoised", curve.backend), ..curve.clone() };
+                self.data.runs.push(Run {
+                    curve,
+                    seed,
+                    about: about.clone(),
+                    prepare_seconds,
+                    points: denoised,
+                });
+            }
+            self.data.runs.push(Run { curve, seed, about, prepare_seconds, points: raw });
             self.write_json()?;
         }
         self.progress.finished(seconds);
@@ -236,14 +248,15 @@ struct Limits {
 }
 
 /// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
-/// renders at least two. Also returns the backend's name and the preparation time in seconds.
+/// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the backend's
+/// name, the preparation time in seconds, and the figures raw and denoised.
 fn measured(
     candidate: &mut Candidate,
     job: &RenderJob,
     reference: &ReferencePicture,
     limits: Limits,
     cancel: &AtomicBool,
-) -> Result<(String, f64, Vec<Measured>), Stop> {
+) -> Result<(String, f64, [Vec<Measured>; 2]), Stop> {
     let begin = Instant::now();
     let renderer = candidate.start()?;
     renderer.prepare(job, cancel)?;
@@ -254,7 +267,8 @@ fn measured(
     candidate.trace(job, 1, cancel)?;
     let device_begin = candidate.start()?.device_time();
     let mut film = candidate.new_film(job);
-    let (mut total, mut wall, mut points) = (Stats::default(), Duration::ZERO, Vec::new());
+    let (mut total, mut wall, [mut raw, mut denoised]) =
+        (Stats::default(), Duration::ZERO, [const { Vec::new() }; 2]);
     let mut samples = 1;
     while samples <= limits.samples.max(2) {
         let begin = Instant::now();
@@ -263,25 +277,32 @@ fn measured(
         wall += if candidate.is_baseline() { stats.trace } else { begin.elapsed() };
         total.add(&stats);
         let device = candidate.start()?.device_time().zip(device_begin);
-        let errors = reference.errors(&film_means(&film));
-        points.push(Measured {
-            samples,
-            trace_seconds: total.trace.as_secs_f64(),
-            wall_seconds: wall.as_secs_f64(),
-            device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
-            mse: errors.mse,
-            rel_mse: errors.rel_mse,
-            flip: errors.flip,
-            mse_estimate: film.error().map(|error| error.rmse.powi(2)),
-            rejected: total.rejected,
-        });
+        let point = |film: &Film, mse_estimate, filter: Duration| {
+            let errors = reference.errors(&film_means(film));
+            Measured {
+                samples,
+                trace_seconds: total.trace.as_secs_f64(),
+                wall_seconds: (wall + filter).as_secs_f64(),
+                device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
+                mse: errors.mse,
+                rel_mse: errors.rel_mse,
+                flip: errors.flip,
+                mse_estimate,
+                rejected: total.rejected,
+            }
+        };
+        raw.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
+        let begin = Instant::now();
+        if let Ok(found) = denoise::of_film(&film) {
+            denoised.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
+        }
         // Assumes that twice the samples take twice as long.
         if samples >= 2 && 2.0 * wall.as_secs_f64() > limits.seconds {
             break;
         }
         samples *= 2;
     }
-    Ok((about, prepare_seconds, points))
+    Ok((about, prepare_seconds, [raw, denoised]))
 }
 
 /// Parses a `report.json`.
@@ -350,7 +371,7 @@ mod tests {
         let mut steps = |seconds, samples| {
             measured(&mut candidate, &job, &reference, Limits { seconds, samples }, &go_on).unwrap()
         };
-        let (about, _, points) = steps(1e9, 5);
+        let (about, _, [points, denoised]) = steps(1e9, 5);
         assert!(about.starts_with("cpu ") && about.ends_with(" 1 threads"), "{about}");
         assert_eq!(points.iter().map(|point| point.samples).collect::<Vec<_>>(), [1, 2, 4]);
         for point in &points {
@@ -360,8 +381,12 @@ mod tests {
             assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
             assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
         }
+        assert_eq!(denoised.iter().map(|point| point.samples).collect::<Vec<_>>(), [2, 4]);
+        assert!(
+            denoised.iter().zip(&points[1..]).all(|(denoised, raw)| denoised.wall_seconds > raw.wall_seconds)
+        );
         assert!(points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{points:?}");
-        assert_eq!(steps(1e-9, 64).2.len(), 2, "two samples are always taken");
+        assert_eq!(steps(1e-9, 64).2[0].len(), 2, "two samples are always taken");
         let limits = Limits { seconds: 1e9, samples: 64 };
         let cancelled = measured(&mut candidate, &job, &reference, limits, &AtomicBool::new(true));
         assert_eq!(cancelled.err(), Some(Stop::Cancelled));

@@ -2,12 +2,13 @@
 
 use super::Mine;
 use super::tracer::{Steps, Tracer};
+use crate::job::output::srgb_to_linear;
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::scene::{Camera, Material, Scene};
-use crate::stages::{Rules, Transfer};
+use crate::scene::Material;
+use crate::stages::Transfer;
 use anyhow::Result;
 use std::ops::Range;
 use std::sync::Arc;
@@ -40,9 +41,6 @@ pub enum Change {
     Written(fn(&mut Written)),
     /// Changes the recipe of the program's own tracer.
     Recipe(fn(&mut Recipe)),
-    Rules(fn(&mut Rules)),
-    Camera(fn(&mut Camera)),
-    Scene(fn(&mut Scene)),
     Materials(fn(&mut Material)),
     /// Changes a step of the plain tracer.
     Steps(fn(&mut Steps)),
@@ -51,7 +49,10 @@ pub enum Change {
     /// Compared pixel by pixel at edges, because block means hardly show it.
     AtEdges(&'static Change),
     /// Detected in the bytes, even where blocks differ only by noise.
-    InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
+    InBytes(fn(&Mine, &Compared) -> bool),
+    /// Detected, if nothing else explains the picture, in the difference from the right one, with a picture of one sample
+    /// a pixel.
+    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool),
 }
 
 impl Mistake {
@@ -72,7 +73,8 @@ impl Change {
         let mut changed = recipe.clone();
         match self {
             Change::Several(pictures) => return pictures(recipe),
-            Change::AtEdges(change) | Change::InBytes(_, change) => return change.pictures(recipe),
+            Change::InBytes(_) | Change::InNoise(_) => return Vec::new(),
+            Change::AtEdges(change) => return change.pictures(recipe),
             Change::Written(change) => {
                 change(&mut picture.written);
                 return vec![picture];
@@ -83,9 +85,6 @@ impl Change {
                 return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
             }
             Change::Recipe(change) => change(&mut changed),
-            Change::Rules(change) => change(&mut changed.rules),
-            Change::Camera(change) => change(&mut changed.camera),
-            Change::Scene(change) => change(Arc::make_mut(&mut changed.scene)),
             Change::Materials(change) => {
                 let materials = &mut Arc::make_mut(&mut changed.scene).materials;
                 materials.iter_mut().for_each(|named| change(&mut named.material));
@@ -123,8 +122,8 @@ pub struct Written {
     /// Source channels of the written red, green and blue.
     pub channels: [usize; 3],
     pub curve: Curve,
-    /// Factor from displayed values to bytes.
-    pub levels: f64,
+    /// Whether 256 becomes 0 instead of 255.
+    pub wraps: bool,
 }
 
 /// The curve from linear to displayed values.
@@ -134,15 +133,26 @@ pub enum Curve {
     Transfer(Transfer),
     /// A power with this exponent.
     Gamma(f64),
+    Srgb,
 }
 
 impl Curve {
-    /// The exponent from displayed to linear values.
-    fn exponent(self, row: usize, height: usize) -> f64 {
+    fn linear(self, displayed: f64, row: usize, height: usize) -> f64 {
         match self {
-            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => 2.0,
-            Curve::Transfer(_) => 1.0,
-            Curve::Gamma(exponent) => exponent,
+            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => displayed * displayed,
+            Curve::Transfer(_) => displayed,
+            Curve::Gamma(exponent) => displayed.powf(exponent),
+            Curve::Srgb => srgb_to_linear(displayed),
+        }
+    }
+
+    fn displayed(self, linear: f64, row: usize, height: usize) -> f64 {
+        match self {
+            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => linear.sqrt(),
+            Curve::Transfer(_) => linear,
+            Curve::Gamma(exponent) => linear.powf(1.0 / exponent),
+            Curve::Srgb if linear <= 0.003_130_8 => 12.92 * linear,
+            Curve::Srgb => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
         }
     }
 }
@@ -150,8 +160,8 @@ impl Curve {
 impl Hypothesis {
     pub fn right(recipe: &Recipe) -> Hypothesis {
         let curve = Curve::Transfer(recipe.rules.transfer);
-        let written =
-            Written { is_flipped: false, is_mirrored: false, channels: [0, 1, 2], curve, levels: 256.0 };
+        let (is_flipped, is_mirrored, wraps) = (false, false, false);
+        let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, wraps };
         Hypothesis { mistake: None, note: None, making: Making::Right, written }
     }
 }
@@ -159,19 +169,23 @@ impl Hypothesis {
 impl Written {
     /// The linear value of a byte in a row, and half of its step.
     pub fn linear(&self, byte: u8, row: usize, height: usize) -> [f64; 2] {
-        let exponent = self.curve.exponent(row, height);
-        let linear = |part: f64| power((f64::from(byte) + part) / self.levels, exponent);
+        let linear = |part: f64| self.curve.linear((f64::from(byte) + part) / 256.0, row, height);
         [linear(0.5), (linear(1.0) - linear(0.0)) / 2.0]
     }
 
     /// The linear value that a reader sees if the displayed value was multiplied by 255 instead of 256.
     pub fn times_255(&self, linear: f64, row: usize, height: usize) -> f64 {
-        linear * power(255.0 / 256.0, self.curve.exponent(row, height))
+        self.curve.linear(self.curve.displayed(linear, row, height) * 255.0 / 256.0, row, height)
     }
 
     pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
-        let displayed = power(linear.max(0.0), 1.0 / self.curve.exponent(row, height));
-        (self.levels * displayed.min(0.999)) as u8
+        let displayed = self.curve.displayed(linear.max(0.0), row, height);
+        (256.0 * displayed.min(0.999)) as u8
+    }
+
+    /// The byte that the reader's program had before it wrapped, as far as ours tells.
+    pub fn unwrapped(&self, byte: u8, expected: f64) -> u8 {
+        if self.wraps && byte == 0 && expected > 0.5 { 255 } else { byte }
     }
 
     /// Bytes in the layout of the file, row by row.
@@ -192,16 +206,6 @@ impl Written {
                 self.channels.map(|channel| pixel[channel])
             })
             .collect()
-    }
-}
-
-/// `x^exponent`, fast for the book's exponents.
-fn power(x: f64, exponent: f64) -> f64 {
-    match exponent {
-        1.0 => x,
-        2.0 => x * x,
-        0.5 => x.sqrt(),
-        _ => x.powf(exponent),
     }
 }
 
@@ -282,14 +286,17 @@ pub struct Compared {
 
 pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> Compared {
     let (width, height) = (mine.width as usize, mine.height as usize);
+    let step = mine.step();
     let linear = |byte: u8, index: usize| hypothesis.written.linear(byte, index / width, height);
     let pixels = mine.bytes.iter().zip(&expected).enumerate();
     let (values, steps): (Vec<[f64; 3]>, Vec<[f64; 3]>) = pixels
         .map(|(index, (bytes, expected))| {
             let [least, most] = [0, 255].map(|byte| linear(byte, index)[0]);
-            let mine = bytes.map(|byte| linear(byte, index));
-            let value = [0, 1, 2].map(|channel| mine[channel][0] - expected[channel].clamp(least, most));
-            (value, mine.map(|[_, step]| step))
+            let unwrapped = |channel: usize| hypothesis.written.unwrapped(bytes[channel], expected[channel]);
+            let mine_linear = [0, 1, 2].map(|channel| linear(unwrapped(channel), index));
+            let value =
+                [0, 1, 2].map(|channel| mine_linear[channel][0] - expected[channel].clamp(least, most));
+            (value, mine_linear.map(|[_, half]| half * step))
         })
         .unzip();
     let test = BlockTest::of(&Differences {

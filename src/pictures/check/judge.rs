@@ -3,27 +3,31 @@
 use super::Mine;
 use super::hypothesis::{Change, Compared, Hypothesis, Making, Mistake, Studio, compare};
 use super::mistakes::{MISTAKES, applying_to};
+use super::tracer::Steps;
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
-/// Samples per pixel of the right picture and of the final candidates.
+/// Samples per pixel of the right picture.
 const FINE: u64 = 256;
 
-/// Samples per pixel of the first comparison with each mistake.
-const COARSE: u64 = 32;
+/// Samples per pixel of the first comparison with each mistake, and of the final candidates.
+const COARSE: [u64; 2] = [16, 128];
 
 /// Samples per pixel when the stage is unknown.
-const SMALL: u64 = 64;
+const SMALL: u64 = 32;
 
 /// Mistakes rendered again with more samples.
 const REFINED: usize = 4;
+
+/// None are if the first comparison leaves more than this share of the squared error.
+const HOPELESS: f64 = 0.7;
 
 /// A mistake explains a picture if it leaves less than this share of the right picture's squared error.
 const EXPLAINED: f64 = 0.3;
 
 /// Stages judged when the stage is unknown.
-const CANDIDATES: usize = 5;
+const CANDIDATES: usize = 4;
 
 /// Width of the thumbnails compared with all stages, pixels.
 const SMALL_WIDTH: u32 = 64;
@@ -66,8 +70,8 @@ impl Finding {
     }
 }
 
-/// Judges a picture, of `stage` if it is known.
-pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
+/// Judges a picture, of `stage` if it is known. `say` is told what is being tried.
+pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(String)) -> Result<Finding> {
     let stages = match stage {
         Some(stage) if !stages().any(|known| known == stage) => bail!(
             "{} cannot be checked: its small spheres are placed at random, so every program's picture of it is another; \
@@ -75,10 +79,11 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
             stage.id
         ),
         Some(stage) => vec![stage],
-        None => candidates(mine)?,
+        None => candidates(mine, &mut say)?,
     };
     let mut trials = Vec::new();
     for stage in stages {
+        say(format!("comparing with {}", stage.id));
         let trial = Trial::new(mine, stage)?;
         if trial.right.is_noise {
             return trial.of_right();
@@ -87,6 +92,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
     }
     let mut best: Option<Finding> = None;
     for trial in trials {
+        say(format!("trying the mistakes of {}", trial.stage.id));
         let finding = trial.of_wrong()?;
         let explains_all = finding.mistake.as_ref().is_some_and(|found| found.is_noise);
         if best.as_ref().is_none_or(|best| finding.rank() < best.rank()) {
@@ -96,10 +102,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>) -> Result<Finding> {
             break;
         }
     }
-    match best {
-        Some(best) => Ok(best),
-        None => Trial::new(mine, &Stage::ALL[0])?.of_wrong(),
-    }
+    best.context("there is no stage to compare with")
 }
 
 /// A picture compared with the right one of a stage.
@@ -135,30 +138,51 @@ impl<'a> Trial<'a> {
             return Ok(self.finding(Some(found)));
         }
         let (mut pictures, mut best) = (all_mistakes(self.studio.recipe()), None);
-        for (samples, count) in [(COARSE, REFINED), (FINE, 1)] {
+        for (samples, count) in COARSE.into_iter().zip([REFINED, 1]) {
             let mut compared = Vec::new();
             for hypothesis in pictures {
                 let expected = self.studio.render(&hypothesis, samples)?;
                 compared.push(compare(self.mine, hypothesis, expected));
             }
             compared.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+            compared.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
             compared.truncate(count);
             pictures = compared.iter().map(|found| found.hypothesis.clone()).collect();
             best = compared.into_iter().next();
         }
-        let Some(best) = best else { return Ok(self.finding(None)) };
+        let Some(best) = best else { return self.of_unexplained() };
         if best.hypothesis.mistake.is_some_and(Mistake::is_at_edges)
             && let Some(found) = at_edges(self.mine, &mut self.studio, &self.right, FINE)?
         {
             return Ok(self.finding(Some(found)));
         }
-        let explains = best.is_noise || best.misfit < EXPLAINED * self.right.misfit;
-        Ok(self.finding(explains.then_some(best)))
+        if best.is_noise || best.misfit < EXPLAINED * self.right.misfit {
+            return Ok(self.finding(Some(best)));
+        }
+        self.of_unexplained()
+    }
+
+    /// The finding when no picture of a mistake explains the difference.
+    fn of_unexplained(mut self) -> Result<Finding> {
+        let recipe = self.studio.recipe().clone();
+        for mistake in applying_to(&recipe) {
+            if let Change::InNoise(test) = mistake.change {
+                let single =
+                    Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..self.right.hypothesis.clone() };
+                let single = self.studio.render(&single, 1)?;
+                if test(self.mine, &self.right, &single) {
+                    let hypothesis = Hypothesis { mistake: Some(mistake), ..self.right.hypothesis.clone() };
+                    let found = Compared { hypothesis, ..self.right.clone() };
+                    return Ok(self.finding(Some(found)));
+                }
+            }
+        }
+        Ok(self.finding(None))
     }
 
     fn in_bytes(&self) -> Option<Compared> {
         let shows = |mistake: &&Mistake| match mistake.change {
-            Change::InBytes(test, _) => test(self.mine, &self.right),
+            Change::InBytes(test) => test(self.mine, &self.right),
             _ => false,
         };
         let mistake = MISTAKES.iter().find(shows)?;
@@ -222,11 +246,13 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 
 /// The stages that the picture resembles most: first as rendered right or written wrongly and, if none match, with any
 /// mistake.
-fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>> {
+fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static Stage>> {
     let factor = (mine.width / SMALL_WIDTH).clamp(1, mine.height.max(1));
     let mut ranked = Vec::new();
     for is_thorough in [false, true] {
         ranked.clear();
+        let what = if is_thorough { "the mistakes of all stages" } else { "all stages" };
+        say(format!("comparing with {what}"));
         for stage in stages() {
             let mut studio = Studio::new(stage.recipe(), [mine.width / factor, mine.height / factor])?;
             let right = Hypothesis::right(studio.recipe());
@@ -261,7 +287,10 @@ fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected:
         let square =
             (y..y + factor).flat_map(|y| (x..x + factor).map(move |x| (y * mine.width + x) as usize));
         for (channel, shown) in shown.iter().enumerate() {
-            let bytes: f64 = square.clone().map(|at| f64::from(mine.bytes[at][channel])).sum();
+            let seen = |at: usize| {
+                hypothesis.written.unwrapped(mine.bytes[at][channel], expected[place as usize][channel])
+            };
+            let bytes: f64 = square.clone().map(|at| f64::from(seen(at))).sum();
             sum += ((bytes / f64::from(factor * factor) - f64::from(*shown)) / 256.0).powi(2);
         }
     }

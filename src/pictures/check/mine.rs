@@ -1,15 +1,9 @@
-//! Reads the reader's 8-bit picture, repairing common damage to the file.
+//! The reader's picture in 8 bits.
 
-use crate::job::output::{Encoding, ReadPicture, decode_picture};
-use crate::stages::Transfer;
-use crate::system::files;
-use anyhow::{Result, anyhow};
-use std::borrow::Cow;
+use crate::job::output::{Damage, ReadPicture, Values, decode_picture, displayed, read_picture};
+use anyhow::{Result, anyhow, bail};
 use std::io::Cursor;
 use std::path::Path;
-
-/// Largest file read, bytes.
-const LENGTH_LIMIT: u64 = 256 << 20;
 
 /// Minimum width and height, pixels: the book's first picture. With fewer pixels, almost any picture could pass.
 const SIZE_MIN: [u32; 2] = [16, 9];
@@ -23,51 +17,67 @@ pub struct Mine {
     pub height: u32,
     /// RGB, row by row from the top.
     pub bytes: Vec<[u8; 3]>,
+    /// The largest value that the file can hold.
+    pub most: u16,
     /// Name of the file format, for messages.
     pub format: &'static str,
     /// Damage that was repaired to read the picture.
     pub damages: Vec<Damage>,
-}
-
-/// A repaired fault of the file.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
-pub struct Damage {
-    pub title: String,
-    pub remedy: &'static str,
+    /// What reading the picture left out or assumed.
+    pub notes: Vec<String>,
 }
 
 impl Mine {
+    /// A picture of these bytes, as a P3 file without damage would hold it.
+    pub fn of_bytes(bytes: Vec<[u8; 3]>, [width, height]: [u32; 2]) -> Mine {
+        Mine { width, height, bytes, most: 255, format: "P3", damages: Vec::new(), notes: Vec::new() }
+    }
+
     /// Reads a file and detects its format from the first bytes.
     pub fn read(path: &Path) -> Result<Mine> {
-        let bytes = files::read(path, "a picture", LENGTH_LIMIT)?;
-        let unreadable = |reason| anyhow!("{} cannot be read: {reason}", path.display());
-        let mine = Mine::decode(&bytes).map_err(unreadable)?;
+        let name = path.display();
+        let mine = Mine::of(read_picture(path, None)?)
+            .map_err(|reason| anyhow!("{name} cannot be read: {reason}"))?;
         let (Mine { width, height, .. }, [least_width, least_height]) = (&mine, SIZE_MIN);
         if *width < least_width || *height < least_height {
-            return Err(unreadable(format!(
-                "it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few to tell whether it is \
-                 right; render it at 400 x 225"
-            )));
+            bail!(
+                "{name} cannot be read: it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few \
+                 to tell whether it is right; render it at 400 x 225"
+            );
         }
         match mine.blank() {
-            Some(reason) => Err(anyhow!("{} cannot be checked: {reason}", path.display())),
+            Some(reason) => bail!("{name} cannot be checked: {reason}"),
             None => Ok(mine),
         }
     }
 
     /// Reads the picture from the bytes of a file.
-    pub fn decode(bytes: &[u8]) -> Result<Mine, String> {
-        let (file, format, damages) = repaired(bytes)?;
-        let picture = decoded(&file).map_err(|reason| {
-            format!("{reason}; write all rows, in binary mode, and not through PowerShell's >, which changes bytes")
-        })?;
-        check_size(picture.width.into(), picture.height.into())?;
-        let steps = picture.steps.ok_or("it holds floating-point numbers; write 8 bits per channel")?;
-        let byte =
-            |(middle, step): (f64, f64)| if middle.is_nan() { 255 } else { (256.0 * (middle - step)) as u8 };
-        let pixels = picture.pixels.iter().zip(&steps);
-        let bytes = pixels.map(|(middles, steps)| [0, 1, 2].map(|c| byte((middles[c], steps[c])))).collect();
-        Ok(Mine { width: picture.width, height: picture.height, bytes, format, damages })
+    pub fn decode(file: &[u8]) -> Result<Mine, String> {
+        let read = decode_picture(Cursor::new(file), file.len() as u64, None);
+        Mine::of(read.map_err(|reason| reason.to_string())?)
+    }
+
+    fn of(read: ReadPicture) -> Result<Mine, String> {
+        let ReadPicture { width, height, format, values, damages, notes } = read;
+        let Values::Integers { most, rgb } = values else {
+            return Err("it holds floating-point numbers; write 8 bits per channel".to_owned());
+        };
+        if u64::from(width) * u64::from(height) > PIXEL_LIMIT {
+            return Err(format!(
+                "it has {width} x {height} pixels, more than {PIXEL_LIMIT}; the book's 400 x 225 are enough for a check"
+            ));
+        }
+        let byte = |value: u16| {
+            let [low, high] = displayed(value, most);
+            (128.0 * (low + high)) as u8
+        };
+        let bytes = rgb.iter().map(|pixel| pixel.map(byte)).collect();
+        Ok(Mine { width, height, bytes, most, format, damages, notes })
+    }
+
+    /// Bytes in a step of the file's values, at least 1.
+    pub fn step(&self) -> f64 {
+        (256.0 / (f64::from(self.most) + 1.0)).max(1.0)
     }
 
     /// Why a picture of a single colour cannot be checked.
@@ -86,137 +96,4 @@ impl Mine {
         );
         Some(format!("all its pixels are {r} {g} {b}, so there is nothing to compare; {remedy}"))
     }
-}
-
-fn decoded(file: &[u8]) -> std::io::Result<ReadPicture> {
-    // The transfer does not matter, because only bytes are used.
-    decode_picture(Cursor::new(file), file.len() as u64, Encoding::Book(Transfer::Linear))
-}
-
-/// A well-formed file with the same picture, its original format, and the damage.
-type Repaired<'a> = (Cow<'a, [u8]>, &'static str, Vec<Damage>);
-
-fn repaired(bytes: &[u8]) -> Result<Repaired<'_>, String> {
-    let mut damages = Vec::new();
-    let mut damaged = |title: String, remedy| damages.push(Damage { title, remedy });
-    let mut bytes = Cow::Borrowed(bytes);
-    if let Some(text) = from_utf16(&bytes) {
-        damaged(
-            "the file is text of two bytes per letter (UTF-16), which no viewer takes for a PPM".to_owned(),
-            "PowerShell's > writes it so: use cmd /c \"program > picture.ppm\", or PowerShell 7, or let the program open the \
-             file itself",
-        );
-        bytes = Cow::Owned(text);
-    } else if let Some(rest) = bytes.strip_prefix(b"\xEF\xBB\xBF") {
-        damaged(
-            "the file begins with a byte order mark".to_owned(),
-            "write it without one (UTF-8 without BOM): a PPM begins with P3 or P6",
-        );
-        bytes = Cow::Owned(rest.to_owned());
-    }
-    let (bytes, format) = match &*bytes {
-        [0x89, b'P', b'N', b'G', ..] => (bytes, "PNG"),
-        [b'P', b'6', ..] => (bytes, "P6"),
-        _ => (Cow::Owned(repaired_text(&bytes, damaged)?), "P3"),
-    };
-    Ok((bytes, format, damages))
-}
-
-/// Decodes a text in UTF-16; `None` if it is not UTF-16.
-fn from_utf16(bytes: &[u8]) -> Option<Vec<u8>> {
-    let (rest, is_little) = match bytes {
-        [0xFF, 0xFE, rest @ ..] => (rest, true),
-        [0xFE, 0xFF, rest @ ..] => (rest, false),
-        [b'P', 0, ..] => (bytes, true),
-        [0, b'P', ..] => (bytes, false),
-        _ => return None,
-    };
-    let (pairs, _) = rest.as_chunks::<2>();
-    let unit = |pair: &[u8; 2]| if is_little { u16::from_le_bytes(*pair) } else { u16::from_be_bytes(*pair) };
-    Some(pairs.iter().map(|pair| u8::try_from(unit(pair)).unwrap_or(b'?')).collect())
-}
-
-fn check_size(width: u64, height: u64) -> Result<(), String> {
-    match width.saturating_mul(height) {
-        0 => Err(format!(
-            "its header says {width} x {height} pixels; write the width and height of the picture"
-        )),
-        1..=PIXEL_LIMIT => Ok(()),
-        _ => Err(format!(
-            "it has {width} x {height} pixels, more than {PIXEL_LIMIT}; the book's 400 x 225 are enough for a check"
-        )),
-    }
-}
-
-const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
-
-/// Converts P3 to P6, dropping anything that does not belong.
-fn repaired_text(bytes: &[u8], mut damaged: impl FnMut(String, &'static str)) -> Result<Vec<u8>, String> {
-    let text = String::from_utf8_lossy(bytes);
-    let begin = text.find("P3").ok_or_else(|| format!("it is neither a PNG nor a PPM file; {HEADER}"))?;
-    if begin > 0 {
-        damaged(
-            "there is other text before the header".to_owned(),
-            "write nothing but the picture to standard output; messages belong to std::clog",
-        );
-    }
-    let (mut messages, mut odd, mut numbers) = (0, 0, Vec::new());
-    for line in text[begin + 2..].split(['\n', '\r']) {
-        let line = line.split('#').next().unwrap_or_default().trim_start();
-        if line.starts_with(char::is_alphabetic) && !line.starts_with("nan") {
-            messages += 1;
-            continue;
-        }
-        for word in line.split_ascii_whitespace() {
-            numbers.push(word.parse::<i64>().unwrap_or_else(|_| {
-                odd += 1;
-                word.parse::<f64>().map_or(-1, |x| if x.is_nan() { -1 } else { x as i64 })
-            }));
-        }
-    }
-    if messages > 0 {
-        damaged(
-            format!("{messages} lines of the file are messages, not numbers"),
-            "write messages such as \"Scanlines remaining\" to std::clog, not to std::cout",
-        );
-    }
-    if odd > 0 {
-        damaged(
-            format!("{odd} values are not whole numbers"),
-            "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
-        );
-    }
-    let [width, height, most, values @ ..] = numbers.as_slice() else {
-        return Err(format!("its header is not complete; {HEADER}"));
-    };
-    let [width, height] = [width, height].map(|side| u64::try_from(*side).unwrap_or(0));
-    check_size(width, height)?;
-    if !(1..=65_535).contains(most) {
-        return Err(format!("its largest value is {most}; write 255 after width and height"));
-    }
-    let needed = 3 * (width * height) as usize;
-    if values.len() < needed {
-        return Err(format!(
-            "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, \
-             width and height of the header, and whether the program ended early",
-            values.len(),
-            values.len() / (3 * width as usize)
-        ));
-    }
-    if values.len() > needed {
-        damaged(
-            format!("there are {} numbers, but {width} x {height} pixels need {needed}", values.len()),
-            "let the loops run to image_width - 1 and image_height - 1, and write the same sizes to the header",
-        );
-    }
-    let values = &values[..needed];
-    let outside = values.iter().filter(|value| !(0..=*most).contains(*value)).count();
-    if outside > 0 {
-        damaged(
-            format!("{outside} numbers are below 0 or above {most}"),
-            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative ones often were NaN",
-        );
-    }
-    let bytes = values.iter().map(|value| (value.clamp(&0, most) * 255 / most) as u8);
-    Ok(format!("P6 {width} {height} 255\n").into_bytes().into_iter().chain(bytes).collect())
 }

@@ -1,16 +1,22 @@
 //! The table of mistakes that readers of the book are known to make: explanation, where each can show, and how to
 //! render it.
 
-use super::bytes::{is_times_255, is_truncated};
+use super::bytes::{is_same_seed, is_times_255, is_truncated};
 use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
 use super::tracer::Random;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::{Material, Scene};
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule, Transfer};
+use glam::DVec3;
+use std::sync::Arc;
+
+const BRIGHTER: &str = "nothing is wrong, but it is brighter than the book's picture, which takes the square root in write_color";
+
+const SAME_POINT: &str = "use one point twice: ray(ray_origin, pixel_sample - ray_origin)";
 
 /// All mistakes, those of the file and the camera first.
-pub static MISTAKES: [Mistake; 34] = [
+pub static MISTAKES: [Mistake; 42] = [
     Mistake {
         id: "flipped-rows",
         section: "2.2",
@@ -63,12 +69,36 @@ pub static MISTAKES: [Mistake; 34] = [
         change: Change::Written(|written| written.curve = Curve::Gamma(4.0)),
     },
     Mistake {
+        id: "gamma-2.2",
+        section: "9.5",
+        title: "the curve is gamma 2.2, not the square root",
+        remedy: BRIGHTER,
+        applies: has_gamma,
+        change: Change::Written(|written| written.curve = Curve::Gamma(2.2)),
+    },
+    Mistake {
+        id: "gamma-srgb",
+        section: "9.5",
+        title: "the curve is that of sRGB, not the square root",
+        remedy: BRIGHTER,
+        applies: has_gamma,
+        change: Change::Written(|written| written.curve = Curve::Srgb),
+    },
+    Mistake {
+        id: "wraps-to-0",
+        section: "8.2",
+        title: "the brightest values become 0",
+        remedy: "clamp before the conversion: int(256 * clamp(x, 0, 0.999)); 256 does not fit into a byte, where it becomes 0",
+        applies: always,
+        change: Change::Written(|written| written.wraps = true),
+    },
+    Mistake {
         id: "scale-255",
         section: "8.2",
         title: "channels are multiplied by 255 and cut off",
         remedy: "use int(256 * clamp(x, 0, 0.999)), or 255.999: with 255, only a value of exactly 1 becomes 255",
         applies: always,
-        change: Change::InBytes(is_times_255, &Change::Written(|written| written.levels = 255.0)),
+        change: Change::InBytes(is_times_255),
     },
     Mistake {
         id: "truncated",
@@ -76,7 +106,7 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "channels are cut to whole numbers before they are scaled",
         remedy: "scale first, then convert: int(256 * x), not int(x) * 256; divide as floating-point numbers",
         applies: always,
-        change: Change::InBytes(is_truncated, &Change::Several(|_| Vec::new())),
+        change: Change::InBytes(is_truncated),
     },
     Mistake {
         id: "no-antialiasing",
@@ -125,8 +155,9 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "the field of view is used as radians",
         remedy: "convert it first: theta = degrees_to_radians(vfov)",
         applies: has_rays,
-        change: Change::Camera(|camera| {
-            camera.vfov_degrees = 2.0 * (camera.vfov_degrees / 2.0).tan().abs().atan().to_degrees();
+        change: Change::Recipe(|recipe| {
+            let vfov = &mut recipe.camera.vfov_degrees;
+            *vfov = 2.0 * (*vfov / 2.0).tan().abs().atan().to_degrees();
         }),
     },
     Mistake {
@@ -135,7 +166,10 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "the sky is upside down",
         remedy: "blend (1 - a) * white + a * blue, with a = 0.5 * (unit_direction.y + 1)",
         applies: has_rays,
-        change: Change::Scene(|scene| std::mem::swap(&mut scene.sky.bottom, &mut scene.sky.top)),
+        change: Change::Recipe(|recipe| {
+            let sky = &mut Arc::make_mut(&mut recipe.scene).sky;
+            std::mem::swap(&mut sky.bottom, &mut sky.top);
+        }),
     },
     Mistake {
         id: "half-b-sign",
@@ -184,7 +218,7 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "matte surfaces scatter uniformly over the hemisphere",
         remedy: "let the direction be rec.normal + random_unit_vector()",
         applies: |recipe| has_matte(recipe, Diffuse::Lambertian),
-        change: Change::Rules(|rules| rules.diffuse = Diffuse::Hemisphere),
+        change: Change::Recipe(|recipe| recipe.rules.diffuse = Diffuse::Hemisphere),
     },
     Mistake {
         id: "lambertian-early",
@@ -192,7 +226,7 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "matte surfaces are Lambertian, though this section is uniform over the hemisphere",
         remedy: "nothing is wrong if you have read on; section 9.4 adds it",
         applies: |recipe| has_matte(recipe, Diffuse::Hemisphere),
-        change: Change::Rules(|rules| rules.diffuse = Diffuse::Lambertian),
+        change: Change::Recipe(|recipe| recipe.rules.diffuse = Diffuse::Lambertian),
     },
     Mistake {
         id: "point-in-sphere",
@@ -249,12 +283,32 @@ pub static MISTAKES: [Mistake; 34] = [
         change: Change::Materials(invert),
     },
     Mistake {
+        id: "glass-black",
+        section: "11.2",
+        title: "glass is black",
+        remedy: "set attenuation = color(1.0, 1.0, 1.0) in dielectric::scatter, and return true",
+        applies: has_glass,
+        change: Change::Materials(|material| {
+            if let Material::Dielectric { .. } = material {
+                *material = Material::Lambertian { albedo: DVec3::ZERO };
+            }
+        }),
+    },
+    Mistake {
+        id: "glass-swapped",
+        section: "11.3",
+        title: "glass reflects where it should refract, and refracts where it should reflect",
+        remedy: "if (cannot_refract || reflectance(cos_theta, ri) > random_double()) reflect, else refract",
+        applies: |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
+        change: Change::Steps(|steps| steps.swaps_glass = true),
+    },
+    Mistake {
         id: "always-refract",
         section: "11.3",
         title: "glass refracts even where Snell's law has no solution",
         remedy: "reflect if ri * sin_theta > 1.0",
         applies: |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
-        change: Change::Rules(|rules| rules.dielectric = DielectricLaws::RefractOnly),
+        change: Change::Recipe(|recipe| recipe.rules.dielectric = DielectricLaws::RefractOnly),
     },
     Mistake {
         id: "schlick-missing",
@@ -262,7 +316,7 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "glass does not reflect at grazing angles (Schlick's approximation)",
         remedy: "also reflect if reflectance(cos_theta, ri) > random_double()",
         applies: |recipe| has_glass(recipe) && recipe.rules.dielectric == DielectricLaws::Schlick,
-        change: Change::Rules(|rules| rules.dielectric = DielectricLaws::TotalReflection),
+        change: Change::Recipe(|recipe| recipe.rules.dielectric = DielectricLaws::TotalReflection),
     },
     Mistake {
         id: "hollow-missing",
@@ -270,7 +324,8 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "the sphere of air inside the glass sphere is missing",
         remedy: "add a sphere of radius 0.4 at the same place, of dielectric(1.00 / 1.50)",
         applies: |recipe| has_glass(recipe) && bubble(&recipe.scene).is_some(),
-        change: Change::Scene(|scene| {
+        change: Change::Recipe(|recipe| {
+            let scene = Arc::make_mut(&mut recipe.scene);
             if let Some(index) = bubble(scene) {
                 scene.spheres.remove(index);
             }
@@ -282,7 +337,8 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "the sphere inside the glass sphere is glass, too",
         remedy: "the inner sphere is air in glass: dielectric(1.00 / 1.50)",
         applies: |recipe| has_glass(recipe) && bubble(&recipe.scene).is_some(),
-        change: Change::Scene(|scene| {
+        change: Change::Recipe(|recipe| {
+            let scene = Arc::make_mut(&mut recipe.scene);
             if let Some(index) = bubble(scene) {
                 invert(&mut scene.materials[scene.spheres[index].material].material);
             }
@@ -294,7 +350,23 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "all rays start at the centre of the lens",
         remedy: "let ray_origin = (defocus_angle <= 0) ? center : defocus_disk_sample(), and subtract it from pixel_sample",
         applies: has_lens,
-        change: Change::Camera(|camera| camera.defocus_angle_degrees = 0.0),
+        change: Change::Recipe(|recipe| recipe.camera.defocus_angle_degrees = 0.0),
+    },
+    Mistake {
+        id: "lens-origin",
+        section: "13.2",
+        title: "rays start at the centre of the lens, but are aimed from another point of it",
+        remedy: SAME_POINT,
+        applies: has_lens,
+        change: Change::Steps(|steps| steps.lens = |eye, on_lens, target| [eye, target - on_lens]),
+    },
+    Mistake {
+        id: "lens-aim",
+        section: "13.2",
+        title: "rays start anywhere on the lens, but are aimed from its centre",
+        remedy: SAME_POINT,
+        applies: has_lens,
+        change: Change::Steps(|steps| steps.lens = |eye, on_lens, target| [on_lens, target - eye]),
     },
     Mistake {
         id: "focus-distance-one",
@@ -302,7 +374,15 @@ pub static MISTAKES: [Mistake; 34] = [
         title: "the plane in focus is 1 away",
         remedy: "use focus_dist for the viewport: viewport_height = 2 * h * focus_dist, and center - focus_dist * w",
         applies: has_lens,
-        change: Change::Camera(|camera| camera.focus_distance = Some(1.0)),
+        change: Change::Recipe(|recipe| recipe.camera.focus_distance = Some(1.0)),
+    },
+    Mistake {
+        id: "same-seed",
+        section: "9.1",
+        title: "every pixel uses the same random numbers",
+        remedy: "seed the generator once, before the loops, not for each pixel",
+        applies: |recipe| recipe.rules.antialiasing && has_bounces(recipe),
+        change: Change::InNoise(is_same_seed),
     },
 ];
 

@@ -12,14 +12,16 @@ mod mine;
 mod mistakes;
 mod tracer;
 
+pub use crate::job::output::Damage;
 pub use answer::{Answer, AnswerKind, Section};
 pub use hypothesis::{Compared, Hypothesis, Mistake, Studio};
 pub use judge::{Finding, judge, stages};
-pub use mine::{Damage, Mine};
+pub use mine::Mine;
 pub use mistakes::MISTAKES;
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
-use crate::cli::CheckOptions;
+use crate::cli::terminal::Display;
+use crate::cli::{CheckOptions, ProgressChoice};
 use crate::numbers::heat::HeatScale;
 use crate::system::failure::Failure;
 use crate::system::files::replace_file;
@@ -30,6 +32,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Checks a picture. Exit code 0 means right, 1 wrong, and 2 ([`Failure::Input`]) that it could not be checked.
 pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
@@ -45,7 +48,9 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
     let files = options.pictures();
     check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
     let mine = Mine::read(&options.picture)?;
-    let finding = judge(&mine, options.stage)?;
+    let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
+    let finding = judge(&mine, options.stage, |what| display.update(0, || what))?;
+    display.clear();
     for (path, pixels) in files.iter().zip(pictures(&mine, &finding)) {
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
         let image = image.context("a picture has another size than its pixels")?;
@@ -81,6 +86,7 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
         text.push(("note", "--stage names the section, and --out DIR shows where the two differ".to_owned()));
     }
     text.extend(answer.section.map(|section| ("read", format!("{}, {}", section.number, section.url))));
+    text.extend(mine.notes.iter().map(|note| ("note", note.clone())));
     for damage in answer.damages {
         text.extend([("file", damage.title), ("change", damage.remedy.to_owned())]);
     }

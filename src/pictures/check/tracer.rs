@@ -33,6 +33,10 @@ pub struct Steps {
     pub before_fuzz: fn(DVec3) -> DVec3,
     /// Transforms the incoming direction before glass refracts or reflects it.
     pub before_glass: fn(DVec3) -> DVec3,
+    /// Whether glass refracts where it should reflect, and reflects where it should refract.
+    pub swaps_glass: bool,
+    /// Origin and direction of a ray, from the eye, the point on the lens and the target in the plane in focus.
+    pub lens: fn(DVec3, DVec3, DVec3) -> [DVec3; 2],
 }
 
 impl Steps {
@@ -48,6 +52,8 @@ impl Steps {
         diffuse: Random::unit_vector,
         before_fuzz: DVec3::normalize,
         before_glass: DVec3::normalize,
+        swaps_glass: false,
+        lens: |_, on_lens, target| [on_lens, target - on_lens],
     };
 }
 
@@ -162,11 +168,12 @@ impl<'a> Tracer<'a> {
         let target = self.first_pixel
             + (f64::from(column) + offset[0]) * self.across
             + (f64::from(row) + offset[1]) * self.down;
-        let origin = self.lens.map_or(self.center, |lens| {
+        let on_lens = self.lens.map_or(self.center, |lens| {
             let [x, y] = random.in_disk();
             self.center + x * lens[0] + y * lens[1]
         });
-        self.colour(Ray { origin, direction: target - origin }, column, random)
+        let [origin, direction] = (self.steps.lens)(self.center, on_lens, target);
+        self.colour(Ray { origin, direction }, column, random)
     }
 
     fn colour(&self, mut ray: Ray, column: u32, random: &mut Random) -> DVec3 {
@@ -259,7 +266,7 @@ impl<'a> Tracer<'a> {
                 ratio * sin_theta > 1.0 || schlick(cos_theta, ratio) > random.pair()[0]
             }
         };
-        if reflects {
+        if reflects != self.steps.swaps_glass {
             return reflect(direction, normal);
         }
         let across = ratio * (direction + cos_theta * normal);

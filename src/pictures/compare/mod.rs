@@ -50,7 +50,17 @@ pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
         bail!("{a} and {b}; render both at the same size");
     }
     let mut comparison = compare(a, b);
+    let of_files =
+        sides.iter().flat_map(|side| side.notes.iter().map(|note| format!("{}: {note}", side.name)));
+    comparison.notes.extend(of_files);
     comparison.notes.extend(note_on_jobs(a, b).map(str::to_owned));
+    if comparison.verdict() == Verdict::Different {
+        let mut flipped = b.clone();
+        flipped.pixels = b.pixels.chunks_exact(b.width as usize).rev().flatten().copied().collect();
+        if compare(a, &flipped).rms < 0.5 * comparison.rms {
+            comparison.notes.push("they are much closer if one of them is turned upside down".to_owned());
+        }
+    }
     Ok(comparison)
 }
 

@@ -97,7 +97,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     let mean = |sum: f64| sum / count.max(1) as f64;
     let mut comparison = Comparison {
         // An unknown integer is its format's largest value.
-        is_same: (count > 0 || a.steps.is_some()) && is_same(a, b),
+        is_same: (count > 0 || a.limit.is_finite()) && is_same(a, b),
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
         bias_deviation: noise.as_ref().map(|noise| noise.of_mean.hypot(ROUNDING_BIAS)),

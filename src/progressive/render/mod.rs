@@ -9,12 +9,14 @@ use super::{
     EndReason, Factory, HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, PassSizer, Phase, Plan, Status, View,
 };
 use crate::backends::BackendChoice;
+use crate::denoise;
 use crate::film::{Film, SampleRanges};
 use crate::job::render::{RenderError, RenderJob, Renderer, Stats};
+use crate::system::clock::Instant;
 use backends::Pending;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Estimating the error may take at most one in this many parts of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
@@ -343,7 +345,10 @@ impl Render {
     fn meets_noise_target(&self) -> bool {
         let error = self.status.error.as_ref();
         self.film.sample_count() >= NOISE_TARGET_FIRST_SAMPLES
-            && self.plan.stop.noise.is_some_and(|target| self.film.meets(target, error, self.brightest()))
+            && self.plan.stop.noise.is_some_and(|target| {
+                self.film.meets(target, error, self.brightest())
+                    || self.status.denoised.is_some_and(|error| error.upper_rmse() <= target)
+            })
     }
 
     /// The largest radiance that a sample can have.
@@ -355,6 +360,9 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
+            if self.plan.stop.is_denoised && self.plan.stop.noise.is_some() {
+                self.status.denoised = denoise::of_film(&self.film).ok().map(|denoised| denoised.error);
+            }
             self.status.doubt = self.status.error.as_ref().and_then(|error| self.film.doubt(error));
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();

@@ -92,7 +92,7 @@ pub(super) const STAGES: &[Stage] = &[
         sight: Sight {
             means: Means::Wipe(0.5),
             part: None,
-            caption: "Left, a pinhole: the glass in front is sharp. Right, a lens: the metal behind is \
+            caption: "Right, a pinhole: the glass in front is sharp. Left, a lens: the metal behind is \
                       not.",
         },
         alt: "The three balls from the same place, enlarged to fill the picture; all of them are sharp.",

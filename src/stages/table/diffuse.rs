@@ -100,7 +100,7 @@ pub(super) const STAGES: &[Stage] = &[
         sight: Sight {
             means: Means::Wipe(0.5),
             part: None,
-            caption: "The same light twice: left as plain numbers, right as a display expects it.",
+            caption: "The same light twice: right as plain numbers, left as a display expects it.",
         },
         alt: "A dark grey matte ball on grey ground; its soft shadow is deeper than with uniform \
               directions.",

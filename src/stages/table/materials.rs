@@ -72,7 +72,7 @@ pub(super) const STAGES: &[Stage] = &[
         sight: Sight {
             means: Means::Wipe(0.25),
             part: GLASS_RIM,
-            caption: "Left, refraction alone. Right, the complete rule: the rim mirrors the sky.",
+            caption: "Right, refraction alone. Left, the complete rule: the rim mirrors the sky.",
         },
         alt: "A glass ball on the left that shows the scene upside down up to its very edge: ground above, \
               sky below. A blue ball in the middle and a golden one on the right.",

@@ -97,7 +97,7 @@ pub(super) const STAGES: &[Stage] = &[
         sight: Sight {
             means: Means::Wipe(0.5),
             part: Some([0.3, 0.16, 0.7, 0.84]),
-            caption: "Left, one red for every hit. Right, the next stage knows where each ray has hit.",
+            caption: "Right, one red for every hit. Left, the next stage knows where each ray has hit.",
         },
         alt: "A flat red disk in front of the blue and white sky.",
         pair: Some("normals"),

@@ -1,5 +1,6 @@
 //! Which file a path leads to, and whether that file has changed.
 
+use super::paths::STANDARD;
 use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -9,9 +10,11 @@ use std::path::{Path, PathBuf};
 pub struct FileIdentity(PathBuf);
 
 impl FileIdentity {
-    /// `None` for devices and pipes, which any number of writers may share.
+    /// `None` for devices, pipes and standard input or output, which any number of writers may share.
     pub fn of(path: &Path) -> Option<FileIdentity> {
-        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+        if path == Path::new(STANDARD)
+            || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+        {
             return None;
         }
         Some(FileIdentity(resolved(path).unwrap_or_else(|_| path.to_owned())))

@@ -3,6 +3,7 @@
 use super::identity::resolved;
 use super::leftovers::{LOCK, PREFIX};
 use super::paths::ShownPath;
+use super::replace::is_busy;
 use same_file::Handle;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -84,7 +85,14 @@ impl Drop for FileLock {
 pub fn lock_path(path: &Path, patience: Duration) -> io::Result<File> {
     let begin = Instant::now();
     loop {
-        let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+        let file = match OpenOptions::new().write(true).create(true).truncate(false).open(path) {
+            // Windows refuses to open a file that its last owner has deleted but not closed yet.
+            Err(error) if cfg!(windows) && is_busy(&error) && begin.elapsed() < patience => {
+                std::thread::sleep(PAUSE);
+                continue;
+            }
+            opened => opened?,
+        };
         match file.try_lock() {
             Ok(()) if is_at(&file, path)? => return Ok(file),
             // Its last owner has just removed it.

@@ -6,6 +6,9 @@ use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
+/// The path that stands for standard input or output.
+pub const STANDARD: &str = "-";
+
 /// How messages show a path.
 pub trait ShownPath {
     /// The path as part of one line that cannot control a terminal: see [`printable`]. Bytes that are not UTF-8 become
@@ -44,20 +47,43 @@ pub fn free_name(name: impl Fn(u32) -> PathBuf) -> Option<PathBuf> {
     (1..=NAME_LIMIT).map(name).find(|path| path.symlink_metadata().is_err())
 }
 
+/// For state and for what can be recreated: the variable that names the system's directory, and where in the home
+/// directory that is unless the variable says otherwise.
+const USUAL: [(&str, &str); 2] = if cfg!(windows) {
+    [("LOCALAPPDATA", "AppData/Local"), ("LOCALAPPDATA", "AppData/Local")]
+} else if cfg!(target_vendor = "apple") {
+    [("XDG_STATE_HOME", "Library/Application Support"), ("XDG_CACHE_HOME", "Library/Caches")]
+} else {
+    [("XDG_STATE_HOME", ".local/state"), ("XDG_CACHE_HOME", ".cache")]
+};
+
 /// The program's directory for state that outlives it, such as rescued films; it may not exist yet.
 pub fn state_directory() -> Option<PathBuf> {
-    own_directory(env::var_os("XDG_STATE_HOME"), home_directory(), ".local/state")
+    let [(variable, usual), _] = USUAL;
+    own_directory(env::var_os(variable), home_directory(), usual)
 }
 
-/// The program's directory for what it can recreate, such as thumbnails; it may not exist yet.
+/// The program's directory for what it can recreate, such as its web pages; it may not exist yet.
 pub fn cache_directory() -> Option<PathBuf> {
-    own_directory(env::var_os("XDG_CACHE_HOME"), home_directory(), ".cache")
+    let [_, (variable, usual)] = USUAL;
+    let own = own_directory(env::var_os(variable), home_directory(), usual)?;
+    // There, it is the directory for state, too.
+    Some(if cfg!(windows) { own.join("cache") } else { own })
 }
 
 /// The program's directory inside the one that a variable names or, unless that is absolute, inside `usual` in `home`.
 fn own_directory(named: Option<OsString>, home: Option<PathBuf>, usual: &str) -> Option<PathBuf> {
     let named = named.map(PathBuf::from).filter(|directory| directory.is_absolute());
     Some(named.or_else(|| Some(home?.join(usual)))?.join("weekender"))
+}
+
+/// The user's pictures, if there is a directory for them.
+pub fn pictures_directory() -> Option<PathBuf> {
+    #[cfg(windows)]
+    let pictures = known_folders::get_known_folder_path(known_folders::KnownFolder::Pictures);
+    #[cfg(not(windows))]
+    let pictures = home_directory().map(|home| home.join("Pictures"));
+    pictures.filter(|pictures| pictures.is_dir())
 }
 
 pub fn home_directory() -> Option<PathBuf> {

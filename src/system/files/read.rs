@@ -1,17 +1,19 @@
 //! Input files: their kind and length are checked before anything is read.
 
-use super::paths::ShownPath;
+use super::paths::{STANDARD, ShownPath};
+use super::replace::is_pipe;
 use crate::system::memory::words;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, IsTerminal, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// A file that cannot be read or is not a sensible input.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum InputError {
     #[error("cannot read {}: {reason}; check its name and whether you may read it", path.shown())]
     Unreadable { path: PathBuf, reason: String },
-    /// The path is a directory, a device or a pipe.
+    /// The path is a directory, a device or a socket.
     #[error("{} is {kind}, but a file is needed; name a regular file", path.shown())]
     NotFile {
         path: PathBuf,
@@ -38,20 +40,61 @@ impl InputError {
     }
 }
 
-/// Opens a file and returns it with its length in bytes.
+/// Opens a file and returns it with its length in bytes. Of a pipe and of standard input (`-`), it opens a copy.
 ///
 /// # Errors
-/// [`InputError`]. Only regular files are opened: some other kinds never end, and some block forever.
+/// [`InputError`]. Other kinds than files and pipes are not opened: some never end, and some block forever.
 pub fn open(path: &Path) -> Result<(File, u64), InputError> {
     let unreadable = |reason: io::Error| InputError::unreadable(path, reason);
-    let found = fs::metadata(path).map_err(unreadable)?;
-    if !found.is_file() {
-        let kind = if found.is_dir() { "a directory" } else { "a device, a pipe or a socket" };
-        return Err(InputError::NotFile { path: path.to_owned(), kind });
-    }
-    let file = File::open(path).map_err(unreadable)?;
+    let file = if path == Path::new(STANDARD) {
+        copied(path).map_err(unreadable)?
+    } else {
+        let found = fs::metadata(path).map_err(unreadable)?;
+        match () {
+            () if found.is_file() => File::open(path),
+            () if is_pipe(&found) => copied(path),
+            () => {
+                let kind = if found.is_dir() { "a directory" } else { "a device or a socket" };
+                return Err(InputError::NotFile { path: path.to_owned(), kind });
+            }
+        }
+        .map_err(unreadable)?
+    };
     let length = file.metadata().map_err(unreadable)?.len();
     Ok((file, length))
+}
+
+/// Longest content of a pipe, bytes.
+const PIPE_LIMIT: u64 = 16 << 30;
+
+/// The content of pipes, in files without names: each can be read only once, but may be needed several times.
+static COPIED: Mutex<Vec<(PathBuf, File)>> = Mutex::new(Vec::new());
+
+fn copied(path: &Path) -> io::Result<File> {
+    let mut all = COPIED.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = all.iter().position(|(pipe, _)| pipe == path);
+    let index = known.map_or_else(
+        || {
+            let mut copy = tempfile::tempfile()?;
+            let mut source: Box<dyn Read> = if path == Path::new(STANDARD) {
+                if io::stdin().is_terminal() {
+                    return Err(io::Error::other("it is a terminal, but a file is needed"));
+                }
+                Box::new(io::stdin())
+            } else {
+                Box::new(File::open(path)?)
+            };
+            if io::copy(&mut source.by_ref().take(PIPE_LIMIT), &mut copy)? == PIPE_LIMIT {
+                return Err(io::Error::other(format!("more than {} come through it", words(PIPE_LIMIT))));
+            }
+            all.push((path.to_owned(), copy));
+            Ok(all.len() - 1)
+        },
+        Ok,
+    )?;
+    let mut file = all[index].1.try_clone()?;
+    file.rewind()?;
+    Ok(file)
 }
 
 /// Reads a file of at most `limit` bytes. `what` names the expected kind, such as "a scene file".

@@ -2,11 +2,15 @@
 
 use super::identity::resolved;
 use super::leftovers;
-use super::paths::ShownPath;
+use super::paths::{STANDARD, ShownPath};
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, BufWriter, ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
+use std::path::{Component, Path, PathBuf, Prefix};
+use std::time::{Duration, Instant};
 use tempfile::NamedTempFile;
+
+/// How long to wait for another program to close the file that is to be replaced. Some open each new file for a moment.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// A failed write. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +28,7 @@ fn remedy(reason: &io::Error) -> &'static str {
             "free some space, or choose another place; an existing file is left unchanged"
         }
         ErrorKind::FileTooLarge => "allow larger files (ulimit -f); an existing file is left unchanged",
+        ErrorKind::ResourceBusy => "close it there, or choose another place",
         ErrorKind::AlreadyExists => "move it away, or choose another place",
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",
@@ -31,8 +36,8 @@ fn remedy(reason: &io::Error) -> &'static str {
 }
 
 /// Writes a new file in the directory of `path` with `write`, then renames it over the old one. On failure the old file
-/// is unchanged and the new one is deleted. Links are followed; devices and pipes are written directly. The file gets
-/// the usual permissions, or those of the file it replaces.
+/// is unchanged and the new one is deleted. Links are followed; devices and pipes are written directly, and `-` is
+/// standard output. The file gets the usual permissions, or those of the file it replaces.
 ///
 /// # Errors
 /// [`WriteError`], from `write` or from the file system.
@@ -56,15 +61,16 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// [`WriteError`]: the directory does not exist, a directory has that name, permission is missing, the file is marked
-/// read-only, or the file system does not accept the name.
+/// read-only or, on Windows, open in another program, or the file system does not accept the name.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
         // Opening a pipe would wait for its reader, and closing it would end the reader's input.
-        Target::Device { is_pipe: true, .. } => Ok(()),
+        Target::StandardOutput | Target::Device { is_pipe: true, .. } => Ok(()),
         Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
-        Target::File { directory, old, .. } => {
+        Target::File { path, directory, old } => {
             leftovers::remove_from(&directory);
-            new_file_in(&directory, old.as_ref())?.close()
+            new_file_in(&directory, old.as_ref())?.close()?;
+            if old.is_some() { patiently(|| can_be_replaced(&path)) } else { Ok(()) }
         }
     };
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
@@ -83,12 +89,19 @@ pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
 }
 
 enum Target {
+    StandardOutput,
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
     Device { path: PathBuf, is_pipe: bool },
 }
 
 impl Target {
     fn find(named: &Path) -> io::Result<Target> {
+        if named == Path::new(STANDARD) {
+            return Ok(Target::StandardOutput);
+        }
+        if cfg!(windows) && is_device(named) {
+            return Err(io::Error::new(ErrorKind::InvalidFilename, "Windows keeps this name for a device"));
+        }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
             Ok(found) if !found.is_file() => {
@@ -123,13 +136,54 @@ impl Target {
     }
 }
 
+/// Whether Windows takes a path for a device, as it does `NUL` and, before version 11, `aux.png`.
+fn is_device(path: &Path) -> bool {
+    let whole = std::path::absolute(path).unwrap_or_default();
+    matches!(whole.components().next(), Some(Component::Prefix(prefix)) if matches!(prefix.kind(), Prefix::DeviceNS(_)))
+}
+
+/// Whether Windows refuses because a program has opened the file without sharing it, or it is about to be deleted.
+pub(super) fn is_busy(error: &io::Error) -> bool {
+    const SHARING_VIOLATION: i32 = 32;
+    error.kind() == ErrorKind::PermissionDenied || error.raw_os_error() == Some(SHARING_VIOLATION)
+}
+
+/// Tries until the file is no longer busy. Only on Windows can a file be busy.
+fn patiently(mut attempt: impl FnMut() -> io::Result<()>) -> io::Result<()> {
+    let begin = Instant::now();
+    loop {
+        match attempt() {
+            Err(error) if cfg!(windows) && is_busy(&error) => {
+                if begin.elapsed() >= PATIENCE {
+                    return Err(io::Error::new(ErrorKind::ResourceBusy, "another program has opened it"));
+                }
+                std::thread::sleep(PATIENCE / 50);
+            }
+            outcome => return outcome,
+        }
+    }
+}
+
+/// On Windows, what another program has opened can be replaced only if that program allows it.
+#[cfg(windows)]
+fn can_be_replaced(path: &Path) -> io::Result<()> {
+    use std::os::windows::fs::OpenOptionsExt;
+    const DELETE: u32 = 0x0001_0000;
+    OpenOptions::new().access_mode(DELETE).open(path).map(drop)
+}
+
+#[cfg(not(windows))]
+fn can_be_replaced(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
 #[cfg(unix)]
-fn is_pipe(found: &Metadata) -> bool {
+pub(super) fn is_pipe(found: &Metadata) -> bool {
     std::os::unix::fs::FileTypeExt::is_fifo(&found.file_type())
 }
 
 #[cfg(not(unix))]
-fn is_pipe(_: &Metadata) -> bool {
+pub(super) fn is_pipe(_: &Metadata) -> bool {
     false
 }
 
@@ -154,13 +208,61 @@ fn try_write(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Resul
         writer.flush()
     };
     match Target::find(path)? {
+        Target::StandardOutput => {
+            // Some formats are not written from start to end.
+            let mut file = tempfile::tempfile()?;
+            fill(&file)?;
+            file.rewind()?;
+            io::copy(&mut file, &mut io::stdout().lock()).map(drop)
+        }
         Target::Device { path, .. } => fill(&OpenOptions::new().write(true).open(path)?),
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
             // Without this, the file could be empty after a crash that follows the rename.
             new.as_file().sync_data()?;
-            new.persist(path).map(drop).map_err(|error| error.error)
+            let mut new = Some(new);
+            patiently(|| match new.take().map(|new| new.persist(&path)) {
+                Some(Err(refused)) => {
+                    new = Some(refused.file);
+                    Err(refused.error)
+                }
+                _ => Ok(()),
+            })
+        }
+    }
+}
+
+#[cfg(all(test, windows))]
+mod tests {
+    use super::*;
+    use std::os::windows::fs::OpenOptionsExt;
+
+    #[test]
+    fn a_file_that_another_program_has_opened_is_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        fs::write(&path, "old").unwrap();
+        let read_only = 1;
+        let held = OpenOptions::new().read(true).share_mode(read_only).open(&path).unwrap();
+        for refused in [check_writable(&path), write_text(&path, "new")] {
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains("another program has opened it; close it there"), "{message}");
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        let waiting = std::thread::spawn(move || write_text(&path, "new").is_ok());
+        drop(held);
+        assert!(waiting.join().unwrap(), "it is closed in time");
+        assert_eq!(fs::read_dir(&directory).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_name_of_a_device_is_refused() {
+        for name in ["NUL", "con", "C:\\a folder\\com1"] {
+            assert!(is_device(Path::new(name)), "{name}");
+        }
+        for name in ["nul-", "film.exr", "C:\\a folder\\console"] {
+            assert!(!is_device(Path::new(name)), "{name}");
         }
     }
 }

@@ -81,9 +81,23 @@ pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
-        FileError::at(text, name, error.span().unwrap_or_default().start, toml_message(error))
+        let place = error.span().unwrap_or_default().start;
+        let mut reason = toml_message(error);
+        if has_decimal_comma(text, place) {
+            reason += "; write a point in a number, not a comma";
+        }
+        FileError::at(text, name, place, reason)
     })?;
     recipe_of(raw, name).map_err(|refusal| FileError::at(text, name, refusal.place.start, refusal.reason))
+}
+
+/// Whether the line at `place` has a comma between two digits and is no list.
+fn has_decimal_comma(text: &str, place: usize) -> bool {
+    let (before, after) = text.split_at_checked(place).unwrap_or((text, ""));
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[start..].lines().next().unwrap_or_default();
+    let is_comma = |three: &[u8]| matches!(three, [b'0'..=b'9', b',', b'0'..=b'9']);
+    !after.is_empty() && !line.contains('[') && line.as_bytes().windows(3).any(is_comma)
 }
 
 /// Puts a TOML error on one line, with the key's path and without Rust's terms.
@@ -131,7 +145,10 @@ impl TryFrom<Vec<f64>> for Triple {
     fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
         match numbers[..] {
             [x, y, z] => Ok(Triple(DVec3::new(x, y, z))),
-            _ => Err(format!("expected three numbers, such as [0.0, 1.0, 0.0], but found {}", numbers.len())),
+            _ => Err(format!(
+                "expected three numbers with points, such as [0.0, 1.5, 0.0], but found {}",
+                numbers.len()
+            )),
         }
     }
 }

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Builds the program for other systems, from Debian or Ubuntu on x86-64, into target/cross.
+#   assets/package/cross.sh windows    a zip for Windows
+#   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
+#   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
+#                                      linking needs Apple's libraries
+#   assets/package/cross.sh check      type-checks all three; build-windows and build-arm make the programs alone
+# On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
+# Debian's sources. The archives need cargo-about.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+self=$PWD/assets/package/cross.sh
+
+target=${CARGO_TARGET_DIR:-target}/cross
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+windows=x86_64-pc-windows-gnu
+arm=aarch64-unknown-linux-gnu
+mac=aarch64-apple-darwin
+export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
+
+need() { # need PROGRAM PACKAGE...
+    command -v "$1" > /dev/null && return
+    echo "$1 is missing: apt-get install -y ${*:2}" >&2
+    exit 1
+}
+
+# cargo_for TARGET COMMAND ARGUMENTS...
+cargo_for() {
+    if rustup target list --installed 2> /dev/null | grep -qx "$1" || rustup target add "$1" > /dev/null 2>&1; then
+        cargo "$2" --locked --target "$1" --target-dir "$target/$1" "${@:3}"
+    else
+        need /usr/bin/cargo rustc-web cargo-web rust-web-src
+        PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "$2" --locked --target "$1" --target-dir "$target/$1" \
+            -Zbuild-std=std,panic_unwind "${@:3}"
+    fi
+}
+
+# texts FOLDER TARGET ARGUMENTS...: what every archive has
+texts() {
+    mkdir -p "$1"
+    cp README.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE "$1"
+    cargo about generate --locked --offline --fail --target "$2" "${@:3}" --config assets/package/about.toml \
+        --output-file "$1/LICENSES-OF-LIBRARIES.txt" assets/package/about.hbs
+}
+
+for what in "${@:-check}"; do
+    case $what in
+    check)
+        cargo_for "$windows" check
+        cargo_for "$arm" check --no-default-features
+        cargo_for "$mac" check
+        ;;
+    build-windows)
+        need x86_64-w64-mingw32-gcc mingw-w64
+        cargo_for "$windows" build --release
+        ;;
+    build-arm)
+        need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross
+        cargo_for "$arm" build --release --no-default-features
+        ;;
+    windows)
+        need zip zip
+        "$self" build-windows
+        name=weekender-v$version-$windows
+        rm -rf "${target:?}/$name" "$target/$name.zip"
+        texts "$target/$name" "$windows"
+        cp "$target/$windows/$windows/release/weekender.exe" "$target/$name"
+        (cd "$target" && zip -qrX "$name.zip" "$name")
+        ;;
+    arm)
+        "$self" build-arm
+        name=weekender-v$version-$arm-headless
+        rm -rf "${target:?}/$name"
+        texts "$target/$name" "$arm" --no-default-features
+        cp "$target/$arm/$arm/release/weekender" "$target/$name"
+        tar --sort=name --owner=0 --group=0 --numeric-owner -C "$target" -czf "$target/$name.tar.gz" "$name"
+        ;;
+    macos)
+        bundle=$target/Weekender.app/Contents
+        rm -rf "$target/Weekender.app"
+        texts "$bundle/Resources" "$mac"
+        mkdir -p "$bundle/MacOS"
+        cp assets/package/icons/weekender.icns "$bundle/Resources"
+        sed "s/VERSION/$version/" assets/package/Info.plist > "$bundle/Info.plist"
+        if [ "$(uname)" = Darwin ]; then
+            cargo_for "$mac" build --release
+            cp "$target/$mac/$mac/release/weekender" "$bundle/MacOS"
+        else
+            cargo_for "$mac" check
+            echo "$bundle/MacOS lacks the program: on a Mac, run this again" >&2
+        fi
+        ;;
+    *)
+        echo "$what is not known: windows, arm, macos or check" >&2
+        exit 2
+        ;;
+    esac
+done

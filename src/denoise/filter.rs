@@ -1,0 +1,349 @@
+//! The filter, tile by tile: no pixel depends on others further away than [`HALO`].
+
+#![expect(clippy::needless_range_loop, reason = "several arrays have the same index")]
+
+use bytemuck::Zeroable;
+use std::array::from_fn;
+
+/// Columns and rows of a tile.
+pub(super) const WIDE: usize = 64;
+pub(super) const HIGH: usize = 32;
+/// Pixels around a tile that its own depend on.
+const HALO: usize = 16;
+const STRIDE: usize = WIDE + 2 * HALO;
+const ROWS: usize = HIGH + 2 * HALO;
+
+/// The variance is a mean over 13x13 pixels.
+const BOX: usize = 6;
+/// The pilot compares patches of 7x7 pixels at shifts of up to 1.
+const PILOT: usize = 1;
+const PILOT_PATCH: usize = 3;
+/// The fit compares patches of 3x3 pixels of the pilot at shifts of up to 4.
+const FIT: usize = 4;
+const FIT_PATCH: usize = 1;
+/// Columns of the tile, and of pixels that reach it by a shift.
+const FIT_WIDE: usize = WIDE + 2 * FIT;
+/// Where the pilot is needed: in the tile, and around it as far as the fit looks.
+const PILOT_TOP: usize = HALO - FIT - FIT_PATCH;
+const PILOT_HIGH: usize = HIGH + 2 * (FIT + FIT_PATCH);
+const PILOT_LEFT: usize = HALO - 8;
+const PILOT_WIDE: usize = WIDE + 16;
+
+const _: () = assert!(BOX + PILOT + PILOT_PATCH + FIT + FIT_PATCH <= HALO);
+
+/// How far two patches may differ, in standard deviations.
+const PILOT_REACH: f32 = 0.9;
+const FIT_REACH: f32 = 1.3;
+/// Pulls the slopes of the plane to zero; pixels squared.
+const RIDGE: f32 = 0.16;
+/// Keeps one over the variance finite.
+const LEAST_VARIANCE: f32 = 1e-10;
+/// Lanes of the fit's sums, which stay in registers for a row of shifts.
+const LANES: usize = 16;
+
+/// A channel of a tile and its halo.
+type Plane = [[f32; STRIDE]; ROWS];
+
+/// A picture that patches are compared in, the variance of its noise (mean of the channels), and one over it.
+#[derive(Clone, Copy, Zeroable)]
+struct Guide {
+    rgb: [Plane; 3],
+    variance: Plane,
+    inverse: Plane,
+}
+
+impl Guide {
+    /// Row `y` of red, green, blue, the variance and one over it.
+    #[inline(always)]
+    fn rows(&self, y: usize) -> [&[f32; STRIDE]; 5] {
+        let [r, g, b] = &self.rgb;
+        [&r[y], &g[y], &b[y], &self.variance[y], &self.inverse[y]]
+    }
+
+    #[inline(always)]
+    fn set_variance(&mut self, [x, y]: [usize; 2], variance: f32) {
+        self.variance[y][x] = variance;
+        self.inverse[y][x] = 1.0 / (variance + LEAST_VARIANCE);
+    }
+}
+
+#[inline(always)]
+fn square(x: f32) -> f32 {
+    x * x
+}
+
+/// The smaller of two numbers that are not NaN: one instruction, other than `f32::min`.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Where a tile is.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// The column and row of its first pixel.
+    pub first: [usize; 2],
+    /// The size of the picture.
+    pub size: [usize; 2],
+}
+
+impl Place {
+    /// The pixel of the picture that is nearest to a column and row of the tile with its halo.
+    #[inline(always)]
+    fn nearest(self, at: [usize; 2]) -> [usize; 2] {
+        from_fn(|i| (self.first[i] + at[i]).saturating_sub(HALO).min(self.size[i] - 1))
+    }
+
+    /// Whether column (0) or row (1) number `at` of the tile with its halo is in the picture.
+    #[inline(always)]
+    fn holds(self, axis: usize, at: usize) -> bool {
+        (HALO..self.size[axis] + HALO).contains(&(self.first[axis] + at))
+    }
+
+    /// 1 in columns of the picture, 0 beside it.
+    #[inline(always)]
+    fn columns(self) -> [f32; STRIDE] {
+        from_fn(|x| f32::from(u8::from(self.holds(0, x))))
+    }
+}
+
+/// One half of a film for the filter.
+pub(super) struct Half<'a> {
+    /// Linear RGB, row by row from the top.
+    pub pixels: &'a [[f32; 3]],
+    /// What share of the mean squared difference between the halves is the variance of this half.
+    pub share: f32,
+}
+
+/// What a thread needs to filter a tile.
+#[derive(Clone, Copy, Zeroable)]
+pub(super) struct Scratch {
+    raw: Guide,
+    smooth: Guide,
+    /// Mean squared difference between the halves.
+    apart: Plane,
+    weights: [[[f32; FIT_WIDE]; HIGH + FIT]; 2 * FIT + 1],
+    sums: [[[f32; WIDE]; 15]; HIGH],
+    pilot_weights: [[f32; PILOT_WIDE]; PILOT_HIGH],
+    pilot_sums: [[[f32; PILOT_WIDE]; 5]; PILOT_HIGH],
+    /// Per half, row, channel and column.
+    pub filtered: [[[[f32; WIDE]; 3]; HIGH]; 2],
+}
+
+/// Filters both halves of a tile into `scratch.filtered`.
+#[inline(always)]
+pub(super) fn filter(halves: &[Half; 2], place: Place, scratch: &mut Scratch) {
+    difference(halves, place, &mut scratch.apart);
+    for (index, half) in halves.iter().enumerate() {
+        load(half, place, scratch);
+        pilot(place, scratch);
+        fit(place, scratch, index);
+    }
+}
+
+/// The mean squared difference of the halves, averaged over boxes, from the odd fields of a chessboard only. The filters
+/// of both halves share it. So in the even fields, one filtered half knows nothing of the other's noise.
+#[inline(always)]
+fn difference(halves: &[Half; 2], place: Place, apart: &mut Plane) {
+    let mut odd = [[[0.0f32; STRIDE]; ROWS]; 2];
+    for y in 0..ROWS {
+        for x in 0..STRIDE {
+            let [column, row] = place.nearest([x, y]);
+            if super::is_odd(column, row) {
+                let index = row * place.size[0] + column;
+                let (a, b) = (halves[0].pixels[index], halves[1].pixels[index]);
+                let squares = (0..3).map(|c| square(a[c] - b[c])).sum::<f32>();
+                (odd[0][y][x], odd[1][y][x]) = (squares / 3.0, 1.0);
+            }
+        }
+    }
+    const N: usize = STRIDE - 2 * BOX;
+    let mut across = [[[0.0f32; N]; ROWS]; 2];
+    for (across, odd) in across.iter_mut().flatten().zip(odd.iter().flatten()) {
+        for shift in 0..=2 * BOX {
+            (0..N).for_each(|x| across[x] += odd[x + shift]);
+        }
+    }
+    for (y, apart) in apart.iter_mut().enumerate().take(ROWS - BOX).skip(BOX) {
+        let mut sums = [[0.0f32; N]; 2];
+        for (sums, across) in sums.iter_mut().zip(&across) {
+            for row in &across[y - BOX..=y + BOX] {
+                (0..N).for_each(|x| sums[x] += row[x]);
+            }
+        }
+        (0..N).for_each(|x| apart[x + BOX] = sums[0][x] / sums[1][x].max(1.0));
+    }
+}
+
+#[inline(always)]
+fn load(half: &Half, place: Place, scratch: &mut Scratch) {
+    for y in 0..ROWS {
+        for x in 0..STRIDE {
+            let [column, row] = place.nearest([x, y]);
+            let pixel = half.pixels[row * place.size[0] + column];
+            (0..3).for_each(|c| scratch.raw.rgb[c][y][x] = pixel[c]);
+            scratch.raw.set_variance([x, y], half.share * scratch.apart[y][x]);
+        }
+    }
+}
+
+/// The weights of pixels at a shift, by the distance of the patches around both (Rousselle, Knaus and Zwicker 2012,
+/// equation 3, with one variance for all channels and `(1 - d / 8)^8` instead of `exp(-d)`). `out` has the rows from
+/// `top` and the columns from `left`.
+#[inline(always)]
+fn weights<const PATCH: usize, const N: usize>(
+    guide: &Guide,
+    [left, top]: [usize; 2],
+    [dx, dy]: [isize; 2],
+    reach: f32,
+    out: &mut [[f32; N]],
+) {
+    let (side, wider) = (2 * PATCH + 1, N + 2 * PATCH);
+    let from = left - PATCH;
+    let from_q = from.wrapping_add_signed(dx);
+    // The distance of each patch's rows, for the latest rows.
+    let mut latest = [[0.0f32; N]; 8];
+    // In the sums, distances are in units of 6 reach^2 times the larger variance.
+    let scale = -0.125 / (6.0 * reach * reach * (side * side) as f32);
+    for row in 0..out.len() + 2 * PATCH {
+        let p = top + row - PATCH;
+        let q = p.wrapping_add_signed(dy);
+        let [a, b, c, v, over_v] = guide.rows(p).map(|row| &row[from..from + wider]);
+        let [aq, bq, cq, vq, over_vq] = guide.rows(q).map(|row| &row[from_q..from_q + wider]);
+        let mut distance = [0.0f32; STRIDE];
+        for i in 0..wider {
+            let squares = square(a[i] - aq[i]) + square(b[i] - bq[i]) + square(c[i] - cq[i]);
+            distance[i] = (squares - 6.0 * least(v[i], vq[i])) * least(over_v[i], over_vq[i]);
+        }
+        let sums = &mut latest[row % side];
+        *sums = from_fn(|i| distance[i]);
+        (1..side).for_each(|shift| (0..N).for_each(|i| sums[i] += distance[i + shift]));
+        let Some(row) = row.checked_sub(2 * PATCH) else { continue };
+        let mut distance = latest[0];
+        latest[1..side].iter().for_each(|sums| (0..N).for_each(|i| distance[i] += sums[i]));
+        for i in 0..N {
+            let near = -least(-(1.0 + least(scale * distance[i], 0.0)), 0.0);
+            let near_2 = near * near;
+            let near_4 = near_2 * near_2;
+            out[row][i] = near_4 * near_4;
+        }
+    }
+}
+
+/// Non-local means over few shifts: a first picture, from which the weights of the fit are made, and its variance.
+#[inline(always)]
+fn pilot(place: Place, scratch: &mut Scratch) {
+    let Scratch { raw, smooth, pilot_weights, pilot_sums, .. } = scratch;
+    let inside = place.columns();
+    let corner = [PILOT_LEFT, PILOT_TOP];
+    pilot_sums.fill([[0.0; PILOT_WIDE]; 5]);
+    let reach = PILOT as isize;
+    for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
+        weights::<PILOT_PATCH, _>(raw, corner, [dx, dy], PILOT_REACH, pilot_weights);
+        let left = PILOT_LEFT.wrapping_add_signed(dx);
+        for (row, (sums, weights)) in pilot_sums.iter_mut().zip(pilot_weights.iter()).enumerate() {
+            let q = (PILOT_TOP + row).wrapping_add_signed(dy);
+            if !place.holds(1, q) {
+                continue;
+            }
+            let inside = &inside[left..left + PILOT_WIDE];
+            let rgb: [&[f32]; 3] = from_fn(|c| &raw.rgb[c][q][left..left + PILOT_WIDE]);
+            for i in 0..PILOT_WIDE {
+                let weight = weights[i] * inside[i];
+                (0..3).for_each(|c| sums[c][i] += weight * rgb[c][i]);
+                sums[3][i] += weight;
+                sums[4][i] += weight * weight;
+            }
+        }
+    }
+    for row in 0..PILOT_HIGH {
+        for i in 0..PILOT_WIDE {
+            let at = [PILOT_LEFT + i, PILOT_TOP + row];
+            // Beside the picture, its border is repeated.
+            let nearest = place.nearest(at);
+            let [x, y] = from_fn(|i| nearest[i] + HALO - place.first[i]);
+            let sums = pilot_sums[y - PILOT_TOP].map(|sums| sums[x - PILOT_LEFT]);
+            (0..3).for_each(|c| smooth.rgb[c][at[1]][at[0]] = sums[c] / sums[3]);
+            smooth.set_variance(at, raw.variance[y][x] * sums[4] / (sums[3] * sums[3]));
+        }
+    }
+}
+
+/// Fits a plane to the half around each pixel, by weights from the pilot. The result is the plane's value at the pixel.
+/// The weight of two pixels is the same both ways, so each is computed once.
+#[inline(always)]
+fn fit(place: Place, scratch: &mut Scratch, index: usize) {
+    let Scratch { raw, smooth, weights: all, sums, filtered, .. } = scratch;
+    let inside = place.columns();
+    // Sums over weight times: 1, r, g, b; x (1, r, g, b); y (1, r, g, b); x x, x y, y y. A pixel's own weight is 1.
+    for (y, sums) in sums.iter_mut().enumerate() {
+        *sums = [[0.0; WIDE]; 15];
+        sums[0] = [1.0; WIDE];
+        (0..3).for_each(|c| sums[1 + c].copy_from_slice(&raw.rgb[c][HALO + y][HALO..HALO + WIDE]));
+    }
+    let reach = FIT as isize;
+    for dy in 0..=FIT {
+        // From the pixels of all rows and columns that reach the tile by this shift.
+        let shifts = if dy == 0 { 1..=reach } else { -reach..=reach };
+        let all = &mut all[..shifts.clone().count()];
+        for (out, dx) in all.iter_mut().zip(shifts.clone()) {
+            let corner = [HALO - FIT, HALO - dy];
+            weights::<FIT_PATCH, _>(smooth, corner, [dx, dy as isize], FIT_REACH, &mut out[..HIGH + dy]);
+        }
+        for (row, sums) in sums.iter_mut().enumerate() {
+            for sign in [1, -1] {
+                let line = (HALO + row).wrapping_add_signed(sign * dy as isize);
+                if !place.holds(1, line) {
+                    continue;
+                }
+                // A weight is stored where its shift begins: at the pixel itself, or at the other one.
+                let weights_row = if sign == 1 { row + dy } else { row };
+                for lane in (0..WIDE).step_by(LANES) {
+                    let mut s = [[0.0f32; LANES]; 9];
+                    for (weights, dx) in all.iter().zip(shifts.clone()) {
+                        let dx = sign * dx;
+                        let x = dx as f32;
+                        let from = (FIT + lane).wrapping_add_signed(if sign == 1 { 0 } else { dx });
+                        let left = (HALO + lane).wrapping_add_signed(dx);
+                        let (weights, inside) =
+                            (&weights[weights_row][from..from + LANES], &inside[left..left + LANES]);
+                        let [r, g, b]: [&[f32]; 3] = from_fn(|c| &raw.rgb[c][line][left..left + LANES]);
+                        for i in 0..LANES {
+                            let (w, values) = (weights[i] * inside[i], [1.0, r[i], g[i], b[i]]);
+                            for c in 0..4 {
+                                s[c][i] += w * values[c];
+                                s[4 + c][i] += w * x * values[c];
+                            }
+                            s[8][i] += w * x * x;
+                        }
+                    }
+                    let y = (sign * dy as isize) as f32;
+                    for i in 0..LANES {
+                        let at = lane + i;
+                        for c in 0..4 {
+                            sums[c][at] += s[c][i];
+                            sums[4 + c][at] += s[4 + c][i];
+                            sums[8 + c][at] += y * s[c][i];
+                        }
+                        sums[12][at] += s[8][i];
+                        sums[13][at] += y * s[4][i];
+                        sums[14][at] += y * y * s[0][i];
+                    }
+                }
+            }
+        }
+    }
+    for (out, s) in filtered[index].iter_mut().zip(sums) {
+        for i in 0..WIDE {
+            let [n, x, y, xy] = [0, 4, 8, 13].map(|k| s[k][i]);
+            let [xx, yy] = [12, 14].map(|k| s[k][i] + RIDGE * n);
+            // The first row of the inverse of [n x y; x xx xy; y xy yy].
+            let row = [xx * yy - xy * xy, xy * y - x * yy, x * xy - xx * y];
+            let scale = 1.0 / (n * row[0] + x * row[1] + y * row[2]);
+            for c in 0..3 {
+                let sum = row[0] * s[1 + c][i] + row[1] * s[5 + c][i] + row[2] * s[9 + c][i];
+                out[c][i] = scale * sum;
+            }
+        }
+    }
+}

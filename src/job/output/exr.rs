@@ -1,0 +1,184 @@
+//! OpenEXR as any program writes it.
+
+use super::limits::{check_memory, invalid, pixel_count};
+use super::read::{ReadPicture, Values};
+use crate::film::checkpoint;
+use exr::error::{Error, Result};
+use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
+use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
+use std::collections::BTreeMap;
+use std::io::{self, BufRead, Seek};
+
+/// Three channels that make a picture.
+struct Layer<'a> {
+    part: &'a Part<AnyChannels<FlatSamples>>,
+    /// The part's name, if there are several, and what comes before the names of the channels; empty for the usual layer.
+    name: String,
+    /// Red, green and blue; of grey, three times the same.
+    channels: [&'a FlatSamples; 3],
+    alpha: Option<&'a FlatSamples>,
+}
+
+/// Reads the layer with this name, or the only one.
+pub(super) fn read(
+    mut reader: impl BufRead + Seek,
+    length: u64,
+    layer: Option<&str>,
+) -> io::Result<ReadPicture> {
+    let meta = MetaData::read_from_buffered(&mut reader, false).map_err(|error| unreadable(&error))?;
+    for header in &meta.headers {
+        checkpoint::check_length(header, length).map_err(invalid)?;
+        size(header.layer_size, header.channels.bytes_per_pixel)?;
+    }
+    // Each of the two ways refuses files that the other reads: the first those with a wrong number of chunks, the second
+    // those with an odd header.
+    let mut decoded = |is_pedantic: bool| -> Result<FlatImage> {
+        reader.rewind()?;
+        let builder =
+            reading().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
+        let builder = if is_pedantic { builder.pedantic() } else { builder };
+        builder.non_parallel().from_buffered(&mut reader)
+    };
+    let image = decoded(false).or_else(|error| decoded(true).map_err(|_| error));
+    let image = image.map_err(|error| unreadable(&error))?;
+    let layers = layers(&image);
+    let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
+    let mut notes = notes(&image, part.encoding.compression);
+    if layer.is_none() && layers.len() > 1 {
+        notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
+    }
+    let translucent = alpha.map_or(0, |alpha| alpha.values_as_f32().filter(|alpha| *alpha != 1.0).count());
+    if translucent > 0 {
+        notes.push(format!("{translucent} of its pixels have an alpha other than 1, which is ignored"));
+    }
+    let window = image.attributes.display_window;
+    let Vec2(columns, rows) = part.size;
+    let Vec2(left, top) = part.attributes.layer_position - window.position;
+    let (width, height) = size(window.size, 0)?;
+    let is_whole = (left, top, width as usize, height as usize) == (0, 0, columns, rows);
+    if !is_whole {
+        notes.push(format!(
+            "it has data for {columns}x{rows} pixels at {left},{top} of {width}x{height}; the others are black"
+        ));
+    }
+    let mut rgb = vec![[0.0; 3]; width as usize * height as usize];
+    for (colour, channel) in channels.iter().enumerate() {
+        for (place, value) in (0..).zip(channel.values_as_f32()) {
+            let (x, y) = (i64::from(left) + place % columns as i64, i64::from(top) + place / columns as i64);
+            if (0..i64::from(width)).contains(&x) && (0..i64::from(height)).contains(&y) {
+                rgb[(y * i64::from(width) + x) as usize][colour] = value;
+            }
+        }
+    }
+    let values =
+        Values::Floats { rgb, halves: channels.map(|channel| matches!(channel, FlatSamples::F16(_))) };
+    Ok(ReadPicture { width, height, format: "EXR", values, damages: Vec::new(), notes })
+}
+
+/// All layers with red, green and blue; if there are none, all with luminance.
+fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
+    let (mut colour, mut grey) = (Vec::new(), Vec::new());
+    for part in &image.layer_data {
+        let mut groups: BTreeMap<String, [Option<&FlatSamples>; 5]> = BTreeMap::new();
+        for channel in &part.channel_data.list {
+            let name = channel.name.to_string();
+            let (group, own) = name.rsplit_once('.').unwrap_or(("", &name));
+            let own = own.to_ascii_lowercase();
+            let names = [["r", "red"], ["g", "green"], ["b", "blue"], ["a", "alpha"], ["y", "y"]];
+            if let Some(place) = names.iter().position(|names| names.contains(&own.as_str())) {
+                groups.entry(group.to_owned()).or_default()[place] = Some(&channel.sample_data);
+            }
+        }
+        let own = part.attributes.layer_name.as_ref().filter(|_| image.layer_data.len() > 1);
+        let own = own.map_or_else(String::new, ToString::to_string);
+        for (group, [r, g, b, alpha, y]) in groups {
+            let name = match (own.is_empty(), group.is_empty()) {
+                (false, false) if !group.starts_with(&own) => format!("{own}.{group}"),
+                (false, true) => own.clone(),
+                _ => group,
+            };
+            match (r, g, b, y) {
+                (Some(r), Some(g), Some(b), _) => {
+                    colour.push(Layer { part, name, channels: [r, g, b], alpha });
+                }
+                (_, _, _, Some(y)) => grey.push(Layer { part, name, channels: [y; 3], alpha }),
+                _ => {}
+            }
+        }
+    }
+    if colour.is_empty() { grey } else { colour }
+}
+
+fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
+    if let Some(name) = name {
+        let found = layers.iter().find(|layer| layer.name == name);
+        return found.ok_or_else(|| {
+            invalid(format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers)))
+        });
+    }
+    let usual: Vec<&Layer> = layers.iter().filter(|layer| layer.name.is_empty()).collect();
+    match (layers, usual.as_slice()) {
+        ([only], _) => Ok(only),
+        (_, [usual]) => Ok(usual),
+        ([], _) => {
+            let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
+            let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
+            Err(invalid(format!(
+                "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
+                channels.join(", ")
+            )))
+        }
+        _ => Err(invalid(format!("it has several layers; choose one as FILE:LAYER: {}", names(layers)))),
+    }
+}
+
+fn names(layers: &[Layer]) -> String {
+    let names = layers.iter().map(|layer| layer.name.as_str()).filter(|name| !name.is_empty());
+    names.collect::<Vec<_>>().join(", ")
+}
+
+/// What makes the numbers of a picture mean something else than usual.
+fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(space) = &image.attributes.chromaticities {
+        let found = [space.red, space.green, space.blue, space.white];
+        let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
+        let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
+            (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
+        };
+        if !found.iter().zip(usual).all(is_near) {
+            let [red, ..] = found;
+            notes.push(format!(
+                "its colours are not those of sRGB (its red is at {},{} instead of 0.64,0.33); they are not converted",
+                red.x(),
+                red.y()
+            ));
+        }
+    }
+    let is_lossy = matches!(
+        compression,
+        Compression::B44 | Compression::B44A | Compression::DWAA(_) | Compression::DWAB(_)
+    );
+    if is_lossy {
+        notes.push(format!("its {compression} changes the values"));
+    }
+    notes
+}
+
+/// Width and height, if there is memory for a picture and as many more bytes for each pixel.
+fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> io::Result<(u32, u32)> {
+    let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    pixel_count(width, height)?;
+    check_memory(width, height, bytes as u64)?;
+    Ok((width, height))
+}
+
+fn unreadable(error: &Error) -> io::Error {
+    let text = error.to_string();
+    let remedy = match error {
+        Error::NotSupported(_) if text.contains("compression") => "save it with another, such as ZIP",
+        Error::NotSupported(_) => "save it as a flat picture with R, G and B of the same size",
+        _ => "check whether the file is complete",
+    };
+    invalid(format!("{text}; {remedy}"))
+}

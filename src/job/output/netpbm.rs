@@ -1,0 +1,405 @@
+//! Netpbm's formats as any program writes them: PGM and PPM (`P2`, `P3`, `P5`, `P6`), and PFM (`PF`, `Pf`).
+//!
+//! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
+//! Image Format".
+
+use super::limits::{check_memory, invalid, pixel_count};
+use super::read::{Damage, ReadPicture, Values};
+use crate::film::Film;
+use std::borrow::Cow;
+use std::io::{self, Write};
+
+/// Reads a picture from the bytes of a file; of several in one file, the last.
+pub(super) fn read(file: &[u8]) -> io::Result<ReadPicture> {
+    let mut damages = Vec::new();
+    let mut file = Cow::Borrowed(file);
+    if let Some(text) = from_utf16(&file) {
+        damages.push(Damage::new(
+            "the file is text of two bytes per letter (UTF-16), which no viewer takes for a PPM",
+            "PowerShell's > writes it so: use cmd /c \"program > picture.ppm\", or PowerShell 7, or let the program open the \
+             file itself",
+        ));
+        file = Cow::Owned(text);
+    } else if let Some(rest) = file.strip_prefix(b"\xEF\xBB\xBF") {
+        damages.push(Damage::new(
+            "the file begins with a byte order mark",
+            "write it without one (UTF-8 without BOM): a PPM begins with P3 or P6",
+        ));
+        file = Cow::Owned(rest.to_owned());
+    }
+    let mut start = header(&file).ok_or_else(|| invalid(foreign(&file)))?;
+    if start > 0 {
+        damages.push(Damage::new(
+            "there is other text before the header",
+            "write nothing but the picture to standard output; messages belong to std::clog",
+        ));
+    }
+    let mut is_appended = false;
+    loop {
+        let mut own = Vec::new();
+        match read_at(&file[start..], &mut own)? {
+            Found::Picture(mut picture) => {
+                if is_appended {
+                    damages.push(Damage::new(
+                        "the file has several pictures, one after the other; this is the last",
+                        "write it with > instead of >>, which appends",
+                    ));
+                }
+                damages.append(&mut own);
+                picture.damages = damages;
+                return Ok(picture);
+            }
+            Found::Another(offset) => {
+                is_appended = true;
+                start += offset;
+            }
+        }
+    }
+}
+
+enum Found {
+    Picture(ReadPicture),
+    /// Where the next picture begins.
+    Another(usize),
+}
+
+fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
+    let kind = file[1];
+    let mut words = Words { file, at: 2 };
+    match kind {
+        b'2' | b'3' => return text(file, kind, damages),
+        b'F' | b'f' => return floats(words, if kind == b'F' { 3 } else { 1 }).map(Found::Picture),
+        _ => {}
+    }
+    let size = [words.number("width")?, words.number("height")?];
+    let most = words.number("largest value")?;
+    let ((width, height, count), most) = (checked(size)?, checked_most(most)?);
+    let channels = if kind == b'6' { 3 } else { 1 };
+    let bytes_per_value = if most > 255 { 2 } else { 1 };
+    let needed = count * channels * bytes_per_value;
+    let mut data = Cow::Borrowed(words.payload(needed));
+    if data.len() < needed {
+        return Err(invalid(format!(
+            "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
+             through PowerShell's >, which changes bytes",
+            data.len()
+        )));
+    }
+    if let Some(repaired) = without_returns(&data, needed) {
+        damages.push(Damage::new(
+            "the file was written in text mode: each byte 10 has become 13 and 10",
+            "open the file in binary mode (std::ios::binary); for standard output, _setmode(_fileno(stdout), _O_BINARY)",
+        ));
+        data = Cow::Owned(repaired);
+    }
+    let mut notes = Vec::new();
+    let rest = &data[needed..];
+    if !rest.is_empty() {
+        let blanks = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        if matches!(data, Cow::Borrowed(_)) && is_header(&rest[blanks..]) {
+            return Ok(Found::Another(file.len() - rest.len() + blanks));
+        }
+        notes.push(format!("{} bytes after the pixels are ignored", rest.len()));
+    }
+    check_memory(width, height, 0)?;
+    let data = &data[..needed];
+    let values: Vec<u16> = match bytes_per_value {
+        1 => data.iter().copied().map(u16::from).collect(),
+        _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect(),
+    };
+    let format = if kind == b'6' { "P6" } else { "P5" };
+    Ok(Found::Picture(integers([width, height], format, most, channels, values, notes, damages)))
+}
+
+/// The picture of values that may exceed the largest one.
+fn integers(
+    [width, height]: [u32; 2],
+    format: &'static str,
+    most: u16,
+    channels: usize,
+    values: Vec<u16>,
+    notes: Vec<String>,
+    damages: &mut Vec<Damage>,
+) -> ReadPicture {
+    outside(values.iter().filter(|value| **value > most).count(), most, damages);
+    let rgb = values
+        .chunks_exact(channels)
+        .map(|pixel| [0, 1, 2].map(|channel: usize| pixel[channel.min(channels - 1)].min(most)))
+        .collect();
+    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
+}
+
+fn outside(count: usize, most: u16, damages: &mut Vec<Damage>) {
+    if count > 0 {
+        damages.push(Damage::new(
+            format!("{count} numbers are below 0 or above {most}"),
+            "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative ones often were NaN",
+        ));
+    }
+}
+
+/// Reads numbers written as text, leaving out what does not belong.
+fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
+    let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
+    for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
+        if at > 0 && is_header(line) {
+            return Ok(Found::Another(at));
+        }
+        let content = if at == 0 { &line[2..] } else { line };
+        at += line.len();
+        let content = content.split(|byte| *byte == b'#').next().unwrap_or_default();
+        let content = String::from_utf8_lossy(content.trim_ascii());
+        if content.starts_with(char::is_alphabetic) && !content.starts_with("nan") {
+            messages += 1;
+        } else if !content.is_empty() {
+            lines.push(content);
+        }
+    }
+    if messages > 0 {
+        damages.push(Damage::new(
+            format!("{messages} lines of the file are messages, not numbers"),
+            "write messages such as \"Scanlines remaining\" to std::clog, not to std::cout",
+        ));
+    }
+    let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
+    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
+    let [width, height, most] = *head.as_slice() else {
+        return Err(invalid(format!("its header is not complete; {HEADER}")));
+    };
+    let size = [width, height].map(|side| u64::try_from(side).unwrap_or(0));
+    let ((width, height, count), most) = (checked(size)?, checked_most(most.try_into().unwrap_or(0))?);
+    let channels = if kind == b'3' { 3 } else { 1 };
+    let needed = count * channels;
+    let words = || words().skip(3);
+    let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
+    // With decimal commas, there are as many words as numbers.
+    let has_decimal_commas = has_commas && words().count() >= needed;
+    let mut odd = 0;
+    let mut values: Vec<i64> = Vec::new();
+    let mut add = |word: &str| {
+        values.push(word.parse().unwrap_or_else(|_| {
+            odd += 1;
+            word.parse::<f64>().map_or(-1, |x| if x.is_nan() { -1 } else { x as i64 })
+        }));
+    };
+    for word in words() {
+        if has_decimal_commas {
+            add(&word.trim_end_matches(',').replace(',', "."));
+        } else {
+            word.split(',').filter(|part| !part.is_empty()).for_each(&mut add);
+        }
+    }
+    if has_decimal_commas {
+        damages.push(Damage::new(
+            "numbers have decimal commas",
+            "write whole numbers, and a point in any other; the program's locale should be \"C\"",
+        ));
+    } else if words().any(|word| word.contains(',')) {
+        damages.push(Damage::new("there are commas between the numbers", "separate them by spaces"));
+    }
+    if odd > 0 && !has_decimal_commas {
+        damages.push(Damage::new(
+            format!("{odd} values are not whole numbers"),
+            "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
+        ));
+    }
+    if values.len() < needed {
+        return Err(invalid(format!(
+            "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width \
+             and height of the header, and whether the program ended early",
+            values.len(),
+            values.len() / (channels * width as usize)
+        )));
+    }
+    if values.len() > needed {
+        damages.push(Damage::new(
+            format!("there are {} numbers, but {width} x {height} pixels need {needed}", values.len()),
+            "let the loops run to image_width - 1 and image_height - 1, and write the same sizes to the header",
+        ));
+    }
+    check_memory(width, height, 0)?;
+    values.truncate(needed);
+    outside(values.iter().filter(|value| !(0..=most.into()).contains(*value)).count(), most, damages);
+    let values = values.iter().map(|value| (*value).clamp(0, most.into()) as u16).collect();
+    let format = if kind == b'3' { "P3" } else { "P2" };
+    Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
+}
+
+/// Reads a PFM, whose lowest row comes first.
+fn floats(mut words: Words, channels: usize) -> io::Result<ReadPicture> {
+    let size = [words.number("width")?, words.number("height")?];
+    let word = words.next();
+    let scale: f32 = word.replace(',', ".").parse().unwrap_or(0.0);
+    if !scale.is_finite() || scale == 0.0 || word.contains(',') {
+        return Err(invalid(format!(
+            "its scale is {word:?}; write -1.0 after width and height if the lowest byte of a number comes first, else 1.0"
+        )));
+    }
+    let (width, height, count) = checked(size)?;
+    let count = count * channels;
+    let data = words.payload(4 * count);
+    let Some(pixels) = data.get(..4 * count) else {
+        return Err(invalid(format!(
+            "it has {} of the {} bytes that {width} x {height} pixels need; write all rows, in binary mode",
+            data.len(),
+            4 * count
+        )));
+    };
+    check_memory(width, height, 0)?;
+    let (numbers, _) = pixels.as_chunks::<4>();
+    let value = |is_little: bool, bytes: &[u8; 4]| {
+        if is_little { f32::from_le_bytes(*bytes) } else { f32::from_be_bytes(*bytes) }
+    };
+    // The wrong byte order makes nearly all numbers absurd.
+    let is_usual = |x: f32| x == 0.0 || (1e-9..1e9).contains(&x.abs());
+    let usual = |is_little: bool| numbers.iter().filter(|bytes| is_usual(value(is_little, bytes))).count();
+    let declared = scale < 0.0;
+    let is_swapped = 2 * usual(declared) < count && usual(!declared) == count;
+    let mut notes = Vec::new();
+    let mut note = |is_so: bool, text: String| notes.extend(is_so.then_some(text));
+    note(is_swapped, "its numbers have the other byte order than its scale says".to_owned());
+    note(scale.abs() != 1.0, format!("its values are multiplied by its scale, {}", scale.abs()));
+    let after = data.len() - pixels.len();
+    note(after > 0, format!("{after} bytes after the pixels are ignored"));
+    let rgb = numbers
+        .chunks_exact(width as usize * channels)
+        .rev()
+        .flat_map(|row| row.chunks_exact(channels))
+        .map(|pixel| [0, 1, 2].map(|channel: usize| &pixel[channel.min(channels - 1)]))
+        .map(|pixel| pixel.map(|bytes| value(declared != is_swapped, bytes) * scale.abs()))
+        .collect();
+    let values = Values::Floats { rgb, halves: [false; 3] };
+    Ok(ReadPicture { width, height, format: "PFM", values, damages: Vec::new(), notes })
+}
+
+/// Writes the mean as a PFM with the lowest byte first. It has no description, for which the format has no place.
+pub(super) fn write_pfm(film: &Film, writer: &mut impl Write) -> io::Result<()> {
+    write!(writer, "PF\n{} {}\n-1.0\n", film.width(), film.height())?;
+    for row in film.means().chunks_exact(film.width() as usize).rev() {
+        let bytes: Vec<u8> = row.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        writer.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
+
+/// Width, height and number of pixels.
+fn checked([width, height]: [u64; 2]) -> io::Result<(u32, u32, usize)> {
+    if width.min(height) == 0 {
+        return Err(invalid(format!(
+            "its header says {width} x {height} pixels; write the width and height of the picture"
+        )));
+    }
+    let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    Ok((width, height, pixel_count(width, height)?))
+}
+
+fn checked_most(most: u64) -> io::Result<u16> {
+    match u16::try_from(most) {
+        Ok(most @ 1..) => Ok(most),
+        _ => Err(invalid(format!("its largest value is {most}; write 255 after width and height"))),
+    }
+}
+
+/// The white-space separated words of a header, without comments.
+struct Words<'a> {
+    file: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    fn next(&mut self) -> Cow<'a, str> {
+        let file = self.file;
+        let rest = |at: usize| file.get(at..).unwrap_or_default();
+        let skip = |at: usize, is_skipped: fn(u8) -> bool| {
+            at + rest(at).iter().take_while(|byte| is_skipped(**byte)).count()
+        };
+        let is_blank = |byte: u8| byte.is_ascii_whitespace() || byte == 0x0b;
+        self.at = skip(self.at, is_blank);
+        while rest(self.at).first() == Some(&b'#') {
+            self.at = skip(skip(self.at, |byte| !matches!(byte, b'\n' | b'\r')), is_blank);
+        }
+        let end = skip(self.at, |byte| !byte.is_ascii_whitespace() && !matches!(byte, b'#' | 0x0b));
+        let word = &file[self.at..end];
+        self.at = end;
+        String::from_utf8_lossy(&word[..word.len().min(32)])
+    }
+
+    fn number(&mut self, what: &str) -> io::Result<u64> {
+        let word = self.next();
+        word.parse().map_err(|_| invalid(format!("its {what} is {word:?}; {HEADER}")))
+    }
+
+    /// What follows the white space that ends the header: one character, or all up to a line end if that leaves enough.
+    fn payload(&self, needed: usize) -> &'a [u8] {
+        let mut rest = self.file.get(self.at..).unwrap_or_default();
+        if rest.first() == Some(&b'#') {
+            let end = rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len() - 1);
+            rest = &rest[end..];
+        }
+        let blanks = rest.iter().take_while(|byte| matches!(byte, b' ' | b'\t' | b'\r')).count();
+        let is_line = rest.get(blanks) == Some(&b'\n') && rest.len() - blanks > needed;
+        rest.get(if is_line { blanks + 1 } else { 1 }..).unwrap_or_default()
+    }
+}
+
+/// Removes the carriage returns that text mode puts before each line feed, if there are as many as there are bytes too many.
+fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
+    let feeds = data.iter().filter(|byte| **byte == b'\n').count();
+    let pairs = data.windows(2).filter(|pair| pair == b"\r\n").count();
+    if pairs == 0 || feeds != pairs || data.len() != needed + pairs {
+        return None;
+    }
+    let is_kept = |at: &usize| data[*at] != b'\r' || data.get(at + 1) != Some(&b'\n');
+    Some((0..data.len()).filter(is_kept).map(|at| data[at]).collect())
+}
+
+/// Whether a picture of one of these formats begins here.
+fn is_header(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', next, ..] if next.is_ascii_whitespace() || *next == b'#')
+}
+
+/// Where the picture begins: at once, or at a line after some text.
+fn header(file: &[u8]) -> Option<usize> {
+    if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
+        return Some(0);
+    }
+    let mut at = 0;
+    for line in file.split_inclusive(|byte| *byte == b'\n') {
+        if is_header(line) {
+            return Some(at);
+        }
+        at += line.len();
+        if line.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace()) {
+            break;
+        }
+    }
+    None
+}
+
+/// What a file without a header is.
+fn foreign(file: &[u8]) -> String {
+    let known = image::guess_format(file).ok().and_then(|format| format.extensions_str().first().copied());
+    // A TGA has no signature at its start.
+    let is_tga = matches!(file, [_, 0 | 1, 1..=3 | 9..=11, _, _, _, _, 0 | 8 | 15..=32, ..])
+        && matches!(file.get(16), Some(8 | 15 | 16 | 24 | 32));
+    match known.or(is_tga.then_some("tga")) {
+        Some(name) => format!("it is a {} file; save it as PNG or PPM", name.to_uppercase()),
+        None => format!("it is not a PNG, PPM, PFM or EXR file; {HEADER}"),
+    }
+}
+
+/// Decodes a text in UTF-16; `None` if it is not UTF-16.
+fn from_utf16(bytes: &[u8]) -> Option<Vec<u8>> {
+    let (rest, is_little) = match bytes {
+        [0xFF, 0xFE, rest @ ..] => (rest, true),
+        [0xFE, 0xFF, rest @ ..] => (rest, false),
+        [b'P', 0, ..] => (bytes, true),
+        [0, b'P', ..] => (bytes, false),
+        _ => return None,
+    };
+    let (pairs, _) = rest.as_chunks::<2>();
+    let unit = |pair: &[u8; 2]| if is_little { u16::from_le_bytes(*pair) } else { u16::from_be_bytes(*pair) };
+    Some(pairs.iter().map(|pair| u8::try_from(unit(pair)).unwrap_or(b'?')).collect())
+}

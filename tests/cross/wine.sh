@@ -1,0 +1,186 @@
+#!/usr/bin/env bash
+# The Windows program under Wine, compared with the Linux program of the same commit.
+#   tests/cross/wine.sh weekender.exe target/release/weekender
+# Needs Debian's wine64, mingw-w64, libcap2-bin, xvfb, openbox and xdotool. Root can also fill a disk.
+set -uo pipefail
+exe=$(realpath "$1")
+linux=$(realpath "$2")
+here=$(cd "$(dirname "$0")" && pwd)
+scenes=$here/../../assets/scenes
+
+work=$(mktemp -d)
+mkdir -p "$work/run" "$work/full"
+export WINEPREFIX=$work/prefix WINEDEBUG=-all XDG_RUNTIME_DIR=$work
+started=()
+finish() {
+    wineserver -k 2> /dev/null
+    [ ${#started[@]} -eq 0 ] || kill "${started[@]}" 2> /dev/null
+    mountpoint -q "$work/full" && umount "$work/full"
+    chmod -R u+w "$work" && rm -rf "$work"
+}
+trap finish EXIT
+
+Xvfb -displayfd 3 -screen 0 1400x1000x24 3> "$work/display" 2> /dev/null &
+started+=($!)
+until [ -s "$work/display" ]; do sleep 0.1; done
+DISPLAY=:$(cat "$work/display")
+export DISPLAY
+openbox 2> /dev/null &
+started+=($!)
+wineboot -i > /dev/null 2>&1
+
+# Wine 8 lacks a library that Rust's random numbers come from.
+if [ ! -e "$WINEPREFIX/drive_c/windows/system32/bcryptprimitives.dll" ]; then
+    cat > "$work/prng.c" << 'EOF'
+#include <windows.h>
+#include <ntsecapi.h>
+__declspec(dllexport) BOOL WINAPI ProcessPrng(PBYTE data, SIZE_T size) { return RtlGenRandom(data, (ULONG)size); }
+EOF
+    x86_64-w64-mingw32-gcc -shared -O -o "$WINEPREFIX/drive_c/windows/system32/bcryptprimitives.dll" "$work/prng.c" -ladvapi32
+fi
+x86_64-w64-mingw32-gcc -municode -O -o "$work/helper.exe" "$here/helper.c"
+cp "$exe" "$work/weekender.exe"
+cd "$work/run" || exit 1
+
+passed=0 failed=0
+# Root may write everywhere, unless it gives up that right.
+windows() {
+    timeout 120 capsh --drop=cap_dac_override,cap_dac_read_search,cap_fowner -- -c 'exec wine "$@"' wine "$@" \
+        < /dev/null > "$work/out" 2>&1
+}
+report() { # report NAME OUTCOME
+    if [ "$2" = 0 ]; then
+        passed=$((passed + 1))
+        echo "ok     $1"
+    else
+        failed=$((failed + 1))
+        echo "FAILED $1"
+        sed 's/^/         /' "$work/out" | tail -n 12
+    fi
+}
+# case_of NAME CODE TEXT ARGUMENTS...: the program ends with this code and says this
+case_of() {
+    local name=$1 code=$2 text=$3 got
+    shift 3
+    windows "$work/weekender.exe" "$@"
+    got=$?
+    [ "$got" = "$code" ] && grep -qF -- "$text" "$work/out"
+    report "$name (exit code $got)" $?
+}
+same() { # same NAME FILM FILM
+    "$linux" compare "$2" "$3" > "$work/out" 2>&1
+    grep -q 'equal to the bit' "$work/out"
+    report "$1" $?
+}
+exists() { # exists NAME FILE
+    [ -s "$2" ]
+    report "$1" $?
+}
+tiny=(--size 32x18 --samples 4 --device cpu)
+endless=(--size 160x90 --samples 4294967296 --device cpu --progress on)
+
+case_of 'version' 0 x86_64-pc-windows-gnu --version --verbose
+for picture in three-spheres book field:3000 metals close-up touching-spheres \
+    "$scenes/hollow-glass.toml" "$scenes/stress/planet-coast.toml"; do
+    name=$(basename "${picture/:/-}" .toml)
+    film=(--batch --device cpu --scene "$picture" --size 160x90 --samples 16)
+    "$linux" "${film[@]}" --out "linux-$name.exr" > "$work/out" 2>&1
+    case_of "renders $name" 0 "$name.exr" "${film[@]}" --out "$name.exr"
+    same "same bits as Linux: $name" "linux-$name.exr" "$name.exr"
+done
+for isa in portable sse4.2 avx2; do
+    film=(--batch --device cpu --isa "$isa" --size 160x90 --samples 16)
+    "$linux" "${film[@]}" --out "linux-$isa.exr" > "$work/out" 2>&1
+    case_of "renders with $isa" 0 "$isa.exr" "${film[@]}" --out "$isa.exr"
+    same "same bits as Linux: $isa" "linux-$isa.exr" "$isa.exr"
+done
+
+case_of 'compares' 0 'equal to the bit' compare book.exr linux-book.exr
+case_of 'compares what differs' 1 different compare book.exr metals.exr
+case_of 'a picture' 0 metal.png --batch --stage metal --device cpu --size 160x90 --samples 64 --out metal.png
+case_of 'checks a picture' 0 '' check metal.png --stage metal
+case_of 'info' 0 metals info metals.exr
+case_of 'stress' 0 '' stress --filter copies --isa auto
+case_of 'plans' 0 render-part plan --scene metals --size 64x36 --samples 64 --parts 2 --out plan
+case_of 'renders part 0' 0 '' render-part plan --part 0 --device cpu
+"$linux" render-part plan --part 1 --device cpu > "$work/out" 2>&1
+case_of "merges with Linux's part 1" 0 '' merge plan --out merged.exr
+"$linux" --batch --device cpu --scene metals --size 64x36 --samples 64 --out whole.exr > "$work/out" 2>&1
+same 'the merged film is the whole' merged.exr whole.exr
+
+mkdir 'Köln und Umgebung' "$WINEPREFIX/drive_c/films"
+case_of 'umlauts and spaces' 0 'ein Bild.exr' --batch "${tiny[@]}" --out 'Köln und Umgebung/ein Bild.exr'
+exists 'that file' 'Köln und Umgebung/ein Bild.exr'
+case_of 'a drive' 0 'C:\films\a.exr' --batch "${tiny[@]}" --out 'C:\films\a.exr'
+case_of 'both kinds of slashes' 0 'a.exr' --batch "${tiny[@]}" --samples 8 --resume 'C:\films/a.exr' --out 'C:/films\b.exr'
+exists 'that file' "$WINEPREFIX/drive_c/films/b.exr"
+mkdir -p "$WINEPREFIX/dosdevices/unc/server/share"
+case_of 'a UNC name' 0 '\\server\share\a.exr' --batch "${tiny[@]}" --out '\\server\share\a.exr'
+exists 'that file' "$WINEPREFIX/dosdevices/unc/server/share/a.exr"
+deep=$(printf 'a-folder-of-a-path-too-long-for-the-old-limit/%.0s' 1 2 3 4 5 6 7)
+mkdir -p "$deep"
+case_of 'a long path' 0 'a.exr' --batch "${tiny[@]}" --out "${deep}a.exr"
+case_of 'a long path again' 0 'a.exr' --batch "${tiny[@]}" --samples 8 --checkpoint "${deep}a.exr" --continue
+exists 'that file' "${deep}a.exr"
+for name in aux.png NUL.exr 'C:\films\com1.exr'; do
+    case_of "a device's name: $name" 2 'choose another name' --batch "${tiny[@]}" --out "$name"
+done
+case_of 'a name for a stream' 2 'choose another' --batch "${tiny[@]}" --out 'a.exr:b.exr'
+case_of 'a folder' 2 'choose another name' --batch "${tiny[@]}" --out 'plan\'
+case_of 'a folder that is not there' 2 'create its directory' --batch "${tiny[@]}" --out 'C:\missing\a.exr'
+
+"$linux" --scene metals --save-scene lf.toml > "$work/out" 2>&1
+sed 's/$/\r/' lf.toml > crlf.toml
+case_of 'a scene with CR LF' 0 '' --batch "${tiny[@]}" --scene crlf.toml --out crlf.exr
+case_of 'the same with LF' 0 '' --batch "${tiny[@]}" --scene lf.toml --out lf.exr
+same 'same bits' crlf.exr lf.exr
+printf '[camera]\r\nvfov_degrees = 20\r\nlook_form = [1, 2, 3]\r\n' > wrong.toml
+case_of 'a mistake after CR LF is found' 2 'look_form' --batch "${tiny[@]}" --scene wrong.toml
+
+mkdir locked
+cp metals.exr locked/a.exr
+chmod a-w locked
+case_of 'a read-only folder' 2 'choose another place' --batch "${tiny[@]}" --out locked/b.exr
+chmod u+w locked
+cp metals.exr read-only.exr
+chmod a-w read-only.exr
+case_of 'a read-only file' 2 'marked read-only' --batch "${tiny[@]}" --out read-only.exr
+cp lf.exr held.exr
+windows "$work/helper.exe" hold held.exr "$work/weekender.exe" --batch "${tiny[@]}" --out held.exr
+[ $? = 2 ] && grep -q 'another program has opened it; close it there' "$work/out"
+report 'a file that another program has opened' $?
+windows "$work/helper.exe" hold held.exr "$work/weekender.exe" info held.exr
+report 'it can be read' $?
+if mount -t tmpfs -o size=100k tmpfs "$work/full" 2> /dev/null; then
+    ln -s "$work/full" "$WINEPREFIX/dosdevices/f:"
+    case_of 'a full disk' 3 'free some space' --batch --device cpu --size 640x360 --samples 4 --out 'f:\a.exr'
+    rescued=$(grep -o '[A-Z]:\\[^ ]*weekender-[^ ]*\.exr' "$work/out" | head -n 1)
+    case_of 'its samples are rescued' 0 '4 samples' info "${rescued:-none}"
+fi
+
+windows "$work/weekender.exe" --batch "${endless[@]}" --out run.exr &
+sleep 4
+case_of 'a second run of the same film' 2 'is locked' --batch "${tiny[@]}" --out run.exr
+wineserver -k
+wait %% 2> /dev/null
+case_of 'after it was killed' 0 '' --batch "${tiny[@]}" --out run.exr
+[ -z "$(find . -maxdepth 1 -name '.weekender-*')" ]
+report 'nothing is left behind' $?
+
+windows "$work/helper.exe" ctrl-c 4000 "$work/weekender.exe" --batch "${endless[@]}" --out ctrl-c.exr
+[ $? = 130 ]
+report 'Ctrl-C ends with 130' $?
+case_of 'and saves the film' 0 'samples' info ctrl-c.exr
+windows "$work/helper.exe" console 60000 "$work/weekender.exe" --batch "${endless[@]}" --out closed.exr &
+for _ in $(seq 30); do
+    sleep 1
+    console=$(xdotool search --name helper 2> /dev/null | tail -n 1)
+    [ -z "$console" ] || break
+done
+sleep 4
+xdotool windowactivate --sync "$console" key alt+F4
+wait %% 2> /dev/null
+case_of 'closing the console saves the film' 0 'samples' info closed.exr
+
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]
