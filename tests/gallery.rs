@@ -97,7 +97,7 @@ fn full_still_satisfies_quick_order() {
     let sky = &pictures(at)[0];
     assert_eq!(
         (&sky["width"], &sky["file"], &sky["samples_per_pixel"]),
-        (&880.into(), &"sky.png".into(), &1.into())
+        (&800.into(), &"sky.png".into(), &1.into())
     );
     assert!(rendered(at, &quick).is_empty());
     let path = at.join("g/antialiased.png");

@@ -350,7 +350,8 @@ function addWipe(root, [first, second]) {
     if (!isOn || !running) return;
     for (const panel of [first, second]) {
       if (!panel.session) panel.start();
-      if (panel !== running) panel.session.move(() => running.session.settings.camera);
+      const { from, at, up } = running.session.settings.camera;
+      if (panel !== running) panel.session.move((camera) => ({ ...camera, from, at, up }));
     }
   });
   second.button.after(button);

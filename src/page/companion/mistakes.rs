@@ -13,7 +13,7 @@ use std::io::{Cursor, Write as _};
 use std::path::Path;
 
 /// Width of the pictures, pixels.
-const WIDTH: u32 = 240;
+const WIDTH: u32 = 180;
 
 /// Samples per pixel; the plain tracer gets an eighth.
 const SAMPLES: u64 = 128;

@@ -17,11 +17,11 @@ const QUICK_WIDTH: u32 = 480;
 /// Maximum samples per pixel of a quick still.
 const QUICK_SAMPLES: u64 = 64;
 
-/// Minimum width of a full still, pixels: twice that of most stages.
-const FULL_WIDTH: u32 = 960;
+/// Minimum width of a full still, pixels.
+const FULL_WIDTH: u32 = 800;
 
 /// Samples per pixel of a full still. The estimated error is then at most 0.003, about half an 8-bit step.
-const FULL_SAMPLES: u64 = 768;
+const FULL_SAMPLES: u64 = 1024;
 
 /// Stages about single pixels, whose size and samples must not change.
 const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
@@ -89,7 +89,7 @@ mod tests {
                 (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel)
             })
         };
-        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 768)]);
-        assert_eq!(sizes("sky"), [(480, 270, 1), (960, 540, 1)]);
+        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (800, 450, 1)]);
     }
 }

@@ -263,12 +263,12 @@ mod tests {
             rmse_deviation: Some(1e-5),
             ..Still::of("metal")
         };
-        let line = "metal                960x540,  768 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
+        let line = "metal                800x450, 1024 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
         assert_eq!(metal.line(), line);
-        let settings = "960 × 540 pixels, 768 samples per pixel, at most 50 rays per path";
+        let settings = "800 × 450 pixels, 1024 samples per pixel, at most 50 rays per path";
         assert_eq!(metal.settings_words(), settings);
         let sky = Still::of("sky");
-        assert_eq!(sky.settings_words(), "960 × 540 pixels, 1 ray through the centre of each pixel");
+        assert_eq!(sky.settings_words(), "800 × 450 pixels, 1 ray through the centre of each pixel");
         assert_eq!((sky.time_words().as_str(), sky.error_words().as_str()), ("less than 0.1 s", "no noise"));
     }
 }
