@@ -4,7 +4,7 @@
 #   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
 #   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
 #                                      linking needs Apple's libraries
-#   assets/package/cross.sh check      type-checks Windows and macOS; build-windows and build-arm make the programs alone
+#   assets/package/cross.sh check      type-checks macOS; build-windows and build-arm make the programs alone
 # On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
 # Debian's sources. The archives need cargo-about.
 set -euo pipefail
@@ -24,16 +24,13 @@ need() { # need PROGRAM PACKAGE...
     exit 1
 }
 
-# cargo_for "TARGET..." COMMAND ARGUMENTS...
+# cargo_for TARGET COMMAND ARGUMENTS...
 cargo_for() {
-    local triple targets=()
-    for triple in $1; do targets+=(--target "$triple"); done
-    # shellcheck disable=SC2086
-    if rustup target add $1 > /dev/null 2>&1; then
-        cargo "$2" --locked "${targets[@]}" --target-dir "$target" "${@:3}"
+    if rustup target add "$1" > /dev/null 2>&1; then
+        cargo "$2" --locked --target "$1" --target-dir "$target" "${@:3}"
     else
         need /usr/bin/cargo rustc-web cargo-web rust-web-src
-        PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "$2" --locked "${targets[@]}" --target-dir "$target" \
+        PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "$2" --locked --target "$1" --target-dir "$target" \
             -Zbuild-std=std,panic_unwind "${@:3}"
     fi
 }
@@ -49,7 +46,7 @@ texts() {
 for what in "${@:-check}"; do
     case $what in
     check)
-        cargo_for "$windows $mac" check
+        cargo_for "$mac" check
         ;;
     build-windows)
         need x86_64-w64-mingw32-gcc mingw-w64
