@@ -26,9 +26,9 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<ExitCode, Failure> {
-    journal::start(cli::log_file(std::env::args_os()).as_deref()).map_err(Failure::input)?;
+    journal::start(cli::log_file(wild::args_os()).as_deref()).map_err(Failure::input)?;
     log::info!("{}", BUILD.line());
-    match cli::parse(std::env::args_os())? {
+    match cli::parse(wild::args_os())? {
         Request::Version { is_verbose } => {
             BUILD.print(is_verbose).map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
         }

@@ -4,7 +4,7 @@
 #   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
 #   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
 #                                      linking needs Apple's libraries
-#   assets/package/cross.sh check      type-checks all three; build-windows and build-arm make the programs alone
+#   assets/package/cross.sh check      type-checks macOS; build-windows and build-arm make the programs alone
 # On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
 # Debian's sources. The archives need cargo-about.
 set -euo pipefail
@@ -26,11 +26,11 @@ need() { # need PROGRAM PACKAGE...
 
 # cargo_for TARGET COMMAND ARGUMENTS...
 cargo_for() {
-    if rustup target list --installed 2> /dev/null | grep -qx "$1" || rustup target add "$1" > /dev/null 2>&1; then
-        cargo "$2" --locked --target "$1" --target-dir "$target/$1" "${@:3}"
+    if rustup target add "$1" > /dev/null 2>&1; then
+        cargo "$2" --locked --target "$1" --target-dir "$target" "${@:3}"
     else
         need /usr/bin/cargo rustc-web cargo-web rust-web-src
-        PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "$2" --locked --target "$1" --target-dir "$target/$1" \
+        PATH=/usr/bin:$PATH RUSTC_BOOTSTRAP=1 cargo "$2" --locked --target "$1" --target-dir "$target" \
             -Zbuild-std=std,panic_unwind "${@:3}"
     fi
 }
@@ -46,8 +46,6 @@ texts() {
 for what in "${@:-check}"; do
     case $what in
     check)
-        cargo_for "$windows" check
-        cargo_for "$arm" check --no-default-features
         cargo_for "$mac" check
         ;;
     build-windows)
@@ -64,7 +62,7 @@ for what in "${@:-check}"; do
         name=weekender-v$version-$windows
         rm -rf "${target:?}/$name" "$target/$name.zip"
         texts "$target/$name" "$windows"
-        cp "$target/$windows/$windows/release/weekender.exe" "$target/$name"
+        cp "$target/$windows/release/weekender.exe" "$target/$name"
         (cd "$target" && zip -qrX "$name.zip" "$name")
         ;;
     arm)
@@ -72,7 +70,7 @@ for what in "${@:-check}"; do
         name=weekender-v$version-$arm-headless
         rm -rf "${target:?}/$name"
         texts "$target/$name" "$arm" --no-default-features
-        cp "$target/$arm/$arm/release/weekender" "$target/$name"
+        cp "$target/$arm/release/weekender" "$target/$name"
         tar --sort=name --owner=0 --group=0 --numeric-owner -C "$target" -czf "$target/$name.tar.gz" "$name"
         ;;
     macos)
@@ -84,7 +82,7 @@ for what in "${@:-check}"; do
         sed "s/VERSION/$version/" assets/package/Info.plist > "$bundle/Info.plist"
         if [ "$(uname)" = Darwin ]; then
             cargo_for "$mac" build --release
-            cp "$target/$mac/$mac/release/weekender" "$bundle/MacOS"
+            cp "$target/$mac/release/weekender" "$bundle/MacOS"
         else
             cargo_for "$mac" check
             echo "$bundle/MacOS lacks the program: on a Mac, run this again" >&2

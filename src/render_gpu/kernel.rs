@@ -148,7 +148,12 @@ fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -
             cache: None,
         })
     });
-    let pipeline = pipeline.map_err(|reason| format!("{reason}; {}", gpu.adapter.compiler_remedy()))?;
+    let pipeline = pipeline.map_err(|reason| {
+        log::warn!("{reason}");
+        // The last line is the compiler's; those before it name calls of wgpu.
+        let cause = reason.trim().lines().last().unwrap_or_default().trim();
+        format!("{} cannot compile the kernel: {cause}; {}", gpu.adapter, gpu.adapter.compiler_remedy())
+    })?;
     Ok(Kernel { pipeline, compile_time: start.elapsed() })
 }
 

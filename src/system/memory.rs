@@ -85,7 +85,7 @@ pub fn free_bytes() -> Option<u64> {
 
 #[cfg(any(windows, target_vendor = "apple"))]
 fn of_other_systems() -> Option<u64> {
-    let mut system = sysinfo::System::new();
+    let mut system = sysinfo::System::new().ok()?;
     system.refresh_memory();
     Some(system.available_memory()).filter(|bytes| *bytes > 0)
 }

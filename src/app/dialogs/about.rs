@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use crate::app::facts::Facts;
+use crate::app::model::companion::file_url;
 use crate::app::model::device::adapter;
 use crate::app::widgets::{Header, fold, hint, tip};
 use crate::system::files::state_directory;
@@ -30,7 +31,7 @@ pub(super) fn ui(ui: &mut Ui, facts: &Facts) -> Outcome {
         let button = ui.add_enabled(folder.is_some(), egui::Button::new("Open the log’s folder"));
         if let Some(folder) = folder.filter(|_| button.clicked()) {
             let _ = std::fs::create_dir_all(&folder);
-            ui.ctx().open_url(OpenUrl::new_tab(format!("file://{}", folder.display())));
+            ui.ctx().open_url(OpenUrl::new_tab(file_url(&folder)));
         }
         let copy = ui.button("Copy for a report");
         let help = "Version, processor, graphics card and log, without names of your files";

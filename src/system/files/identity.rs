@@ -32,6 +32,8 @@ impl FileIdentity {
 pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     match fs::canonicalize(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => {}
+        // Some drivers of Windows disks cannot tell the whole name of a file.
+        Err(_) if cfg!(windows) => return std::path::absolute(path),
         known => return known,
     }
     let parent = match path.parent() {

@@ -99,8 +99,8 @@ impl Target {
         if named == Path::new(STANDARD) {
             return Ok(Target::StandardOutput);
         }
-        if cfg!(windows) && is_device(named) {
-            return Err(io::Error::new(ErrorKind::InvalidFilename, "Windows keeps this name for a device"));
+        if let Some(reason) = refusal_of_windows(named).filter(|_| cfg!(windows)) {
+            return Err(io::Error::new(ErrorKind::InvalidFilename, reason));
         }
         let old = match fs::metadata(named) {
             Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
@@ -133,6 +133,20 @@ impl Target {
             Ok(_) => Err(ErrorKind::NotADirectory.into()),
             Err(error) => Err(error),
         }
+    }
+}
+
+/// Why Windows would write to something else than a file of this name. A canonical path gets around its checks.
+fn refusal_of_windows(path: &Path) -> Option<&'static str> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if is_device(path) {
+        Some("Windows keeps this name for a device")
+    } else if name.contains(['<', '>', ':', '"', '|', '?', '*']) {
+        Some("Windows allows none of < > : \" | ? * in a name")
+    } else if name.ends_with(['.', ' ']) {
+        Some("Windows drops dots and spaces at the end of a name")
+    } else {
+        None
     }
 }
 
@@ -254,6 +268,15 @@ mod tests {
         drop(held);
         assert!(waiting.join().unwrap(), "it is closed in time");
         assert_eq!(fs::read_dir(&directory).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_windows_takes_for_something_else_is_refused() {
+        let refused = |name: &str| refusal_of_windows(Path::new(name)).is_some();
+        for name in ["a.exr:b.exr", "a?.exr", "C:\\films\\a.exr.", "a.exr "] {
+            assert!(refused(name), "{name}");
+        }
+        assert!(!refused("C:a.exr") && !refused("C:\\films\\Köln 1.exr") && !refused(".\\..\\a.exr"));
     }
 
     #[test]
