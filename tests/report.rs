@@ -38,6 +38,12 @@ fn data(at: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(at.join("found/report.json")).unwrap()).unwrap()
 }
 
+/// The raw runs of a report, and the denoised ones.
+fn runs(found: &serde_json::Value) -> (Vec<&serde_json::Value>, Vec<&serde_json::Value>) {
+    let is_raw = |run: &&serde_json::Value| !run["backend"].as_str().unwrap().ends_with("denoised");
+    found["runs"].as_array().unwrap().iter().partition(is_raw)
+}
+
 #[test]
 fn report_has_files_and_plausible_figures() {
     let at = TempDir::new().unwrap();
@@ -47,9 +53,9 @@ fn report_has_files_and_plausible_figures() {
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("error-vs-time.png"), "{text}");
     let data_found = data(at);
-    let runs = data_found["runs"].as_array().unwrap();
-    assert_eq!(runs.len(), 2 * 2 * 4);
-    for run in runs {
+    let (runs, denoised) = runs(&data_found);
+    assert_eq!((runs.len(), denoised.len()), (2 * 2 * 4, 2 * 4));
+    for run in &runs {
         let points = run["points"].as_array().unwrap();
         let samples: Vec<u64> = points.iter().map(|p| p["samples"].as_u64().unwrap()).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16, 32]);
@@ -72,7 +78,7 @@ fn report_has_files_and_plausible_figures() {
     );
 
     let csv = fs::read_to_string(at.join("found/report.csv")).unwrap();
-    assert_eq!(csv.lines().count(), 1 + 16 * 6);
+    assert_eq!(csv.lines().count(), 1 + 16 * 6 + 8 * 5);
     let fields = csv.lines().next().unwrap().split(',').count();
     assert!(csv.lines().all(|line| line.split(',').count() == fields));
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
@@ -98,7 +104,7 @@ fn baseline_has_own_curve() {
         report(&[&SMALL[..], &["--backends", "cpu,c89", "--samplers", "independent"]].concat(), at);
     assert_eq!(code, 0, "{errors}");
     let found = data(at);
-    let runs = found["runs"].as_array().unwrap();
+    let (runs, _) = runs(&found);
     // Independent samples of the same picture have the same error on every backend: compares all runs at 32 samples.
     let mean = |backend: &str| {
         let of = runs.iter().filter(|run| run["backend"] == backend);
@@ -167,17 +173,17 @@ fn report_resumes() {
     let both = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol,independent"]].concat();
     assert_eq!(report(&both, at).0, 0);
     let second = data(at);
-    assert_eq!(second["runs"].as_array().unwrap().len(), 8);
-    assert_eq!(second["runs"].as_array().unwrap()[..4], first["runs"].as_array().unwrap()[..]);
+    assert_eq!(runs(&second).0.len(), 8);
+    assert_eq!(second["runs"].as_array().unwrap()[..8], first["runs"].as_array().unwrap()[..]);
     // A missing run is measured again, with the saved reference.
     let mut cut = second.clone();
-    cut["runs"].as_array_mut().unwrap().truncate(3);
+    cut["runs"].as_array_mut().unwrap().truncate(6);
     fs::write(at.join("found/report.json"), cut.to_string()).unwrap();
     let kept = fs::metadata(at.join("found/reference-three-spheres.exr")).unwrap().modified().unwrap();
     assert_eq!(report(&sobol, at).0, 0);
     let third = data(at);
-    assert_eq!(third["runs"].as_array().unwrap().len(), 4);
-    assert_eq!(third["runs"][3]["points"][5]["mse"], first["runs"][3]["points"][5]["mse"]);
+    assert_eq!(third["runs"].as_array().unwrap().len(), 8);
+    assert_eq!(third["runs"][6]["points"][5]["mse"], first["runs"][6]["points"][5]["mse"]);
     assert_eq!(fs::metadata(at.join("found/reference-three-spheres.exr")).unwrap().modified().unwrap(), kept);
 }
 
@@ -204,7 +210,7 @@ fn changed_scene_is_measured_again() {
     assert_eq!(run(), first);
     scene("0.9");
     let second = run();
-    assert_eq!(second.as_array().unwrap().len(), 4);
+    assert_eq!(second.as_array().unwrap().len(), 8);
     assert_ne!(second[0]["points"][5]["mse"], first[0]["points"][5]["mse"]);
 }
 

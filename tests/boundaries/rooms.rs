@@ -19,7 +19,7 @@ cli: system numbers scene stages film job render_cpu render_gpu backends progres
 batch: system scene stages film denoise job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
 measure: system numbers scene stages film denoise job kernel prepared render_cpu render_gpu backends progressive cli pictures
-page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch measure
+page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch pictures measure
 app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli pictures measure page";
 
 /// Crates that only some rooms may use.
@@ -30,17 +30,16 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("egui_plot", &["app"]),
     ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
-    ("rayon", &["denoise", "measure", "prepared", "render_cpu", "render_gpu", "backends", "pictures"]),
+    ("rayon", &["denoise", "prepared", "render_cpu", "render_gpu", "backends", "pictures", "measure"]),
     ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
-    ("image", &["numbers", "job", "pictures", "app"]),
+    ("image", &["numbers", "job", "pictures", "page", "app"]),
     ("indicatif", &["cli", "measure"]),
     ("maud", &["page"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
     ("env_filter", &["system"]),
-    ("ctrlc", &["system"]),
     ("signal_hook", &["system"]),
     ("pulldown_cmark", &["page"]),
     ("syntect", &["page"]),

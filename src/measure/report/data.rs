@@ -79,6 +79,19 @@ pub struct Curve {
     pub sampler: String,
 }
 
+impl Curve {
+    const DENOISED: &str = " denoised";
+
+    /// The curve of the denoised pictures.
+    pub fn denoised(&self) -> Curve {
+        Curve { backend: self.backend.clone() + Curve::DENOISED, ..self.clone() }
+    }
+
+    pub fn is_denoised(&self) -> bool {
+        self.backend.ends_with(Curve::DENOISED)
+    }
+}
+
 /// A picture, measured as samples are added.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {

@@ -142,18 +142,12 @@ impl<'a> Report<'a> {
             let limits = Limits { seconds, samples: self.options.max_samples };
             let (about, prepare_seconds, [raw, denoised]) =
                 measured(candidate, &job, reference, limits, self.interrupt.flag())?;
+            let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
+            self.data.runs.push(with(curve.clone(), raw));
             // One denoised curve for each backend suffices.
             if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
-                let curve = Curve { backend: format!("{} denoised", curve.backend), ..curve.clone() };
-                self.data.runs.push(Run {
-                    curve,
-                    seed,
-                    about: about.clone(),
-                    prepare_seconds,
-                    points: denoised,
-                });
+                self.data.runs.push(with(curve.denoised(), denoised));
             }
-            self.data.runs.push(Run { curve, seed, about, prepare_seconds, points: raw });
             self.write_json()?;
         }
         self.progress.finished(seconds);

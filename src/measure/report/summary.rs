@@ -202,10 +202,10 @@ impl Calibration {
     }
 }
 
-/// One entry per curve with error estimates and sample count from [`FROM_SAMPLES`] on.
+/// One entry per curve, but denoised ones, with error estimates and sample count from [`FROM_SAMPLES`] on.
 pub fn calibration(data: &Data) -> Vec<Calibration> {
     let mut pairs: BTreeMap<(&Curve, u64), Vec<[f64; 2]>> = BTreeMap::new();
-    for run in &data.runs {
+    for run in data.runs.iter().filter(|run| !run.curve.is_denoised()) {
         for Measured { samples, mse, mse_estimate, .. } in &run.points {
             if let (Some(estimate), FROM_SAMPLES..) = (mse_estimate, *samples) {
                 pairs.entry((&run.curve, *samples)).or_default().push([*estimate, *mse]);
