@@ -91,8 +91,7 @@ fn only_regular_files_are_read() {
     std::os::unix::fs::symlink("/dev/zero", at.join("endless.exr")).unwrap();
     fs::create_dir(at.join("folder.exr")).unwrap();
     for (name, kind) in [("endless.exr", "a device"), ("pipe.exr", "a pipe"), ("folder.exr", "a directory")] {
-        let ways: [&[&str]; 4] = [
-            &["compare", name, "cpu"],
+        let ways: [&[&str]; 3] = [
             &["merge", name, "--out", "sum.exr"],
             &["--batch", "--resume", name, "--out", "a.exr"],
             &["--batch", "--scene", name, "--out", "a.exr"],
@@ -130,7 +129,7 @@ fn a_picture_that_claims_more_than_its_file_holds_is_refused() {
     fs::write(at.join("a.exr"), bytes).unwrap();
     for name in ["a.ppm", "b.ppm", "a.pfm", "a.png", "a.exr"] {
         // With so little memory, an attempt to allocate would fail.
-        let parts = [name, "bytes, but", "16000"];
+        let parts = [name, "bytes", "16000"];
         assert_refused(
             Some(900_000),
             &["compare", name, "small.exr"],

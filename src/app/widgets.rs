@@ -3,9 +3,9 @@
 use super::theme;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
-    self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Label, Layout, Painter, Pos2, Rect,
-    RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind, Tooltip,
-    Ui, UiBuilder, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Key, Label, Layout, Painter, Pos2,
+    Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind,
+    Tooltip, Ui, UiBuilder, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
 use std::cell::RefCell;
@@ -279,8 +279,13 @@ impl<'a> Number<'a> {
         });
         let (mut response, mut refused) = (added.inner, refused.into_inner());
         named(&response, self.about.name);
+        // The field takes the text of an edit that Escape ended for one in the frame after that.
+        let is_cancelled = ui.input(|input| input.key_pressed(Key::Escape)) && response.lost_focus();
+        let place = response.id.with("cancelled");
+        let was_cancelled = ui.data_mut(|data| data.get_temp(place).unwrap_or(false));
+        ui.data_mut(|data| data.insert_temp(place, is_cancelled));
         match self.checked(shown) {
-            _ if shown == before => {}
+            _ if shown == before || was_cancelled => {}
             Ok(number) => *value = number,
             Err(reason) => refused = Some(reason),
         }

@@ -49,7 +49,7 @@ fn find(lines: &[&str], words: &str) -> Result<RangeInclusive<usize>, String> {
     }
     let last = (*found..lines.len()).find(|place| begins(lines[*place], last));
     let last = last.ok_or_else(|| format!("no line after line {} begins with {last:?}", found + 1))?;
-    let begin = places.iter().rfind(|place| **place <= last).unwrap_or(found);
+    let begin = places.iter().rfind(|place| **place < last).unwrap_or(found);
     // A line of data has no end of its own.
     Ok(*begin..=end_of_item(lines, last).unwrap_or(last))
 }

@@ -156,7 +156,10 @@ mod tests {
         let mut found = BTreeSet::new();
         for folder in ["", "diagrams", "measured"] {
             let entries = std::fs::read_dir(checkout().join(FOLDER).join(folder)).unwrap();
-            let files = entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file());
+            let is_text = |path: &PathBuf| {
+                path.is_file() && !path.extension().is_some_and(|end| end == "sh" || end == "mjs")
+            };
+            let files = entries.map(|entry| entry.unwrap().path()).filter(is_text);
             found.extend(
                 files.map(|path| path.strip_prefix(checkout()).unwrap().to_str().unwrap().to_owned()),
             );

@@ -49,7 +49,7 @@ pub enum Change {
     /// Compared pixel by pixel at edges, because block means hardly show it.
     AtEdges(&'static Change),
     /// Detected in the bytes, even where blocks differ only by noise.
-    InBytes(fn(&Mine, &Compared) -> bool),
+    InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
     /// Detected, if nothing else explains the picture, in the difference from the right one, with a picture of one sample
     /// a pixel.
     InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool),
@@ -73,8 +73,8 @@ impl Change {
         let mut changed = recipe.clone();
         match self {
             Change::Several(pictures) => return pictures(recipe),
-            Change::InBytes(_) | Change::InNoise(_) => return Vec::new(),
-            Change::AtEdges(change) => return change.pictures(recipe),
+            Change::InNoise(_) => return Vec::new(),
+            Change::AtEdges(change) | Change::InBytes(_, change) => return change.pictures(recipe),
             Change::Written(change) => {
                 change(&mut picture.written);
                 return vec![picture];
@@ -122,6 +122,8 @@ pub struct Written {
     /// Source channels of the written red, green and blue.
     pub channels: [usize; 3],
     pub curve: Curve,
+    /// Factor from displayed values to bytes.
+    pub levels: f64,
     /// Whether 256 becomes 0 instead of 255.
     pub wraps: bool,
 }
@@ -161,7 +163,7 @@ impl Hypothesis {
     pub fn right(recipe: &Recipe) -> Hypothesis {
         let curve = Curve::Transfer(recipe.rules.transfer);
         let (is_flipped, is_mirrored, wraps) = (false, false, false);
-        let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, wraps };
+        let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, levels: 256.0, wraps };
         Hypothesis { mistake: None, note: None, making: Making::Right, written }
     }
 }
@@ -169,7 +171,7 @@ impl Hypothesis {
 impl Written {
     /// The linear value of a byte in a row, and half of its step.
     pub fn linear(&self, byte: u8, row: usize, height: usize) -> [f64; 2] {
-        let linear = |part: f64| self.curve.linear((f64::from(byte) + part) / 256.0, row, height);
+        let linear = |part: f64| self.curve.linear((f64::from(byte) + part) / self.levels, row, height);
         [linear(0.5), (linear(1.0) - linear(0.0)) / 2.0]
     }
 
@@ -180,7 +182,7 @@ impl Written {
 
     pub fn byte_of(&self, linear: f64, row: usize, height: usize) -> u8 {
         let displayed = self.curve.displayed(linear.max(0.0), row, height);
-        (256.0 * displayed.min(0.999)) as u8
+        (self.levels * displayed.min(0.999)) as u8
     }
 
     /// The byte that the reader's program had before it wrapped, as far as ours tells.

@@ -182,7 +182,7 @@ impl<'a> Trial<'a> {
 
     fn in_bytes(&self) -> Option<Compared> {
         let shows = |mistake: &&Mistake| match mistake.change {
-            Change::InBytes(test) => test(self.mine, &self.right),
+            Change::InBytes(test, _) => test(self.mine, &self.right),
             _ => false,
         };
         let mistake = MISTAKES.iter().find(shows)?;

@@ -98,7 +98,7 @@ pub static MISTAKES: [Mistake; 42] = [
         title: "channels are multiplied by 255 and cut off",
         remedy: "use int(256 * clamp(x, 0, 0.999)), or 255.999: with 255, only a value of exactly 1 becomes 255",
         applies: always,
-        change: Change::InBytes(is_times_255),
+        change: Change::InBytes(is_times_255, &Change::Written(|written| written.levels = 255.0)),
     },
     Mistake {
         id: "truncated",
@@ -106,7 +106,7 @@ pub static MISTAKES: [Mistake; 42] = [
         title: "channels are cut to whole numbers before they are scaled",
         remedy: "scale first, then convert: int(256 * x), not int(x) * 256; divide as floating-point numbers",
         applies: always,
-        change: Change::InBytes(is_truncated),
+        change: Change::InBytes(is_truncated, &Change::Several(|_| Vec::new())),
     },
     Mistake {
         id: "no-antialiasing",
