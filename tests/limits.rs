@@ -83,15 +83,14 @@ fn a_damaged_film_is_refused_by_all_that_read_films() {
 }
 
 #[test]
-fn only_regular_files_are_read() {
+fn devices_and_directories_are_not_read() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    let made = Command::new("mkfifo").arg(at.join("pipe.exr")).status().unwrap();
-    assert!(made.success());
     std::os::unix::fs::symlink("/dev/zero", at.join("endless.exr")).unwrap();
     fs::create_dir(at.join("folder.exr")).unwrap();
-    for (name, kind) in [("endless.exr", "a device"), ("pipe.exr", "a pipe"), ("folder.exr", "a directory")] {
-        let ways: [&[&str]; 3] = [
+    for (name, kind) in [("endless.exr", "a device"), ("folder.exr", "a directory")] {
+        let ways: [&[&str]; 4] = [
+            &["compare", name, "cpu"],
             &["merge", name, "--out", "sum.exr"],
             &["--batch", "--resume", name, "--out", "a.exr"],
             &["--batch", "--scene", name, "--out", "a.exr"],
@@ -129,13 +128,7 @@ fn a_picture_that_claims_more_than_its_file_holds_is_refused() {
     fs::write(at.join("a.exr"), bytes).unwrap();
     for name in ["a.ppm", "b.ppm", "a.pfm", "a.png", "a.exr"] {
         // With so little memory, an attempt to allocate would fail.
-        let parts = [name, "bytes", "16000"];
-        assert_refused(
-            Some(900_000),
-            &["compare", name, "small.exr"],
-            at,
-            &parts[..if name == "a.pfm" { 2 } else { 3 }],
-        );
+        assert_refused(Some(900_000), &["compare", name, "small.exr"], at, &[name, "need"]);
     }
 }
 
