@@ -53,6 +53,7 @@ const FILES: &[(&str, &str)] = embedded![
     "reference/": "rt_weekend.c";
     "shaders/": "aside.wgsl" "bindings.wgsl" "bvh.wgsl" "camera.wgsl" "lanes.wgsl" "material.wgsl"
         "path.wgsl" "resolve.wgsl" "rng.wgsl" "sphere.wgsl";
+    "src/denoise/": "mod.rs";
     "src/film/": "error_estimate.rs" "fixed_point.rs" "resolve.rs";
     "src/kernel/": "records.rs";
     "src/job/output/": "ppm.rs";
