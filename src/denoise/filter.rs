@@ -28,6 +28,8 @@ const PILOT_TOP: usize = HALO - FIT - FIT_PATCH;
 const PILOT_HIGH: usize = HIGH + 2 * (FIT + FIT_PATCH);
 const PILOT_LEFT: usize = HALO - 8;
 const PILOT_WIDE: usize = WIDE + 16;
+/// Where the variance is needed.
+const VARIANCE_MARGIN: usize = BOX;
 
 const _: () = assert!(BOX + PILOT + PILOT_PATCH + FIT + FIT_PATCH <= HALO);
 
@@ -152,8 +154,8 @@ fn difference(halves: &[Half; 2], place: Place, apart: &mut Plane) {
             if super::is_odd(column, row) {
                 let index = row * place.size[0] + column;
                 let (a, b) = (halves[0].pixels[index], halves[1].pixels[index]);
-                let squares = (0..3).map(|c| square(a[c] - b[c])).sum::<f32>();
-                (odd[0][y][x], odd[1][y][x]) = (squares / 3.0, 1.0);
+                let squares: [f32; 3] = from_fn(|c| (a[c] - b[c]) * (a[c] - b[c]));
+                (odd[0][y][x], odd[1][y][x]) = (squares.iter().sum::<f32>() / 3.0, 1.0);
             }
         }
     }
@@ -164,7 +166,7 @@ fn difference(halves: &[Half; 2], place: Place, apart: &mut Plane) {
             (0..N).for_each(|x| across[x] += odd[x + shift]);
         }
     }
-    for (y, apart) in apart.iter_mut().enumerate().take(ROWS - BOX).skip(BOX) {
+    for (y, apart) in apart.iter_mut().enumerate().take(ROWS - VARIANCE_MARGIN).skip(VARIANCE_MARGIN) {
         let mut sums = [[0.0f32; N]; 2];
         for (sums, across) in sums.iter_mut().zip(&across) {
             for row in &across[y - BOX..=y + BOX] {
@@ -189,16 +191,16 @@ fn load(half: &Half, place: Place, scratch: &mut Scratch) {
 
 /// The weights of pixels at a shift, by the distance of the patches around both (Rousselle, Knaus and Zwicker 2012,
 /// equation 3, with one variance for all channels and `(1 - d / 8)^8` instead of `exp(-d)`). `out` has the rows from
-/// `top` and the columns from `left`.
+/// `top` and the columns from `left`; `WIDER` is at least `N + 2 PATCH`.
 #[inline(always)]
-fn weights<const PATCH: usize, const N: usize>(
+fn weights<const PATCH: usize, const N: usize, const WIDER: usize>(
     guide: &Guide,
     [left, top]: [usize; 2],
     [dx, dy]: [isize; 2],
     reach: f32,
     out: &mut [[f32; N]],
 ) {
-    let (side, wider) = (2 * PATCH + 1, N + 2 * PATCH);
+    let side = 2 * PATCH + 1;
     let from = left - PATCH;
     let from_q = from.wrapping_add_signed(dx);
     // The distance of each patch's rows, for the latest rows.
@@ -208,10 +210,11 @@ fn weights<const PATCH: usize, const N: usize>(
     for row in 0..out.len() + 2 * PATCH {
         let p = top + row - PATCH;
         let q = p.wrapping_add_signed(dy);
-        let [a, b, c, v, over_v] = guide.rows(p).map(|row| &row[from..from + wider]);
-        let [aq, bq, cq, vq, over_vq] = guide.rows(q).map(|row| &row[from_q..from_q + wider]);
-        let mut distance = [0.0f32; STRIDE];
-        for i in 0..wider {
+        let (pr, qr) = (from..from + WIDER, from_q..from_q + WIDER);
+        let [a, b, c, v, over_v] = guide.rows(p).map(|row| &row[pr.clone()]);
+        let [aq, bq, cq, vq, over_vq] = guide.rows(q).map(|row| &row[qr.clone()]);
+        let mut distance = [0.0f32; WIDER];
+        for i in 0..WIDER {
             let squares = square(a[i] - aq[i]) + square(b[i] - bq[i]) + square(c[i] - cq[i]);
             distance[i] = (squares - 6.0 * least(v[i], vq[i])) * least(over_v[i], over_vq[i]);
         }
@@ -239,7 +242,13 @@ fn pilot(place: Place, scratch: &mut Scratch) {
     pilot_sums.fill([[0.0; PILOT_WIDE]; 5]);
     let reach = PILOT as isize;
     for (dy, dx) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dy, dx))) {
-        weights::<PILOT_PATCH, _>(raw, corner, [dx, dy], PILOT_REACH, pilot_weights);
+        weights::<PILOT_PATCH, PILOT_WIDE, { PILOT_WIDE + 8 }>(
+            raw,
+            corner,
+            [dx, dy],
+            PILOT_REACH,
+            pilot_weights,
+        );
         let left = PILOT_LEFT.wrapping_add_signed(dx);
         for (row, (sums, weights)) in pilot_sums.iter_mut().zip(pilot_weights.iter()).enumerate() {
             let q = (PILOT_TOP + row).wrapping_add_signed(dy);
@@ -260,11 +269,14 @@ fn pilot(place: Place, scratch: &mut Scratch) {
         for i in 0..PILOT_WIDE {
             let at = [PILOT_LEFT + i, PILOT_TOP + row];
             // Beside the picture, its border is repeated.
-            let nearest = place.nearest(at);
-            let [x, y] = from_fn(|i| nearest[i] + HALO - place.first[i]);
-            let sums = pilot_sums[y - PILOT_TOP].map(|sums| sums[x - PILOT_LEFT]);
-            (0..3).for_each(|c| smooth.rgb[c][at[1]][at[0]] = sums[c] / sums[3]);
-            smooth.set_variance(at, raw.variance[y][x] * sums[4] / (sums[3] * sums[3]));
+            let [column, line] = place.nearest(at);
+            let from =
+                [column + HALO - place.first[0] - PILOT_LEFT, line + HALO - place.first[1] - PILOT_TOP];
+            let sums = &pilot_sums[from[1]];
+            let scale = 1.0 / sums[3][from[0]];
+            (0..3).for_each(|c| smooth.rgb[c][at[1]][at[0]] = sums[c][from[0]] * scale);
+            let variance = raw.variance[from[1] + PILOT_TOP][from[0] + PILOT_LEFT];
+            smooth.set_variance(at, variance * sums[4][from[0]] * scale * scale);
         }
     }
 }
@@ -275,11 +287,11 @@ fn pilot(place: Place, scratch: &mut Scratch) {
 fn fit(place: Place, scratch: &mut Scratch, index: usize) {
     let Scratch { raw, smooth, weights: all, sums, filtered, .. } = scratch;
     let inside = place.columns();
-    // Sums over weight times: 1, r, g, b; x (1, r, g, b); y (1, r, g, b); x x, x y, y y. A pixel's own weight is 1.
+    // The weight of a pixel for itself is 1.
     for (y, sums) in sums.iter_mut().enumerate() {
         *sums = [[0.0; WIDE]; 15];
         sums[0] = [1.0; WIDE];
-        (0..3).for_each(|c| sums[1 + c].copy_from_slice(&raw.rgb[c][HALO + y][HALO..HALO + WIDE]));
+        (0..3).for_each(|c| sums[6 + c].copy_from_slice(&raw.rgb[c][HALO + y][HALO..HALO + WIDE]));
     }
     let reach = FIT as isize;
     for dy in 0..=FIT {
@@ -288,7 +300,14 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize) {
         let all = &mut all[..shifts.clone().count()];
         for (out, dx) in all.iter_mut().zip(shifts.clone()) {
             let corner = [HALO - FIT, HALO - dy];
-            weights::<FIT_PATCH, _>(smooth, corner, [dx, dy as isize], FIT_REACH, &mut out[..HIGH + dy]);
+            let out = &mut out[..HIGH + dy];
+            weights::<FIT_PATCH, FIT_WIDE, { FIT_WIDE + 8 }>(
+                smooth,
+                corner,
+                [dx, dy as isize],
+                FIT_REACH,
+                out,
+            );
         }
         for (row, sums) in sums.iter_mut().enumerate() {
             for sign in [1, -1] {
@@ -309,25 +328,33 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize) {
                             (&weights[weights_row][from..from + LANES], &inside[left..left + LANES]);
                         let [r, g, b]: [&[f32]; 3] = from_fn(|c| &raw.rgb[c][line][left..left + LANES]);
                         for i in 0..LANES {
-                            let (w, values) = (weights[i] * inside[i], [1.0, r[i], g[i], b[i]]);
-                            for c in 0..4 {
-                                s[c][i] += w * values[c];
-                                s[4 + c][i] += w * x * values[c];
-                            }
-                            s[8][i] += w * x * x;
+                            let w = weights[i] * inside[i];
+                            let wx = w * x;
+                            s[0][i] += w;
+                            s[1][i] += wx;
+                            s[2][i] += wx * x;
+                            s[3][i] += w * r[i];
+                            s[4][i] += w * g[i];
+                            s[5][i] += w * b[i];
+                            s[6][i] += wx * r[i];
+                            s[7][i] += wx * g[i];
+                            s[8][i] += wx * b[i];
                         }
                     }
                     let y = (sign * dy as isize) as f32;
                     for i in 0..LANES {
                         let at = lane + i;
-                        for c in 0..4 {
-                            sums[c][at] += s[c][i];
-                            sums[4 + c][at] += s[4 + c][i];
-                            sums[8 + c][at] += y * s[c][i];
+                        sums[0][at] += s[0][i];
+                        sums[1][at] += s[1][i];
+                        sums[2][at] += y * s[0][i];
+                        sums[3][at] += s[2][i];
+                        sums[4][at] += y * s[1][i];
+                        sums[5][at] += y * y * s[0][i];
+                        for c in 0..3 {
+                            sums[6 + c][at] += s[3 + c][i];
+                            sums[9 + c][at] += s[6 + c][i];
+                            sums[12 + c][at] += y * s[3 + c][i];
                         }
-                        sums[12][at] += s[8][i];
-                        sums[13][at] += y * s[4][i];
-                        sums[14][at] += y * y * s[0][i];
                     }
                 }
             }
@@ -335,13 +362,14 @@ fn fit(place: Place, scratch: &mut Scratch, index: usize) {
     }
     for (out, s) in filtered[index].iter_mut().zip(sums) {
         for i in 0..WIDE {
-            let [n, x, y, xy] = [0, 4, 8, 13].map(|k| s[k][i]);
-            let [xx, yy] = [12, 14].map(|k| s[k][i] + RIDGE * n);
+            let (n, x, y, xy) = (s[0][i], s[1][i], s[2][i], s[4][i]);
+            let (xx, yy) = (s[3][i] + RIDGE * n, s[5][i] + RIDGE * n);
             // The first row of the inverse of [n x y; x xx xy; y xy yy].
-            let row = [xx * yy - xy * xy, xy * y - x * yy, x * xy - xx * y];
-            let scale = 1.0 / (n * row[0] + x * row[1] + y * row[2]);
+            let cofactors = [xx * yy - xy * xy, xy * y - x * yy, x * xy - xx * y];
+            let scale = 1.0 / (n * cofactors[0] + x * cofactors[1] + y * cofactors[2]);
             for c in 0..3 {
-                let sum = row[0] * s[1 + c][i] + row[1] * s[5 + c][i] + row[2] * s[9 + c][i];
+                let sum =
+                    cofactors[0] * s[6 + c][i] + cofactors[1] * s[9 + c][i] + cofactors[2] * s[12 + c][i];
                 out[c][i] = scale * sum;
             }
         }

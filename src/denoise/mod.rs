@@ -143,9 +143,11 @@ fn local(width: usize, squared_errors: &[f32]) -> Vec<f32> {
     let around = |at: usize, end: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(end);
     // Sum and number of the even fields in a piece of a row.
     let of_row = |(y, row): (usize, &[f32])| -> Vec<[f32; 2]> {
-        let even = |x: &usize| !is_odd(*x, y);
-        let of_piece =
-            |x| around(x, width).filter(even).fold([0.0, 0.0], |[sum, count], x| [sum + row[x], count + 1.0]);
+        let of_piece = |x| {
+            let piece = around(x, width);
+            let even = row[piece.start..piece.end].iter().skip((piece.start + y) % 2).step_by(2);
+            even.fold([0.0, 0.0], |[sum, count], error| [sum + error, count + 1.0])
+        };
         (0..width).map(of_piece).collect()
     };
     let rows: Vec<Vec<[f32; 2]>> = squared_errors.par_chunks(width).enumerate().map(of_row).collect();
