@@ -152,6 +152,8 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
     let said = |name: &str| read_description(&at(name)).unwrap().get(key::DENOISED).map(str::to_owned);
     assert_eq!(said("plain.png"), None);
     assert!(said("quiet.png").unwrap().contains("RMSE"));
+    let info = weekender(directory.path(), &["info", "quiet.png"]).output().unwrap();
+    assert!(text(&info.stdout).contains("denoised"), "{}", text(&info.stdout));
     assert_ne!(std::fs::read(at("quiet.png")).unwrap(), std::fs::read(at("plain.png")).unwrap());
 
     // It is never taken for a picture whose only error is noise.

@@ -20,7 +20,7 @@ use std::process::ExitCode;
 const SCHEMA: u32 = 1;
 
 /// Keys that some kinds of files leave empty.
-const OPTIONAL: [&str; 16] = [
+const OPTIONAL: [&str; 17] = [
     "stage",
     "samples_per_pixel",
     "sample_ranges",
@@ -29,6 +29,7 @@ const OPTIONAL: [&str; 16] = [
     "rmse_estimate",
     "rmse_deviation",
     "trace_seconds",
+    "denoised",
     "backend",
     "program",
     "film_version",
@@ -79,6 +80,7 @@ impl Info {
             "stage": text(key::STAGE),
             "samples_per_pixel": saved.samples(),
             "trace_seconds": saved.seconds(),
+            "denoised": text(key::DENOISED),
             "backend": text(key::BACKEND),
             "program": text(key::SOFTWARE),
             "command": text(key::COMMAND),
@@ -203,6 +205,7 @@ impl Info {
             ("samples", Some(samples.into_iter().flatten().collect::<Vec<_>>().join(", "))),
             ("error", self.error.clone()),
             ("time", time.map(|time| format!("{} of tracing", seconds(time)))),
+            ("denoised", text("denoised")),
             ("backend", text("backend")),
             ("program", text("program")),
             ("command", text("command")),

@@ -31,7 +31,7 @@ pub enum DenoiseError {
         "a picture of {pixels} pixels has too few to tell the error of denoising, which needs {LEAST_PIXELS}"
     )]
     Small { pixels: usize },
-    #[error("cannot denoise: {0}")]
+    #[error(transparent)]
     Film(#[from] FilmError),
 }
 
