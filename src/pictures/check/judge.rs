@@ -271,10 +271,11 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
             a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
         });
         if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
-            break;
+            return Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect());
         }
     }
-    Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect())
+    // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
+    Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
 }
 
 /// Root mean square difference of the thumbnails, display values.
