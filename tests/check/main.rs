@@ -87,6 +87,18 @@ fn other_scene_matches_no_mistake() {
 }
 
 #[test]
+fn mistakes_are_named_without_a_stage() {
+    for (stage, mistake) in [
+        ("lambertian-gamma", "zero-t-min"),
+        ("lambertian-gamma", "hemisphere"),
+        ("lambertian-gamma", "same-seed"),
+    ] {
+        assert_eq!(found(&mine(stage, mistake, 60, 3), None), mistake, "{stage}");
+    }
+    assert_eq!(found(&mine("normals-world", "", 10, 3), None), "right");
+}
+
+#[test]
 fn the_stage_is_found() {
     for (stage, mistake) in [("metal-fuzzy", "right"), ("lambertian-gamma", "flipped-rows")] {
         let mine = mine(stage, mistake, 30, 5);
