@@ -145,7 +145,7 @@ impl Files {
                 description.set(key::DENOISED, error.words());
             }
             say(&render.out);
-            let forms = Forms { ppm: render.ppm, format: Some(render.format), ..Forms::default() };
+            let forms = Forms { format: Some(render.format), ..Forms::default() };
             let transfer = render.job.rules().transfer;
             let write = || match render.format {
                 OutputFormat::Exr => {

@@ -4,7 +4,7 @@ use crate::cli::terminal::{print, write_json};
 use crate::cli::{InfoOptions, JsonTarget};
 use crate::film::{CheckpointError, checkpoint, key};
 use crate::job::output::{FrameRate, animation_in};
-use crate::job::plan::{Plan, Work};
+use crate::job::plan::Plan;
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved::Saved;
 use crate::progressive::describe::{counted, seconds};
@@ -122,24 +122,17 @@ impl Info {
 
     fn of_plan(plan: &Plan) -> Info {
         let manifest = &plan.manifest;
-        let info = Info::new("plan", &plan.path, &plan.recipe).with(json!({
+        let [start, end] = manifest.samples;
+        Info::new("plan", &plan.path, &plan.recipe).with(json!({
             "stage": manifest.stage,
             "program": manifest.program,
             "sample_version": manifest.sample_version,
-            "parts": manifest.work.count(),
+            "parts": manifest.parts.len(),
             "command": manifest.command,
-        }));
-        info.with(match &manifest.work {
-            Work::Samples(work) => json!({
-                "samples_per_pixel": work.samples[1] - work.samples[0],
-                "sample_ranges": format!("{}..{}", work.samples[0], work.samples[1]),
-                "halves": plan.job.settings().half_count(),
-            }),
-            Work::Frames(work) => json!({
-                "samples_per_pixel": plan.recipe.samples_per_pixel,
-                "frames": format!("{}..{}", work.frames[0], work.frames[1]),
-            }),
-        })
+            "samples_per_pixel": end - start,
+            "sample_ranges": format!("{start}..{end}"),
+            "halves": plan.job.settings().half_count(),
+        }))
     }
 
     /// Adds what a film says and, if there is memory for its sums, its error.

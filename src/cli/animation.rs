@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
 
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true))]
+#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
 pub(super) struct AnimationFlags {
     /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
     /// file [default with --turntable: one turn]
@@ -36,23 +36,13 @@ pub(super) struct AnimationFlags {
     fps: Option<FrameRate>,
 }
 
-/// Frames to render, and how the camera moves.
-pub(super) struct Animation {
-    /// Numbers of the frames, whose cameras are valid.
-    pub frames: Range<u32>,
-    pub path: CameraPath,
-    /// How the camera circles, unless it follows keyframes.
-    pub turntable: Option<Turn>,
-    pub rate: FrameRate,
-}
-
 impl AnimationFlags {
     pub fn is_given(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// The animation of a picture.
-    pub fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<Animation> {
+    /// The frames to render, whose cameras are valid, and how the camera moves.
+    fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<(Range<u32>, CameraPath)> {
         let path = match self.turntable {
             Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
             None if recipe.keyframes.is_empty() => {
@@ -76,8 +66,7 @@ impl AnimationFlags {
         for frame in frames.clone() {
             job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
         }
-        let rate = self.fps.unwrap_or(DEFAULT_RATE);
-        Ok(Animation { frames, path, turntable: self.turntable, rate })
+        Ok((frames, path))
     }
 }
 
@@ -108,7 +97,7 @@ pub struct FramesOptions {
 /// Validates the flags of an animation.
 pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
     let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
-    let Animation { frames, path, rate, .. } = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
+    let (frames, path) = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
     let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
         bail!(
             "an animation needs --batch and --out: it writes many pictures; name a directory, a pattern such as \
@@ -133,7 +122,7 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
         path,
         frames,
         names,
-        animation: animation.map(|file| (file, rate)),
+        animation: animation.map(|file| (file, flags.animation.fps.unwrap_or(DEFAULT_RATE))),
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,

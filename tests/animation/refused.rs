@@ -56,7 +56,6 @@ fn an_animation_is_not_a_film() {
     for (flag, value) in [
         ("--resume", "film.exr"),
         ("--checkpoint", "film.exr"),
-        ("--ppm", "ascii"),
         ("--time-limit", "3"),
         ("--noise-target", "0.1"),
         ("--sample-range", "0..4"),
@@ -64,7 +63,6 @@ fn an_animation_is_not_a_film() {
     ] {
         with(&["--out", "d", flag, value], &["cannot be used with", flag]);
     }
-    with(&["--out", "d", "--stage", "all"], &["all"]);
     refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--batch"]);
     refused(&["--batch", "--fps", "30"], &["--frames"]);
 }

@@ -35,21 +35,8 @@ fn outputs_that_cannot_be_written_are_found_before_rendering() {
     refused(&with(&["--json", "nowhere/x.json"]), &["nowhere/x.json"]);
     refused(&with(&["--save-scene", "nowhere/x.toml"]), &["nowhere/x.toml"]);
     refused(&with(&["--out", "x.exr", "--checkpoint", "x.exr"]), &["--out", "--checkpoint", "x.exr"]);
-    refused(&with(&["--stage", "all"]), &["--out DIR"]);
-    refused(&["--batch", "--stage", "all", "--out", "d", "--checkpoint", "x.exr"], &["--checkpoint"]);
     refused(&["--out", "x.png"], &["--batch"]);
     refused(&with(&["--every", "5m"]), &["--checkpoint"]);
-}
-
-#[test]
-fn every_stage_renders_into_the_directory() {
-    let directory = temp();
-    let output =
-        render(directory.path(), &["--stage", "all", "--samples", "1", "--out", "gallery", "--json", "-"]);
-    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let stages = weekender::stages::Stage::ALL;
-    assert_eq!(json["stages"].as_array().unwrap().len(), stages.len());
-    assert_eq!(names(&directory.path().join("gallery")).len(), stages.len());
 }
 
 #[test]

@@ -4,13 +4,11 @@ use super::png;
 use super::{Description, OutputError};
 use crate::system::files::{self, replace_file};
 use ::png::EncodingError;
-use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// Frames per second as a fraction, such as 30000/1001. A PNG holds its inverse, the time of a frame, as two such numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameRate {
     /// Numerator, at least 1.
     pub frames: u16,

@@ -1,4 +1,4 @@
-//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film, all with a [`Description`]; and
+//! Picture files: 8-bit PNG, PPM (P6), and OpenEXR with the whole film, all with a [`Description`]; and
 //! PFM, which has no place for one.
 //! Pictures of other programs can be read, too: [`read_picture`].
 
@@ -99,16 +99,6 @@ impl OutputError {
     }
 }
 
-/// How a PPM stores its numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum PpmForm {
-    /// As bytes (P6).
-    #[default]
-    Binary,
-    /// As text (P3), as the book writes them.
-    Ascii,
-}
-
 /// How hard to compress a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PngForm {
@@ -124,7 +114,6 @@ pub enum PngForm {
 pub struct Forms {
     /// The format, if not that of the name's extension.
     pub format: Option<OutputFormat>,
-    pub ppm: PpmForm,
     pub png: PngForm,
 }
 
@@ -156,7 +145,7 @@ pub fn write_image_as(
     let format = forms.format.map_or_else(|| OutputFormat::from_path(path), Ok)?;
     replace_file(path, |writer| match format {
         OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
-        OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, description, writer),
         OutputFormat::Exr => checkpoint::write(film, None, description, writer),
         OutputFormat::Pfm => netpbm::write_pfm(film, writer),
     })?;

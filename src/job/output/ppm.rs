@@ -1,7 +1,7 @@
-//! PPM, binary (P6) or as text (P3). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
+//! Binary PPM (P6). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
 //! key alone, then the lines of the recipe.
 
-use super::{Description, PpmForm, RECIPE_KEY, RECIPE_LIMIT, write_rows};
+use super::{Description, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Write};
@@ -10,10 +10,9 @@ pub(super) fn write(
     film: &Film,
     transfer: Transfer,
     description: &Description,
-    form: PpmForm,
     writer: &mut impl Write,
 ) -> io::Result<()> {
-    writeln!(writer, "{}", if form == PpmForm::Ascii { "P3" } else { "P6" })?;
+    writeln!(writer, "P6")?;
     for line in description.lines() {
         writeln!(writer, "# {line}")?;
     }
@@ -22,27 +21,7 @@ pub(super) fn write(
         writeln!(writer, "# {line}")?;
     }
     writeln!(writer, "{} {}\n255", film.width(), film.height())?;
-    match form {
-        PpmForm::Binary => write_rows(film, transfer, writer),
-        PpmForm::Ascii => write_rows(film, transfer, &mut Numbers(writer)),
-    }
-}
-
-/// Writes bytes as decimal numbers, one pixel per line. Each call must pass whole pixels.
-struct Numbers<W>(W);
-
-impl<W: Write> Write for Numbers<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        for pixel in bytes.chunks(3) {
-            let numbers: Vec<String> = pixel.iter().map(u8::to_string).collect();
-            writeln!(self.0, "{}", numbers.join(" "))?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
+    write_rows(film, transfer, writer)
 }
 
 pub(super) fn read_description(reader: impl BufRead) -> io::Result<Option<Description>> {
