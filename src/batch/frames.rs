@@ -3,19 +3,18 @@
 
 use super::progress::display;
 use super::studio::{Event, Studio};
-use super::summary::Envelope;
-use super::{create_directory, ended};
-use crate::cli::terminal::{Display, print_beside, write_json};
+use super::{ended, write_figures};
+use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{FramesOptions, JsonTarget};
 use crate::film::{Film, key};
 use crate::job::output::{write_animation, write_image};
 use crate::job::recipe::Recipe;
-use crate::job::saved::FrameState;
+use crate::job::saved::is_whole_frame;
 use crate::progressive::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
 use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
-use crate::system::files::{JsonPath, ShownPath, check_writable};
+use crate::system::files::{JsonPath, ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::anyhow;
@@ -30,7 +29,7 @@ use std::time::{Duration, Instant};
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
 /// [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
-    create_directory(&options.names.directory)?;
+    make_directory(&options.names.directory).map_err(Failure::Input)?;
     let animation = options.animation.as_ref().map(|(path, _)| path.as_path());
     let first = options.names.path(options.frames.start);
     let json = options.json.as_ref().and_then(JsonTarget::file);
@@ -56,9 +55,8 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     };
     run.display.clear();
     let printed = print_beside(options.json.as_ref(), &format!("{}\n", run.text()));
-    let write = |target| write_json(&Envelope::of(run.json()), target);
-    let figures = options.json.as_ref().map_or(Ok(()), write);
-    ended(failure, printed.and(figures), &interrupt)
+    let figures = printed.and(write_figures(&run.json(), options.json.as_ref()));
+    ended(failure, figures, &interrupt)
 }
 
 /// An animation in progress.
@@ -87,7 +85,7 @@ impl Run<'_> {
             }
             let recipe = self.options.recipe.at_frame(&self.options.path, frame);
             let path = self.options.names.path(frame);
-            if FrameState::of(&path, &recipe, SOFTWARE) == FrameState::Whole {
+            if is_whole_frame(&path, &recipe, SOFTWARE) {
                 log::debug!("kept {}", path.display());
                 self.kept += 1;
                 continue;

@@ -19,7 +19,7 @@ pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
-use crate::cli::terminal::{print, print_beside, write_json};
+use crate::cli::terminal::{self, print, print_beside};
 use crate::cli::{BatchOptions, JsonTarget};
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
@@ -29,11 +29,10 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use anyhow::Context;
 use picture::Picture;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use summary::Envelope;
+use summary::SCHEMA;
 
 /// Renders and writes everything that the options ask for.
 ///
@@ -61,11 +60,12 @@ fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Fail
     let beside = if has_stdout { Some(&JsonTarget::StandardOutput) } else { options.json.as_ref() };
     let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
     let printed = print_beside(beside, &summary.to_string());
-    ended(outcome.err(), printed.and(write_figures(options, summary.json())), &interrupt)
+    let figures = printed.and(write_figures(&summary.json(), options.json.as_ref()));
+    ended(outcome.err(), figures, &interrupt)
 }
 
-fn write_figures(options: &BatchOptions, figures: serde_json::Value) -> anyhow::Result<()> {
-    options.json.as_ref().map_or(Ok(()), |target| write_json(&Envelope::of(figures), target))
+fn write_figures(figures: &serde_json::Value, target: Option<&JsonTarget>) -> anyhow::Result<()> {
+    target.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target))
 }
 
 /// The result of a run. `figures` is the outcome of printing and writing its figures.
@@ -106,12 +106,6 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         check(path).map_err(Failure::input)?;
     }
     render.job.check_memory(1).map_err(Failure::input)
-}
-
-fn create_directory(directory: &Path) -> Result<(), Failure> {
-    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
-    let created = if directory.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(directory) };
-    created.with_context(context).map_err(Failure::Input)
 }
 
 /// Prints the scenes, stages and devices to choose from.

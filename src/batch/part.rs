@@ -62,7 +62,8 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
         Some(found) if part.missing(found.film.samples()) == 0 => {
             let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
             print_beside(batch.json.as_ref(), &text).map_err(Failure::Run)?;
-            write_figures(&batch, summary_of_whole(&batch.render, &found).json()).map_err(Failure::Run)?;
+            let figures = summary_of_whole(&batch.render, &found).json();
+            write_figures(&figures, batch.json.as_ref()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
         }
         found => {

@@ -1,13 +1,12 @@
 //! `weekender plan`: writes a plan and makes the commands for its parts.
 
-use super::create_directory;
 use crate::cli::PlanOptions;
 use crate::film::Film;
 use crate::job::plan::{Commands, Format, Manifest, Plan, scripts};
 use crate::progressive::describe::counted;
 use crate::system::console;
 use crate::system::failure::{Failure, output_failure};
-use crate::system::files::ShownPath;
+use crate::system::files::{ShownPath, make_directory};
 use crate::system::memory;
 use crate::system::shell;
 use anyhow::anyhow;
@@ -18,7 +17,7 @@ use std::process::ExitCode;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
-    create_directory(&options.directory)?;
+    make_directory(&options.directory).map_err(Failure::Input)?;
     let manifest = Manifest {
         command: options.command.clone(),
         scene: options.recipe.name.clone(),

@@ -1,13 +1,15 @@
-//! Commands whose flags are their options: merge, info, gallery, companion, check and stress.
+//! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
 use super::raw::ProgressChoice;
 use super::values::{JsonTarget, Levels, parse_levels};
 use super::{NamedPath, check_paths};
 use crate::backends::BackendChoice;
+use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
-use crate::stages::Stage;
+use crate::stages::{Stage, Transfer};
 use anyhow::Result;
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// Options of `weekender merge`.
@@ -113,6 +115,46 @@ impl CheckOptions {
         outputs.push(("--json", self.json.as_ref().and_then(JsonTarget::file)));
         check_paths(&[("the picture to check", Some(&self.picture))], &outputs)?;
         Ok(self)
+    }
+}
+
+/// Options of `weekender compare`.
+#[derive(Clone, Debug, Args)]
+pub struct CompareOptions {
+    /// A film or picture (.exr, .pfm, .png, .ppm) of any program; FILE:LAYER chooses a layer of an EXR
+    #[arg(value_name = "FIRST")]
+    pub first: PathBuf,
+    /// Like the first
+    #[arg(value_name = "SECOND")]
+    pub second: PathBuf,
+    /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
+    #[arg(long, value_enum, default_value = "gamma2")]
+    pub encoding: Encoding,
+    /// Write the figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<JsonTarget>,
+}
+
+impl CompareOptions {
+    /// Refuses JSON that would replace a picture.
+    pub(super) fn check(self) -> Result<Self> {
+        let inputs = [&self.first, &self.second].map(|path| ("a picture", Some(path.as_path())));
+        check_paths(&inputs, &[("--json", self.json.as_ref().and_then(JsonTarget::file))])?;
+        Ok(self)
+    }
+}
+
+impl ValueEnum for Encoding {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Encoding::Book(Transfer::Gamma2), Encoding::Book(Transfer::Linear), Encoding::Srgb]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Encoding::Book(Transfer::Linear) => "linear",
+            Encoding::Book(_) => "gamma2",
+            Encoding::Srgb => "srgb",
+        }))
     }
 }
 

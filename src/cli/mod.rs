@@ -5,7 +5,6 @@ pub mod terminal;
 
 mod backend;
 mod bench;
-mod compare;
 mod diff;
 mod direct;
 mod paths;
@@ -18,9 +17,10 @@ mod values;
 
 pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
-pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice};
-pub use direct::{CheckOptions, CompanionOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions};
+pub use direct::{
+    CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
+};
 pub use paths::{NamedPath, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
@@ -113,7 +113,7 @@ enum RawCommand {
     /// Tell whether two pictures are equal apart from noise, and where they are not
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
-    Compare(Box<compare::RawCompare>),
+    Compare(Box<CompareOptions>),
     /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
     Report(Box<ReportOptions>),
     /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
@@ -195,7 +195,7 @@ fn request(raw: Raw, line: &Line) -> Result<Request> {
         }
         Some(RawCommand::Info(options)) => Request::Info(options),
         Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
-        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(compare::compare(*raw)?)),
+        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(raw.check()?)),
         Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
         Some(RawCommand::Stress(raw)) => Request::Stress(raw),
         Some(RawCommand::Companion(options)) => Request::Companion(options),

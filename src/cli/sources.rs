@@ -84,13 +84,6 @@ pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
     (scene == Some(STANDARD) || path.extension().is_some() || path.components().count() > 1).then_some(path)
 }
 
-/// Reduces the picture to at most `width` pixels across, keeping its shape, unless its size was given.
-pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
-    if raw.size.is_none() && recipe.settings.width > width {
-        scale(&mut recipe.settings, width);
-    }
-}
-
 /// Makes a picture `width` pixels wide, keeping its shape.
 pub(super) fn scale(settings: &mut RenderSettings, width: u32) {
     let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);

@@ -1,7 +1,7 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
 use super::limits::invalid;
-use super::{Description, PngForm, RECIPE_KEY, RECIPE_LIMIT, write_rows};
+use super::{Description, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use ::png::EncodingError;
@@ -11,43 +11,19 @@ pub(super) fn write(
     film: &Film,
     transfer: Transfer,
     description: &Description,
-    form: PngForm,
     writer: &mut impl Write,
 ) -> io::Result<()> {
-    let size = [film.width(), film.height()];
-    writer.write_all(&encoded(size, description, form, |rows| write_rows(film, transfer, rows))?)
-}
-
-/// Writes a picture of `size` pixels from its bytes, three per pixel.
-pub(super) fn write_bytes(
-    size: [u32; 2],
-    rgb8: &[u8],
-    description: &Description,
-    writer: &mut impl Write,
-) -> io::Result<()> {
-    writer.write_all(&encoded(size, description, PngForm::Fast, |rows| rows.write_all(rgb8))?)
-}
-
-/// Encodes the whole file in memory, because the encoder's stream would reduce a file system error to its text.
-fn encoded(
-    [width, height]: [u32; 2],
-    description: &Description,
-    form: PngForm,
-    write: impl FnOnce(&mut ::png::StreamWriter<'_, &mut Vec<u8>>) -> io::Result<()>,
-) -> io::Result<Vec<u8>> {
+    // Encoded in memory, because the encoder's stream would reduce a file system error to its text.
     let mut file = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut file, width, height);
+    let mut encoder = ::png::Encoder::new(&mut file, film.width(), film.height());
     encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_compression(match form {
-        PngForm::Fast => ::png::Compression::Fast,
-        PngForm::Small => ::png::Compression::Balanced,
-    });
-    let mut writer = begin(encoder, description)?;
-    let mut rows = writer.stream_writer()?;
-    write(&mut rows)?;
+    encoder.set_compression(::png::Compression::Fast);
+    let mut picture = begin(encoder, description)?;
+    let mut rows = picture.stream_writer()?;
+    write_rows(film, transfer, &mut rows)?;
     rows.finish()?;
-    writer.finish()?;
-    Ok(file)
+    picture.finish()?;
+    writer.write_all(&file)
 }
 
 /// Writes the head of a PNG with its description.

@@ -11,7 +11,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, Source, Stop, make_directory, write_json};
+use super::{Candidate, Source, Stop, write_json};
 use crate::cli::terminal::print;
 use crate::cli::{JsonTarget, ReportOptions};
 use crate::denoise;
@@ -21,7 +21,7 @@ use crate::job::render::{RenderJob, RenderSettings, SamplerKind, Stats};
 use crate::numbers::chart;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{check_writable, write_text};
+use crate::system::files::{check_writable, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use data::{Measured, Run};

@@ -18,14 +18,14 @@ pub use suite::{Suite, by_the_book, trace};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, make_directory, write_json};
+use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::StressOptions;
 use crate::cli::terminal;
 use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::write_text;
+use crate::system::files::{make_directory, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
