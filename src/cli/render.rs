@@ -73,7 +73,7 @@ pub(super) struct StopFlags {
 #[command(next_help_heading = "Files")]
 pub(super) struct FileFlags {
     /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --frames, a
-    /// directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
+    /// directory or a pattern such as turn-####.png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
     /// The format of --out, if its name does not tell it

@@ -2,7 +2,6 @@
 
 use crate::backends::BackendChoice;
 use crate::film::ROUNDING_LIMIT;
-use crate::job::output::FrameRate;
 use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
@@ -227,17 +226,6 @@ pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {
             "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
         )
     })
-}
-
-pub(super) fn parse_rate(text: &str) -> Result<FrameRate, String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|number| *number > 0);
-    let (frames, seconds) = text.split_once('/').unwrap_or((text, "1"));
-    number(frames).zip(number(seconds)).map(|(frames, seconds)| FrameRate { frames, seconds }).ok_or_else(
-        || {
-            "must be a whole number or a fraction of numbers from 1 to 65535, such as 30, 25/2 or 30000/1001"
-                .to_owned()
-        },
-    )
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Picture files: 8-bit PNG, and OpenEXR with the whole film, both with a [`Description`]; PPM and PFM without one.
 //! Pictures of other programs can be read, too: [`read_picture`].
 
-mod apng;
 mod exr;
 mod limits;
 mod netpbm;
@@ -9,7 +8,6 @@ mod png;
 mod ppm;
 mod read;
 
-pub use apng::{FrameRate, animation_in, check_frame, write_animation};
 pub use read::{
     Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
 };
@@ -154,6 +152,15 @@ pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Resul
         _ => None,
     };
     found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// Checks that a file is a complete 8-bit RGB PNG of `size`, width and height in pixels.
+///
+/// # Errors
+/// [`OutputError::Input`] or [`OutputError::Read`].
+pub fn check_frame(path: &Path, size: [u32; 2]) -> Result<(), OutputError> {
+    let (file, _) = files::open(path)?;
+    png::check(BufReader::new(file), size).map_err(|reason| OutputError::unreadable(path, &reason))
 }
 
 /// The first bytes, which tell the format of a file.

@@ -4,7 +4,6 @@ use super::limits::invalid;
 use super::{Description, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
-use ::png::EncodingError;
 use std::io::{self, BufRead, Seek, Write};
 
 pub(super) fn write(
@@ -18,19 +17,6 @@ pub(super) fn write(
     let mut encoder = ::png::Encoder::new(&mut file, film.width(), film.height());
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_compression(::png::Compression::Fast);
-    let mut picture = begin(encoder, description)?;
-    let mut rows = picture.stream_writer()?;
-    write_rows(film, transfer, &mut rows)?;
-    rows.finish()?;
-    picture.finish()?;
-    writer.write_all(&file)
-}
-
-/// Writes the head of a PNG with its description.
-pub(super) fn begin<W: Write>(
-    mut encoder: ::png::Encoder<'_, W>,
-    description: &Description,
-) -> Result<::png::Writer<W>, EncodingError> {
     // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be
     // lost.
     let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
@@ -38,21 +24,25 @@ pub(super) fn begin<W: Write>(
         let (key, value) = (key.to_owned(), value.to_owned());
         if latin_1 { encoder.add_text_chunk(key, value)? } else { encoder.add_itxt_chunk(key, value)? }
     }
-    let mut writer = encoder.write_header()?;
+    let mut picture = encoder.write_header()?;
     let mut recipe = ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, description.recipe());
     recipe.compressed = true;
     recipe.compress_text()?;
-    writer.write_text_chunk(&recipe)?;
-    Ok(writer)
+    picture.write_text_chunk(&recipe)?;
+    let mut rows = picture.stream_writer()?;
+    write_rows(film, transfer, &mut rows)?;
+    rows.finish()?;
+    picture.finish()?;
+    writer.write_all(&file)
 }
 
-/// A decoder that can read every description that [`begin`] writes. A chunk counts up to three times while it is read.
+/// A decoder that can read every description that [`write`] writes. A chunk counts up to three times while it is read.
 fn decoder<R: BufRead + Seek>(reader: R) -> ::png::Decoder<R> {
     ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: 4 * RECIPE_LIMIT })
 }
 
-/// Reads an 8-bit RGB picture of this size to its end, row by row from the top, three bytes a pixel.
-pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<Vec<u8>> {
+/// Reads an 8-bit RGB picture of this size to its end.
+pub(super) fn check(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<()> {
     let mut reader = decoder(reader).read_info()?;
     let info = reader.info();
     let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
@@ -61,8 +51,7 @@ pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]
     }
     let mut pixels = vec![0; 3 * width as usize * height as usize];
     reader.next_frame(&mut pixels)?;
-    reader.finish()?;
-    Ok(pixels)
+    Ok(reader.finish()?)
 }
 
 pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
