@@ -3,7 +3,6 @@
 use super::*;
 use crate::backends::BackendChoice;
 use crate::job::plan::Format;
-use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 
 fn request(line: &str) -> Result<Request, Failure> {
@@ -110,11 +109,9 @@ fn diff_takes_sides_and_place_from_flags() {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),
     };
-    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
     let flags = "--pixel 0,0 --sides gpu,portable --adapter some";
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
     assert_eq!(compared(flags).sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
-    assert_eq!(compared("--pixel 0,0 --sides cpu,cpu --isa portable").sides[0], cpu(Some(Isa::Portable)));
     for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
         assert!(refused(&format!("diff --find --sides {sides}")).contains("reference"), "{sides}");
     }
@@ -130,7 +127,6 @@ fn diff_takes_sides_and_place_from_flags() {
     for (flags, part) in [
         ("--pixel 20,9 --size 20x10", "the last one is 19,9"),
         ("--pixel 0,0 --adapter some", "--adapter needs the side gpu in --sides"),
-        ("--pixel 0,0 --isa portable", "--isa needs the side cpu in --sides"),
     ] {
         let error = refused(&format!("diff --sides portable,reference {flags}"));
         assert!(error.contains(part), "{error}");

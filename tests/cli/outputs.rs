@@ -92,20 +92,13 @@ fn an_output_is_no_input_and_no_other_output() {
 fn outputs_never_replace_files_of_a_plan() {
     let directory = temp();
     let plan = ["plan", "--parts", "2", "--size", "8x4", "--samples", "4", "--out"];
-    for flags in [&["q"][..], &["a", "--turntable=4"]] {
-        assert!(run(directory.path(), &[&plan[..], flags].concat()).status.success());
+    assert!(run(directory.path(), &[&plan[..], &["q"]].concat()).status.success());
+    for name in ["q/plan.json", "q/scene.toml", "q/part-1.exr"] {
+        let part = ["render-part", "q", "--part", "0", "--json", name];
+        refused_in(&directory, &part, &["--json", name, "the plan"]);
     }
-    for name in ["q/plan.json", "q/scene.toml", "q/part-1.exr", "a/frame-0003.png"] {
-        let plan = &name[..1];
-        refused_in(
-            &directory,
-            &["render-part", plan, "--part", "0", "--json", name],
-            &["--json", name, "the plan"],
-        );
-    }
-    for (plan, name) in [("q", "q/part-0.exr"), ("a", "a/frame-0001.png")] {
-        refused_in(&directory, &["merge", plan, "--out", name], &["--out", name, "the plan"]);
-    }
+    let merge = ["merge", "q", "--out", "q/part-0.exr"];
+    refused_in(&directory, &merge, &["--out", "q/part-0.exr", "the plan"]);
 }
 
 #[test]
