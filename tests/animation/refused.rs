@@ -16,7 +16,7 @@ fn refused(arguments: &[&str], parts: &[&str]) {
 }
 
 #[test]
-fn ranges_turns_and_rates_have_limits() {
+fn ranges_and_turns_have_limits() {
     for range in ["5..5", "6..5", "0..100001", "7", "a..b"] {
         refused(
             &["--batch", "--turntable", "--frames", range, "--out", "d"],
@@ -25,9 +25,6 @@ fn ranges_turns_and_rates_have_limits() {
     }
     for turn in ["0", "1", "-5", "100001", "0deg", "181deg", "nandeg", "x"] {
         refused(&["--batch", &format!("--turntable={turn}"), "--out", "d"], &[turn, "such as 3deg or -3deg"]);
-    }
-    for rate in ["0", "29.97", "30/0", "70000"] {
-        refused(&["--batch", "--turntable", "--fps", rate, "--out", "a.png"], &[rate, "30000/1001"]);
     }
 }
 

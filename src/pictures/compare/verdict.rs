@@ -390,8 +390,7 @@ fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, 
         if largest > LOUD {
             unclear.get_or_insert_with(|| {
                 format!(
-                    "{text}: too few to tell noise from a fault; look at them with --heat-map, or compare films with two \
-                     halves"
+                    "{text}: too few to tell noise from a fault; look there, or compare films with two halves"
                 )
             });
         } else {
