@@ -72,8 +72,7 @@ impl Document {
         line
     }
 
-    /// The number of frames of the animation, if the scene file has keyframes, and the command line that makes an animated
-    /// PNG of them.
+    /// The number of frames of the animation, if the scene file has keyframes, and the command line that renders them.
     pub fn animation(&self) -> Option<(u32, String)> {
         let recipe = &self.origin.recipe;
         let (frames, name) = (recipe.keyframes.last()?.frame + 1, plain_name(&recipe.name));
@@ -81,7 +80,7 @@ impl Document {
         let flags = [
             format!("--scene={}", path.display()),
             format!("--frames=0..{frames}"),
-            format!("--out={name}-animation.png"),
+            format!("--out={name}-frames"),
         ];
         let words = ["weekender", "--batch"].map(str::to_owned).into_iter().chain(flags);
         Some((frames, shell::line(words)))
@@ -105,7 +104,7 @@ mod tests {
     /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
         match parse(line.split_whitespace().map(Into::into)).unwrap() {
-            Request::Batch(options) => options.renders[0].job.clone(),
+            Request::Batch(options) => options.render.job.clone(),
             other => panic!("{line}: {other:?}"),
         }
     }
@@ -157,11 +156,7 @@ mod tests {
         let (frames, line) = document(&recipe).animation().unwrap();
         match parse(line.split_whitespace().map(Into::into)).unwrap() {
             Request::Frames(options) => {
-                assert_eq!(
-                    (options.frames.clone(), options.animation.is_some()),
-                    (0..frames, true),
-                    "{line}"
-                );
+                assert_eq!(options.frames, 0..frames, "{line}");
                 assert_eq!((frames, &options.recipe.keyframes), (21, &recipe.keyframes), "{line}");
             }
             other => panic!("{line}: {other:?}"),

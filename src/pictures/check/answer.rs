@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn mistakes_link_to_their_own_sections() {
-        for mistake in &MISTAKES {
+        for mistake in MISTAKES {
             let section = Section::find(mistake.section).unwrap();
             assert_eq!(section.number, mistake.section);
             assert!(
