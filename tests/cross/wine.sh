@@ -172,20 +172,18 @@ case_of 'after it was killed' 0 '' --batch "${tiny[@]}" --out run.exr
 [ -z "$(find . -maxdepth 1 -name '.weekender-*')" ]
 report 'nothing is left behind' $?
 
-windows "$work/helper.exe" ctrl-c 4000 "$work/weekender.exe" --batch "${endless[@]}" --out ctrl-c.exr
-[ $? = 130 ]
-report 'Ctrl-C ends with 130' $?
-case_of 'and saves the film' 0 'samples' info ctrl-c.exr
-windows "$work/helper.exe" console 60000 "$work/weekender.exe" --batch "${endless[@]}" --out closed.exr &
-for _ in $(seq 30); do
-    sleep 1
-    console=$(xdotool search --name helper 2> /dev/null | tail -n 1)
-    [ -z "$console" ] || break
-done
-sleep 4
-xdotool windowactivate --sync "$console" key alt+F4
-wait %% 2> /dev/null
-case_of 'closing the console saves the film' 0 'samples' info closed.exr
+# ends EVENT NUMBER CODE: the program saves its film and ends with this code
+ends() {
+    windows "$work/helper.exe" event "$2" 4000 "$work/weekender.exe" --batch "${endless[@]}" --out "event-$2.exr"
+    [ $? = "$3" ]
+    report "$1 ends with $3" $?
+    case_of 'and saves the film' 0 'samples' info "event-$2.exr"
+}
+ends 'Ctrl-C' 0 130
+ends 'Ctrl-Break' 1 130
+ends 'closing the console' 2 129
+ends 'logging off' 5 143
+ends 'shutting down' 6 143
 
 echo "$passed passed, $failed failed"
 [ "$failed" = 0 ]
