@@ -10,7 +10,7 @@ use crate::system::console;
 use crate::system::failure::{Failure, output_failure};
 use crate::system::files::ShownPath;
 use crate::system::memory;
-use crate::system::shell;
+use crate::system::shell::{Shell, operand};
 use anyhow::anyhow;
 use serde::Serialize;
 use std::process::ExitCode;
@@ -47,16 +47,18 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
             return Ok(ExitCode::SUCCESS);
         }
         (Format::Make, _) => {
-            shell::line(["make", "-C", &shell::operand(&options.directory.to_string_lossy())]) + "\n"
+            Shell::HERE.line(["make", "-C", &operand(&options.directory.to_string_lossy())]) + "\n"
         }
         (_, Some((first, _))) => {
-            shell::line(["sh", &shell::operand(&plan.beside(first).to_string_lossy())]) + "\n"
+            Shell::HERE.line(["sh", &operand(&plan.beside(first).to_string_lossy())]) + "\n"
         }
-        (_, None) => (0..count).map(|part| commands.part_line(&part.to_string()) + "\n").collect(),
+        (_, None) => {
+            (0..count).map(|part| commands.part_line(Shell::HERE, &part.to_string()) + "\n").collect()
+        }
     };
     console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     if options.format == Format::Text {
-        console::note(&format!("then: {}", shell::line(commands.merge(&result))));
+        console::note(&format!("then: {}", Shell::HERE.line(commands.merge(&result))));
     }
     Ok(ExitCode::SUCCESS)
 }

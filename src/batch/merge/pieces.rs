@@ -5,6 +5,7 @@ use crate::job::plan::{Commands, Part, Plan, Work};
 use crate::job::saved::FrameState;
 use crate::progressive::describe::SOFTWARE;
 use crate::system::files::ShownPath;
+use crate::system::shell::Shell;
 use std::path::PathBuf;
 
 /// What exists of a film or frame.
@@ -102,7 +103,7 @@ impl<'a> Pieces<'a> {
         parts.dedup();
         let commands = Commands::new(program, &self.plan.path.to_string_lossy(), &self.plan.manifest);
         let heading = format!("for what is missing (--array={} in Slurm):", ranges(&parts));
-        let lines = parts.iter().map(|part| commands.part_line(&part.to_string()));
+        let lines = parts.iter().map(|part| commands.part_line(Shell::HERE, &part.to_string()));
         std::iter::once(heading).chain(lines).collect::<Vec<_>>().join("\n")
     }
 }
