@@ -30,6 +30,7 @@ use crate::stages::{BOOK_URL, Stage};
 use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
+use std::process;
 use std::sync::Arc;
 
 impl Window {
@@ -614,8 +615,13 @@ impl Window {
     }
 
     pub(super) fn show_in_folder(&mut self, context: &Context) {
-        let folder = self.model.remembered.recent.first().and_then(|path| path.parent());
-        if let Some(url) = folder.map(companion::file_url) {
+        let Some(path) = self.model.remembered.recent.first() else { return };
+        if self.shell.dialogs.system.is_there
+            && file_manager(path).is_some_and(|mut command| command.spawn().is_ok())
+        {
+            return;
+        }
+        if let Some(url) = path.parent().map(companion::file_url) {
             self.open_or_tell(context, url);
         }
     }
@@ -707,5 +713,28 @@ impl Window {
         if let Some(directory) = std::path::absolute(path).ok().as_deref().and_then(Path::parent) {
             self.model.remembered.directory = Some(directory.to_owned());
         }
+    }
+}
+
+/// The command that opens the system's file manager with this file selected, on systems that have one of their own.
+fn file_manager(path: &Path) -> Option<process::Command> {
+    #[cfg(windows)]
+    {
+        use std::os::windows::process::CommandExt;
+        let mut command = process::Command::new("explorer");
+        // Explorer wants quotes around the path alone.
+        command.raw_arg(format!("/select,\"{}\"", path.display()));
+        Some(command)
+    }
+    #[cfg(target_os = "macos")]
+    {
+        let mut command = process::Command::new("open");
+        command.arg("-R").arg(path);
+        Some(command)
+    }
+    #[cfg(not(any(windows, target_os = "macos")))]
+    {
+        let _ = path;
+        None
     }
 }

@@ -8,7 +8,7 @@ use crate::system::console;
 use crate::system::failure::{Failure, output_failure};
 use crate::system::files::{ShownPath, make_directory};
 use crate::system::memory;
-use crate::system::shell;
+use crate::system::shell::{Shell, operand};
 use anyhow::anyhow;
 use std::process::ExitCode;
 
@@ -33,19 +33,20 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     let commands = Commands::new(&options.program, &path, &plan.manifest);
     let lines: String = match (options.format, scripts.first()) {
         (Format::Make, _) => {
-            shell::line(["make", "-C", &shell::operand(&options.directory.to_string_lossy())]) + "\n"
+            Shell::HERE.line(["make", "-C", &operand(&options.directory.to_string_lossy())]) + "\n"
         }
         (_, Some((first, _))) => {
-            shell::line(["sh", &shell::operand(&plan.beside(first).to_string_lossy())]) + "\n"
+            Shell::HERE.line(["sh", &operand(&plan.beside(first).to_string_lossy())]) + "\n"
         }
         (_, None) => {
-            (0..plan.manifest.parts.len()).map(|part| commands.part(&part.to_string()) + "\n").collect()
+            let parts = 0..plan.manifest.parts.len();
+            parts.map(|part| commands.part(Shell::HERE, &part.to_string()) + "\n").collect()
         }
     };
     console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     if options.format == Format::Text {
         let result = options.directory.join(&plan.manifest.result);
-        console::note(&format!("then: {}", commands.merge(&result.to_string_lossy())));
+        console::note(&format!("then: {}", commands.merge(Shell::HERE, &result.to_string_lossy())));
     }
     Ok(ExitCode::SUCCESS)
 }

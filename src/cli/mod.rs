@@ -31,7 +31,7 @@ pub use values::JsonTarget;
 
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
-use crate::system::shell;
+use crate::system::shell::Shell;
 use anyhow::Result;
 use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
@@ -248,7 +248,7 @@ fn recorded(arguments: &[OsString]) -> String {
             None => word.into_owned(),
         }
     };
-    shell::line(std::iter::once("weekender".to_owned()).chain(arguments.iter().skip(1).map(shortened)))
+    Shell::HERE.line(std::iter::once("weekender".to_owned()).chain(arguments.iter().skip(1).map(shortened)))
 }
 
 #[cfg(test)]

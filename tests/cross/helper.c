@@ -1,7 +1,7 @@
 // Runs a Windows program under conditions that a shell cannot make; returns its exit code.
-//   helper hold FILE PROGRAM ARGUMENTS...      while FILE is open and may only be read
-//   helper ctrl-c MS PROGRAM ARGUMENTS...      presses Ctrl-C in its console after so many milliseconds
-//   helper console MS PROGRAM ARGUMENTS...     in a console window of its own, for so many milliseconds
+//   helper hold FILE PROGRAM ARGUMENTS...           while FILE is open and may only be read
+//   helper event NUMBER MS PROGRAM ARGUMENTS...     in a console of its own, which sends it an event after so many
+//                                                   milliseconds and waits as long for its end as Windows does
 #include <stdio.h>
 #include <windows.h>
 
@@ -9,10 +9,17 @@ static BOOL WINAPI ignore(DWORD event) {
     return event == CTRL_C_EVENT;
 }
 
+// Wine delivers Ctrl-C only. So the other events come the way in which Windows delivers them: as a thread in the program
+// that runs CtrlRoutine, which lies at the same address in all programs.
+static BOOL deliver(HANDLE process, DWORD event) {
+    if (event == CTRL_C_EVENT) return GenerateConsoleCtrlEvent(event, 0);
+    FARPROC routine = GetProcAddress(GetModuleHandleW(L"kernelbase"), "CtrlRoutine");
+    return routine && CreateRemoteThread(process, NULL, 0, (LPTHREAD_START_ROUTINE)routine, (void *)(UINT_PTR)event, 0, NULL);
+}
+
 int wmain(int count, wchar_t **arguments) {
-    if (count < 4) return 99;
-    const wchar_t *what = arguments[1];
-    int holds = !wcscmp(what, L"hold");
+    if (count < 5) return 99;
+    int holds = !wcscmp(arguments[1], L"hold");
     if (holds) {
         HANDLE file =
             CreateFileW(arguments[2], GENERIC_READ, FILE_SHARE_READ, NULL, OPEN_EXISTING, 0, NULL);
@@ -22,7 +29,7 @@ int wmain(int count, wchar_t **arguments) {
         if (!AllocConsole()) return 97;
     }
     wchar_t line[8192] = L"";
-    for (int i = 3; i < count; i++) {
+    for (int i = holds ? 3 : 4; i < count; i++) {
         wcscat(line, L"\"");
         wcscat(line, arguments[i]);
         wcscat(line, L"\" ");
@@ -30,15 +37,13 @@ int wmain(int count, wchar_t **arguments) {
     STARTUPINFOW start = {.cb = sizeof start};
     PROCESS_INFORMATION process;
     if (!CreateProcessW(NULL, line, NULL, NULL, TRUE, 0, NULL, NULL, &start, &process)) return 96;
-    DWORD wait = holds ? 60000 : _wtoi(arguments[2]);
-    if (!wcscmp(what, L"ctrl-c")) {
+    if (!holds) {
         SetConsoleCtrlHandler(ignore, TRUE);
-        Sleep(wait);
-        if (!GenerateConsoleCtrlEvent(CTRL_C_EVENT, 0)) return 95;
-        wait = 20000;
+        Sleep(_wtoi(arguments[3]));
+        if (!deliver(process.hProcess, _wtoi(arguments[2]))) return 95;
     }
-    WaitForSingleObject(process.hProcess, wait);
-    DWORD code = 94;
+    if (WaitForSingleObject(process.hProcess, holds ? 60000 : 5000)) TerminateProcess(process.hProcess, 94);
+    DWORD code = 93;
     GetExitCodeProcess(process.hProcess, &code);
     return code;
 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # The Windows program under Wine, compared with the Linux program of the same commit.
 #   tests/cross/wine.sh weekender.exe target/release/weekender
+# With UNIT_TESTS=PROGRAM, that program is run, too: the library's tests for Windows.
 # Needs Debian's wine64, mingw-w64, libcap2-bin, xvfb, openbox and xdotool. Root can also fill a disk.
 set -uo pipefail
 exe=$(realpath "$1")
-linux=$(realpath "$2")
+host=$(realpath "$2")
 here=$(cd "$(dirname "$0")" && pwd)
 scenes=$here/../../assets/scenes
 
@@ -28,9 +29,6 @@ export DISPLAY
 openbox 2> /dev/null &
 started+=($!)
 wineboot -i > /dev/null 2>&1
-# The server opens the files. It starts anew with the rights of the programs that follow.
-wineserver -k
-
 # Wine 8 lacks a library that Rust's random numbers come from.
 if [ ! -e "$WINEPREFIX/drive_c/windows/system32/bcryptprimitives.dll" ]; then
     cat > "$work/prng.c" << 'EOF'
@@ -42,23 +40,17 @@ EOF
 fi
 x86_64-w64-mingw32-gcc -municode -O -o "$work/helper.exe" "$here/helper.c"
 cp "$exe" "$work/weekender.exe"
-cd "$work/run" || exit 1
 
-passed=0 failed=0
+. "$here/report.sh"
+[ -z "${UNIT_TESTS:-}" ] || unit_tests wine "$UNIT_TESTS"
+cd "$work/run" || exit 1
+# The server opens the files. It starts anew with the rights of the programs that follow.
+wineserver -k
+
 # Root may write everywhere, unless it gives up that right.
 windows() {
     timeout 120 capsh --drop=cap_dac_override,cap_dac_read_search,cap_fowner -- -c 'exec wine "$@"' wine "$@" \
         < /dev/null > "$work/out" 2>&1
-}
-report() { # report NAME OUTCOME
-    if [ "$2" = 0 ]; then
-        passed=$((passed + 1))
-        echo "ok     $1"
-    else
-        failed=$((failed + 1))
-        echo "FAILED $1"
-        sed 's/^/         /' "$work/out" | tail -n 12
-    fi
 }
 # case_of NAME CODE TEXT ARGUMENTS...: the program ends with this code and says this
 case_of() {
@@ -68,11 +60,6 @@ case_of() {
     got=$?
     [ "$got" = "$code" ] && grep -qF -- "$text" "$work/out"
     report "$name (exit code $got)" $?
-}
-same() { # same NAME FILM FILM
-    "$linux" compare "$2" "$3" > "$work/out" 2>&1
-    grep -q 'equal to the bit' "$work/out"
-    report "$1" $?
 }
 exists() { # exists NAME FILE
     [ -s "$2" ]
@@ -87,15 +74,15 @@ for picture in three-spheres book field:3000 metals close-up touching-spheres \
     "$scenes/hollow-glass.toml" "$scenes/stress/planet-coast.toml"; do
     name=$(basename "${picture/:/-}" .toml)
     film=(--batch --device cpu --scene "$picture" --size 160x90 --samples 16)
-    "$linux" "${film[@]}" --out "linux-$name.exr" > "$work/out" 2>&1
+    "$host" "${film[@]}" --out "linux-$name.exr" > "$work/out" 2>&1
     case_of "renders $name" 0 "$name.exr" "${film[@]}" --out "$name.exr"
-    same "same bits as Linux: $name" "linux-$name.exr" "$name.exr"
+    same_bits "same bits as Linux: $name" "linux-$name.exr" "$name.exr"
 done
 for isa in portable sse4.2 avx2; do
     film=(--batch --device cpu --isa "$isa" --size 160x90 --samples 16)
-    "$linux" "${film[@]}" --out "linux-$isa.exr" > "$work/out" 2>&1
+    "$host" "${film[@]}" --out "linux-$isa.exr" > "$work/out" 2>&1
     case_of "renders with $isa" 0 "$isa.exr" "${film[@]}" --out "$isa.exr"
-    same "same bits as Linux: $isa" "linux-$isa.exr" "$isa.exr"
+    same_bits "same bits as Linux: $isa" "linux-$isa.exr" "$isa.exr"
 done
 
 case_of 'compares' 0 'equal to the bit' compare book.exr linux-book.exr
@@ -109,10 +96,10 @@ case_of 'a GPU that cannot compile' 0 'dxcompiler.dll' --batch --device gpu --si
 WGPU_BACKEND=noop case_of 'stress' 0 '' stress --filter copies
 case_of 'plans' 0 render-part plan --scene metals --size 64x36 --samples 64 --parts 2 --out plan
 case_of 'renders part 0' 0 '' render-part plan --part 0 --device cpu
-"$linux" render-part plan --part 1 --device cpu > "$work/out" 2>&1
+"$host" render-part plan --part 1 --device cpu > "$work/out" 2>&1
 case_of "merges with Linux's part 1" 0 '' merge plan --out merged.exr
-"$linux" --batch --device cpu --scene metals --size 64x36 --samples 64 --out whole.exr > "$work/out" 2>&1
-same 'the merged film is the whole' merged.exr whole.exr
+"$host" --batch --device cpu --scene metals --size 64x36 --samples 64 --out whole.exr > "$work/out" 2>&1
+same_bits 'the merged film is the whole' merged.exr whole.exr
 
 mkdir 'Köln und Umgebung' "$WINEPREFIX/drive_c/films"
 case_of 'umlauts and spaces' 0 'ein Bild.exr' --batch "${tiny[@]}" --out 'Köln und Umgebung/ein Bild.exr'
@@ -134,11 +121,11 @@ done
 case_of 'a name for a stream' 2 'choose another' --batch "${tiny[@]}" --out 'a.exr:b.exr'
 case_of 'a folder that is not there' 2 'create its directory' --batch "${tiny[@]}" --out 'C:\missing\a.exr'
 
-"$linux" --scene metals --save-scene lf.toml > "$work/out" 2>&1
+"$host" --scene metals --save-scene lf.toml > "$work/out" 2>&1
 sed 's/$/\r/' lf.toml > crlf.toml
 case_of 'a scene with CR LF' 0 '' --batch "${tiny[@]}" --scene crlf.toml --out crlf.exr
 case_of 'the same with LF' 0 '' --batch "${tiny[@]}" --scene lf.toml --out lf.exr
-same 'same bits' crlf.exr lf.exr
+same_bits 'same bits' crlf.exr lf.exr
 printf '[camera]\r\nvfov_degrees = 20\r\nlook_form = [1, 2, 3]\r\n' > wrong.toml
 case_of 'a mistake after CR LF is found' 2 'look_form' --batch "${tiny[@]}" --scene wrong.toml
 
@@ -172,20 +159,42 @@ case_of 'after it was killed' 0 '' --batch "${tiny[@]}" --out run.exr
 [ -z "$(find . -maxdepth 1 -name '.weekender-*')" ]
 report 'nothing is left behind' $?
 
-windows "$work/helper.exe" ctrl-c 4000 "$work/weekender.exe" --batch "${endless[@]}" --out ctrl-c.exr
-[ $? = 130 ]
-report 'Ctrl-C ends with 130' $?
-case_of 'and saves the film' 0 'samples' info ctrl-c.exr
-windows "$work/helper.exe" console 60000 "$work/weekender.exe" --batch "${endless[@]}" --out closed.exr &
-for _ in $(seq 30); do
-    sleep 1
-    console=$(xdotool search --name helper 2> /dev/null | tail -n 1)
-    [ -z "$console" ] || break
-done
-sleep 4
-xdotool windowactivate --sync "$console" key alt+F4
-wait %% 2> /dev/null
-case_of 'closing the console saves the film' 0 'samples' info closed.exr
+# ends EVENT NUMBER CODE: the program saves its film and ends with this code
+ends() {
+    windows "$work/helper.exe" event "$2" 4000 "$work/weekender.exe" --batch "${endless[@]}" --out "event-$2.exr"
+    [ $? = "$3" ]
+    report "$1 ends with $3" $?
+    case_of 'and saves the film' 0 'samples' info "event-$2.exr"
+}
+ends 'Ctrl-C' 0 130
+ends 'Ctrl-Break' 1 130
+ends 'closing the console' 2 129
+ends 'logging off' 5 143
+ends 'shutting down' 6 143
 
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+windows "$work/weekender.exe" &
+title() { xdotool getwindowname "$(xdotool search --name ' – Weekender' 2> /dev/null | tail -n 1)" 2> /dev/null; }
+for _ in $(seq 60); do
+    [ -z "$(title)" ] || break
+    sleep 1
+done
+sleep 8
+first=$(title)
+[ -n "$first" ]
+report "the window opens: $first" $?
+xdotool key Page_Up
+sleep 4
+[ "$(title)" != "$first" ]
+report "its stages can be turned: $(title)" $?
+xdotool key alt+F4
+wait %%
+report 'it closes' $?
+kept=$(echo "$WINEPREFIX"/drive_c/users/*/AppData/Local/weekender/autosave.exr)
+exists 'its film is kept' "$kept"
+rm -f "$kept"
+windows "$work/helper.exe" event 2 15000 "$work/weekender.exe"
+[ $? = 129 ]
+report 'it closes with its console' $?
+exists 'its film is kept' "$kept"
+
+summary

@@ -141,6 +141,8 @@ impl System {
                 Some(name) => (from.parent().unwrap_or(&from), name.to_string_lossy().into_owned()),
                 None => (from.as_path(), String::new()),
             };
+            // The system shows nothing where there is no folder, such as the usual one before the first picture.
+            let folder = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(folder);
             let endings = purpose.endings();
             let dialog = rfd::FileDialog::new()
                 .set_title(purpose.title())

@@ -4,7 +4,7 @@ use super::document::Document;
 use super::origin::Source;
 use crate::job::recipe::plain_name;
 use crate::job::render::RenderSettings;
-use crate::system::shell::{self, quoted};
+use crate::system::shell::Shell;
 use std::fmt::Write;
 
 impl Document {
@@ -16,7 +16,7 @@ impl Document {
         let mut line = String::from("weekender --batch");
         // Writing to a string cannot fail.
         let mut add = |flag: &str, value: &dyn std::fmt::Display| {
-            let _ = write!(line, " {flag}={}", quoted(&value.to_string()));
+            let _ = write!(line, " {flag}={}", Shell::HERE.quoted(&value.to_string()));
         };
         let mut repeats = false;
         match &self.origin.source {
@@ -83,7 +83,7 @@ impl Document {
             format!("--out={name}-frames"),
         ];
         let words = ["weekender", "--batch"].map(str::to_owned).into_iter().chain(flags);
-        Some((frames, shell::line(words)))
+        Some((frames, Shell::HERE.line(words)))
     }
 }
 
@@ -103,7 +103,7 @@ mod tests {
 
     /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
-        match parse(line.split_whitespace().map(Into::into)).unwrap() {
+        match parse(line.replace('"', "").split_whitespace().map(Into::into)).unwrap() {
             Request::Batch(options) => options.render.job.clone(),
             other => panic!("{line}: {other:?}"),
         }
@@ -154,7 +154,7 @@ mod tests {
         }
         std::fs::write(&path, file::to_toml(&recipe)).unwrap();
         let (frames, line) = document(&recipe).animation().unwrap();
-        match parse(line.split_whitespace().map(Into::into)).unwrap() {
+        match parse(line.replace('"', "").split_whitespace().map(Into::into)).unwrap() {
             Request::Frames(options) => {
                 assert_eq!(options.frames, 0..frames, "{line}");
                 assert_eq!((frames, &options.recipe.keyframes), (21, &recipe.keyframes), "{line}");
@@ -173,15 +173,6 @@ mod tests {
         document.checked = Document::new(Origin::of_stage(&Stage::ALL[0])).checked;
         let line = document.command_line(4, "cpu", None);
         assert!(line.starts_with("weekender --batch --scene=book-changed.toml --size="), "{line}");
-    }
-
-    #[test]
-    fn names_are_quoted_where_a_shell_needs_it() {
-        assert_eq!(quoted("a-b.toml"), "a-b.toml");
-        assert_eq!(quoted("13,2,3"), "13,2,3");
-        for name in ["my scene's.toml", "$HOME/a b", "a\"b", ""] {
-            assert_eq!(shlex::split(&quoted(name)), Some(vec![name.to_owned()]), "{name}");
-        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::progressive::describe::describe;
 use crate::system::console;
 use crate::system::failure::{FAILED, Failure};
 use crate::system::files::ShownPath;
+use crate::system::shell::Shell;
 use std::process::ExitCode;
 
 /// Merges or checks the parts.
@@ -87,7 +88,9 @@ fn remedy(plan: &Plan, lacking: &[(usize, String)], program: &str) -> Vec<String
     let parts: Vec<usize> = lacking.iter().map(|(part, _)| *part).collect();
     let commands = Commands::new(program, &plan.path.to_string_lossy(), &plan.manifest);
     let heading = format!("for what is missing (--array={} in Slurm):", ranges(&parts));
-    std::iter::once(heading).chain(parts.iter().map(|part| commands.part(&part.to_string()))).collect()
+    std::iter::once(heading)
+        .chain(parts.iter().map(|part| commands.part(Shell::HERE, &part.to_string())))
+        .collect()
 }
 
 /// Ascending numbers as Slurm writes them: `0,3-7,9`.

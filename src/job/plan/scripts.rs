@@ -2,7 +2,7 @@
 //! manifest and name it without a directory, so the directory can be moved.
 
 use super::manifest::{MANIFEST, Manifest};
-use crate::system::shell::{line, operand, quoted};
+use crate::system::shell::{Shell, operand};
 
 /// What `weekender plan` makes besides the plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -51,15 +51,15 @@ impl<'a> Commands<'a> {
     }
 
     /// The command line that renders a part. `part` is its number, or what stands for it in a script.
-    pub fn part(&self, part: &str) -> String {
-        let before = line([self.program, "render-part", &self.manifest, "--part"]);
-        let flags = self.flags.iter().map(|flag| format!(" {}", quoted(flag)));
+    pub fn part(&self, shell: Shell, part: &str) -> String {
+        let before = shell.line([self.program, "render-part", &self.manifest, "--part"]);
+        let flags = self.flags.iter().map(|flag| format!(" {}", shell.quoted(flag)));
         format!("{before} {part}{}", flags.collect::<String>())
     }
 
     /// The command line that merges the parts into `out`.
-    pub fn merge(&self, out: &str) -> String {
-        line([self.program, "merge", &self.manifest, "--out", &operand(out)])
+    pub fn merge(&self, shell: Shell, out: &str) -> String {
+        shell.line([self.program, "merge", &self.manifest, "--out", &operand(out)])
     }
 }
 
@@ -67,15 +67,15 @@ impl<'a> Commands<'a> {
 pub fn scripts(format: Format, manifest: &Manifest, program: &str) -> Vec<(&'static str, String)> {
     let commands = Commands::new(program, MANIFEST, manifest);
     let count = manifest.parts.len();
-    let merge = commands.merge(&manifest.result);
+    let merge = commands.merge(Shell::Posix, &manifest.result);
     let [part, merge] = match format {
-        Format::Parallel => [quoted(&commands.part("{}")).into_owned(), merge],
+        Format::Parallel => [Shell::Posix.quoted(&commands.part(Shell::Posix, "{}")).into_owned(), merge],
         Format::Make => {
             // make reads a doubled dollar sign as one.
-            let part = commands.part("\u{1}").replace('$', "$$").replace('\u{1}', "$@");
+            let part = commands.part(Shell::Posix, "\u{1}").replace('$', "$$").replace('\u{1}', "$@");
             [part, merge.replace('$', "$$")]
         }
-        _ => [commands.part("\"$SLURM_ARRAY_TASK_ID\""), merge],
+        _ => [commands.part(Shell::Posix, "\"$SLURM_ARRAY_TASK_ID\""), merge],
     };
     let parts = (0..count).map(|part| part.to_string()).collect::<Vec<_>>().join(" ");
     let last = (count - 1).to_string();

@@ -5,7 +5,7 @@ use super::kept_text;
 use crate::system::console;
 use crate::system::failure::FAILED;
 use crate::system::files::{state_directory, write_text};
-use crate::system::shell;
+use crate::system::shell::Shell;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::env;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -35,7 +35,7 @@ pub fn write_report() {
     let version = VERSION.get().map_or("unknown", String::as_str);
     let text = report(
         version,
-        &shell::line(env::args_os().map(|word| word.to_string_lossy().into_owned())),
+        &Shell::HERE.line(env::args_os().map(|word| word.to_string_lossy().into_owned())),
         &message,
         &kept_text(),
     );
