@@ -4,7 +4,7 @@
 
 use std::path::Path;
 use weekender::numbers::chart::{
-    Axis, Bar, BarChart, ChartError, Corner, Figure, LineChart, Look, Panel, Point, Series, save,
+    Axis, Bar, BarChart, ChartError, Figure, LineChart, Look, Panel, Point, Series, save,
 };
 
 const SIZE: [u32; 2] = [480, 360];
@@ -27,7 +27,6 @@ fn lines() -> Panel {
             series("independent", Look::Measured, |x| 0.1 / x.sqrt()),
             series("sobol", Look::Measured, |x| 0.05 / x.powf(0.7)),
         ],
-        legend: Some(Corner::UpperRight),
     })
 }
 
@@ -96,8 +95,7 @@ fn what_cannot_be_shown_is_left_out() {
         Series { name: "none".to_owned(), points: Vec::new(), look: Look::Guide },
     ];
     let axis = Axis::new("x");
-    let chart =
-        LineChart { title: String::new(), x: axis.clone(), y: axis, series, legend: Some(Corner::LowerLeft) };
+    let chart = LineChart { title: String::new(), x: axis.clone(), y: axis, series };
     save(&path, &figure(vec![Panel::Lines(chart)])).unwrap();
     let none = BarChart { title: String::new(), label: String::new(), bars: Vec::new() };
     save(&path, &figure(vec![Panel::Bars(none)])).unwrap();

@@ -2,7 +2,7 @@
 
 use super::super::machine::Machine;
 use super::figures::{BenchFigures, Kind, ScaleFigures, SceneFigures, Spread};
-use crate::numbers::chart::{Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Series};
+use crate::numbers::chart::{Axis, Bar, BarChart, Figure, LineChart, Look, Panel, Point, Series};
 
 /// Height of a bar's row, and of everything around the rows, points.
 const ROW_HEIGHT: u32 = 36;
@@ -53,13 +53,12 @@ fn scale(rows: &[ScaleFigures], about: String) -> Figure {
         let points = rows.iter().filter_map(|row| Some((row.spheres as f64, value(row)?)));
         Series::new(name, Look::Measured, points)
     };
-    let chart = |title: &str, unit: &str, series: Vec<Series>, legend| {
+    let chart = |title: &str, unit: &str, series: Vec<Series>| {
         Panel::Lines(LineChart {
             title: title.to_owned(),
             x: Axis::new("spheres"),
             y: Axis::new(unit),
             series,
-            legend,
         })
     };
     let build = series("prepared scene", &|row| Some(row.build_seconds));
@@ -86,9 +85,9 @@ fn scale(rows: &[ScaleFigures], about: String) -> Figure {
         size: [1350, 480],
         columns: 3,
         panels: vec![
-            chart("Time to build", "seconds", times, Some(Corner::UpperLeft)),
-            chart("Memory", "MiB", memory, Some(Corner::LowerRight)),
-            chart("Speed", "million paths per second", vec![speed], None),
+            chart("Time to build", "seconds", times),
+            chart("Memory", "MiB", memory),
+            chart("Speed", "million paths per second", vec![speed]),
         ],
     }
 }

@@ -3,9 +3,9 @@
 use super::axis::position;
 use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
 use super::{LineChart, Look, Point};
-use plotters::chart::SeriesAnno;
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
@@ -17,7 +17,9 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
         .ruler(points().flat_map(|point| [point.y].into_iter().chain(point.spread.into_iter().flatten())));
 
     let mut builder = ChartBuilder::on(area);
-    builder.margin(units.px(8.0)).margin_right(units.px(18.0));
+    let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
+    let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);
+    builder.margin(units.px(8.0)).margin_right(units.px(18.0 + 7.5 * longest as f64));
     builder.x_label_area_size(units.px(46.0)).y_label_area_size(units.px(64.0));
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, units.px(17.0), &INK));
@@ -36,14 +38,20 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
         .draw()?;
 
     let mut colors = 0;
+    let mut ends = Vec::new();
     for series in &chart.series {
         let at = |point: &Point| Some((position(point.x)?, position(point.y)?));
         let points: Vec<(f64, f64)> = series.points.iter().filter_map(at).collect();
-        match series.look {
+        // A law has its name at its beginning.
+        let end = if series.look == Look::Guide { points.first() } else { points.last() };
+        let end = end.filter(|_| !series.name.is_empty());
+        let end = end.map(|end| context.plotting_area().map_coordinate(end));
+        let style = match series.look {
             Look::Guide => {
                 let style = GUIDE.stroke_width(units.size(1.5));
                 let line = DashedLineSeries::new(points, units.px(7.0), units.px(5.0), style);
-                name(context.draw_series(line)?, &series.name, style, units);
+                context.draw_series(line)?;
+                style
             }
             Look::Measured => {
                 let color = color(colors);
@@ -59,31 +67,29 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
                 }
                 let style = color.filled().stroke_width(units.size(2.0));
                 let line = LineSeries::new(points, style).point_size(units.size(4.5));
-                name(context.draw_series(line)?, &series.name, style, units);
+                context.draw_series(line)?;
+                style
             }
+        };
+        ends.extend(end.map(|end| (series, end, style)));
+    }
+    // The names are at the ends of the lines; those that would overlap move apart.
+    let (left, top) = area.get_base_pixel();
+    ends.sort_by_key(|(_, (_, y), _)| *y);
+    let mut free = i32::MIN;
+    for (series, (x, y), style) in ends {
+        let (x, y) = (x - left, y - top);
+        let text = (FONT, units.px(14.0), &INK).into_text_style(area);
+        if series.look == Look::Guide {
+            let pos = Pos::new(HPos::Left, VPos::Bottom);
+            area.draw_text(&series.name, &text.pos(pos), (x, y - units.px(3.0)))?;
+            continue;
         }
+        let moved = y.max(free);
+        free = moved + units.px(17.0);
+        let at = (x + units.px(16.0), moved);
+        area.draw(&PathElement::new([(x + units.px(5.0), y), (at.0 - units.px(3.0), at.1)], style))?;
+        area.draw_text(&series.name, &text.pos(Pos::new(HPos::Left, VPos::Center)), at)?;
     }
-    let Some(corner) = chart.legend.clone() else { return Ok(()) };
-    context
-        .configure_series_labels()
-        .position(corner)
-        .margin(units.px(12.0))
-        .legend_area_size(units.px(34.0))
-        .label_font((FONT, units.px(14.0), &INK))
-        .background_style(WHITE.mix(0.9))
-        .border_style(GRID.stroke_width(units.size(1.0)))
-        .draw()
-}
-
-/// Adds a series to the legend if it has a name.
-fn name<'a, B: DrawingBackend + 'a>(
-    series: &mut SeriesAnno<'a, B>,
-    name: &str,
-    style: ShapeStyle,
-    units: Units,
-) {
-    if !name.is_empty() {
-        let length = units.px(26.0);
-        series.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + length, y)], style));
-    }
+    Ok(())
 }

@@ -382,7 +382,7 @@ pub static MISTAKES: [Mistake; 42] = [
         title: "every pixel uses the same random numbers",
         remedy: "seed the generator once, before the loops, not for each pixel",
         applies: |recipe| recipe.rules.antialiasing && has_bounces(recipe),
-        change: Change::InNoise(is_same_seed),
+        change: Change::InNoise(is_same_seed, &Change::Steps(|steps| steps.random = |_| 0)),
     },
 ];
 
