@@ -70,6 +70,14 @@ fn planted_mistakes_are_named() {
     }
 }
 
+/// With the rules of an earlier section, black glass looks like glass whose normals are not turned.
+#[test]
+fn mistakes_with_the_same_picture_are_both_named() {
+    let finding = judge(&mine("hollow-glass", "glass-black", 60, 3), None, |_| {}).unwrap();
+    let named = [finding.named(), finding.alike].map(|mistake| mistake.unwrap().id);
+    assert!(named.contains(&"glass-black"), "{named:?}");
+}
+
 /// Some mistake always fits slightly better than none, but no mistake turns one scene into another.
 #[test]
 fn other_scene_matches_no_mistake() {

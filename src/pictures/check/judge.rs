@@ -47,6 +47,8 @@ pub struct Finding {
     pub right: Compared,
     /// The likeliest mistake; `None` if the picture is right.
     pub mistake: Option<Compared>,
+    /// Another mistake that gives the same picture.
+    pub alike: Option<&'static Mistake>,
 }
 
 impl Finding {
@@ -123,7 +125,7 @@ impl<'a> Trial<'a> {
     }
 
     fn finding(self, mistake: Option<Compared>) -> Finding {
-        Finding { stage: self.stage, right: self.right, mistake }
+        Finding { stage: self.stage, right: self.right, mistake, alike: None }
     }
 
     /// The finding when blocks differ only by noise: looks for mistakes that blocks cannot show.
@@ -137,8 +139,8 @@ impl<'a> Trial<'a> {
         if let Some(found) = self.in_bytes() {
             return Ok(self.finding(Some(found)));
         }
-        let (mut pictures, mut best) = (all_mistakes(self.studio.recipe()), None);
-        for (samples, count) in COARSE.into_iter().zip([REFINED, 1]) {
+        let (mut pictures, mut ranked) = (all_mistakes(self.studio.recipe()), Vec::new());
+        for samples in COARSE {
             let mut compared = Vec::new();
             for hypothesis in pictures {
                 let expected = self.studio.render(&hypothesis, samples)?;
@@ -146,18 +148,22 @@ impl<'a> Trial<'a> {
             }
             compared.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
             compared.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
-            compared.truncate(count);
+            compared.truncate(REFINED);
             pictures = compared.iter().map(|found| found.hypothesis.clone()).collect();
-            best = compared.into_iter().next();
+            ranked = compared;
         }
-        let Some(best) = best else { return self.of_unexplained() };
+        let mut ranked = ranked.into_iter();
+        let Some(best) = ranked.next() else { return self.of_unexplained() };
         if best.hypothesis.mistake.is_some_and(Mistake::is_at_edges)
             && let Some(found) = at_edges(self.mine, &mut self.studio, &self.right, FINE)?
         {
             return Ok(self.finding(Some(found)));
         }
         if best.is_noise || best.misfit < EXPLAINED * self.right.misfit {
-            return Ok(self.finding(Some(best)));
+            let others = ranked.filter(|found| best.is_noise && found.is_noise);
+            let named = best.hypothesis.mistake.map(|mistake| mistake.id);
+            let alike = others.filter_map(|found| found.hypothesis.mistake).find(|it| Some(it.id) != named);
+            return Ok(Finding { alike, ..self.finding(Some(best)) });
         }
         self.of_unexplained()
     }
@@ -272,10 +278,11 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
             a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
         });
         if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
-            break;
+            return Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect());
         }
     }
-    Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect())
+    // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
+    Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
 }
 
 /// Root mean square difference of the thumbnails, display values.
