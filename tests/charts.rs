@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use weekender::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Point, Series, svg};
+use weekender::numbers::chart::{Axis, Figure, LineChart, Look, Point, Series, svg};
 
 fn series(name: &str, look: Look, law: impl Fn(f64) -> f64) -> Series {
     let point = |power: i32| {
@@ -13,13 +13,8 @@ fn series(name: &str, look: Look, law: impl Fn(f64) -> f64) -> Series {
 }
 
 fn figure(series: Vec<Series>) -> Figure {
-    let chart = LineChart {
-        title: "Error".to_owned(),
-        x: Axis::new("seconds"),
-        y: Axis::new("RMSE"),
-        series,
-        legend: Some(Corner::UpperRight),
-    };
+    let chart =
+        LineChart { title: "Error".to_owned(), x: Axis::new("seconds"), y: Axis::new("RMSE"), series };
     let (title, about) = ("A title".to_owned(), "and a line".to_owned());
     Figure { title, about, size: [480, 360], columns: 1, panels: vec![chart] }
 }

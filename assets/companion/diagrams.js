@@ -129,7 +129,7 @@ export const diagrams = {
     size: [560, 260],
     state: { o: [50, 200], d: [190, 135], far: 0 },
     handles: [handle("Origin of the ray", "o", [10, 10, 540, 240]), handle("Direction of the ray", "d", [10, 10, 540, 240])],
-    sliders: [slider("far", "Distance of the origin", 0, 4, 1, (x) => `${10 ** x} r`)],
+    sliders: [slider("far", "Distance of the origin", 0, 4, 1, (x) => (x ? `${10 ** x} r` : "as drawn"))],
     draw({ o, d, far }) {
       const C = [330, 120], r = 85, u = unit(minus(d, o)), f = minus(C, o), h = dot(u, f), m = at(o, h, u), l = minus(C, m);
       const disc = r * r - dot(l, l), s = Math.sqrt(Math.max(disc, 0)), ts = disc < 0 ? [] : [h - s, h + s];
@@ -292,7 +292,7 @@ export const diagrams = {
   fuzz: {
     title: "Fuzzy reflection",
     size: [560, 250],
-    state: { p: [130, 110], fuzz: 0.5 },
+    state: { p: [117, 135], fuzz: 0.5 },
     handles: [{
       label: "Incoming ray",
       get: (s) => s.p,
@@ -433,9 +433,14 @@ function startTimeline(figure) {
 }
 
 if (typeof document !== "undefined") {
-  for (const [name, diagram] of Object.entries(diagrams)) {
-    const figure = document.getElementById(`diagram-${name}`);
-    if (figure) start(figure, diagram);
-  }
-  document.querySelectorAll(".timeline").forEach(startTimeline);
+  // Each starts when the reader comes near.
+  const watcher = new IntersectionObserver((entries) => {
+    for (const { target } of entries.filter((entry) => entry.isIntersecting)) {
+      watcher.unobserve(target);
+      if (target.matches(".timeline")) startTimeline(target);
+      else start(target, diagrams[target.id.replace("diagram-", "")]);
+    }
+  }, { rootMargin: "1000px" });
+  const moving = [...document.querySelectorAll(".diagram")].filter(({ id }) => id.replace("diagram-", "") in diagrams);
+  [...moving, ...document.querySelectorAll(".timeline")].forEach((figure) => watcher.observe(figure));
 }

@@ -79,23 +79,26 @@
   }
 
   // The current chapter's sections are in the list, and the address follows the reader.
-  const headings = [...document.querySelectorAll(".chapter :is(h2, h3)[id]")];
-  const chapterOf = (heading) => heading?.closest(".chapter").querySelector("h2");
+  const sections = [...document.querySelectorAll(".chapter")];
+  const headingsOf = (section) => (section ? [...section.querySelectorAll(":is(h2, h3)[id]")] : []);
+  const hasPassed = (element) => element.getBoundingClientRect().top < innerHeight * 0.3;
   const point = (link, isCurrent) => {
     if (isCurrent) link.setAttribute("aria-current", "true");
     else link.removeAttribute("aria-current");
   };
-  let current;
+  let current, chapter;
   const mark = () => {
-    const passed = headings.findLast((heading) => heading.getBoundingClientRect().top < innerHeight * 0.3);
-    if (passed === current) return;
-    const chapter = chapterOf(passed);
-    if (chapter !== chapterOf(current) || current === undefined) {
+    // A chapter that is far away has no layout, so its headings are not asked.
+    const [first, ...others] = headingsOf(sections.findLast(hasPassed));
+    const passed = others.findLast(hasPassed) ?? first;
+    if (passed === current && current !== undefined) return;
+    if (first !== chapter || current === undefined) {
+      chapter = first;
       const link = links.get(chapter?.id);
       links.forEach((other) => point(other, other === link));
       details.querySelector("ol ul")?.remove();
       const inside = make("ul");
-      inside.append(...headings.filter((heading) => heading !== chapter && chapterOf(heading) === chapter).map(entry));
+      inside.append(...others.map(entry));
       if (inside.children.length) link?.after(inside);
       now.textContent = link ? link.textContent.trim() : "Chapters";
       if (hasRoom.matches) link?.scrollIntoView({ block: "nearest" });
@@ -113,12 +116,15 @@
     waiting = setTimeout(mark, 150);
   }, { passive: true });
   mark();
+  // A remembered distance from the top would be wrong, as chapters have no height before they are near.
+  history.scrollRestoration = "manual";
+  addEventListener("load", () => document.getElementById(location.hash.slice(1))?.scrollIntoView());
   // [ and ] lead to the chapter before and after.
   addEventListener("keydown", (event) => {
     const step = { "[": -1, "]": 1 }[event.key];
     if (!step || event.ctrlKey || event.metaKey || event.target.matches("input")) return;
     const chapters = [...links.keys()];
-    document.getElementById(chapters[Math.max(0, chapters.indexOf(chapterOf(current)?.id) + step)])?.scrollIntoView();
+    document.getElementById(chapters[Math.max(0, chapters.indexOf(chapter?.id) + step)])?.scrollIntoView();
   });
 })();
 

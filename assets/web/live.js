@@ -142,22 +142,32 @@ function element(name, properties = {}, ...children) {
   return made;
 }
 
+function toggle(textContent, onclick) {
+  const button = element("button", { type: "button", textContent, onclick });
+  button.setAttribute("aria-pressed", "false");
+  return button;
+}
+
+// Puts a panel's picture into a frame, where others can lie over it.
+function framed(root) {
+  const still = root.querySelector("img"), frame = element("div", { className: "live-frame" });
+  still.replaceWith(frame);
+  frame.append(still);
+  return [still, frame];
+}
+
 // A figure's picture with its switch and sliders.
 class Panel {
   constructor(root, stage) {
-    Object.assign(this, { root, stage, session: null, linked: [this], isInView: true });
-    const still = root.querySelector("img");
-    this.canvas = element("canvas", { className: "live-canvas", hidden: true });
+    const [still, frame] = framed(root);
+    Object.assign(this, { root, stage, session: null, linked: [this], isInView: true, inputs: [] });
+    this.canvas = element("canvas", { className: `live-canvas ${still.className}`, hidden: true });
     this.canvas.setAttribute("role", stage.has_rays ? "application" : "img");
     this.canvas.setAttribute("aria-label", still.alt);
-    const { imageRendering, borderRadius } = getComputedStyle(still);
-    Object.assign(this.canvas.style, { imageRendering, borderRadius });
     this.hint = element("span", { className: "live-hint", textContent: "drag to turn", hidden: true });
-    this.frame = element("div", { className: "live-frame" });
-    still.replaceWith(this.frame);
-    this.frame.append(still, this.canvas, this.hint);
+    frame.append(this.canvas, this.hint);
 
-    this.button = this.toggle("Run", () => (this.session ? this.stop("") : this.start()));
+    this.button = toggle("Run", () => (this.session ? this.stop("") : this.start()));
     const button = (textContent, onclick) => element("button", { type: "button", textContent, onclick });
     this.adjust = button("Adjust", () => this.open(this.sliders.hidden));
     this.reset = button("Reset", () => {
@@ -168,7 +178,6 @@ class Panel {
     this.said = element("span", { className: "live-told" });
     this.said.setAttribute("role", "status");
     this.sliders = element("div", { className: "live-sliders", hidden: true });
-    this.inputs = stage.sliders.map((slider) => this.slider(slider));
     const hint =
       "Drag to turn, pinch to come closer. Or click the picture, then use the wheel, the arrow keys, plus and minus.";
     this.sliders.append(element("p", { textContent: hint }));
@@ -176,19 +185,13 @@ class Panel {
     root.append(element("div", { className: "live-controls" }, this.bar, this.sliders));
     this.open(false);
     this.update();
-    if (!navigator.gpu) this.bar.hidden = true;
+    this.button.hidden = this.bar.hidden = !navigator.gpu;
     if (stage.has_rays) this.listen();
     const watcher = new IntersectionObserver((entries) => {
       this.isInView = entries.at(-1).isIntersecting;
       this.session?.wake();
     });
-    watcher.observe(this.frame);
-  }
-
-  toggle(text, onclick) {
-    const button = element("button", { type: "button", textContent: text, onclick });
-    button.setAttribute("aria-pressed", "false");
-    return button;
+    watcher.observe(frame);
   }
 
   slider(slider) {
@@ -213,7 +216,7 @@ class Panel {
     const isLive = this.session !== null;
     this.button.setAttribute("aria-pressed", isLive);
     this.adjust.hidden = !isLive || this.inputs.length === 0;
-    this.reset.hidden = !isLive || this.inputs.length === 0;
+    this.reset.hidden = this.adjust.hidden;
   }
 
   open(isOpen) {
@@ -222,9 +225,12 @@ class Panel {
   }
 
   start() {
+    const { stage } = this;
+    stage.buffers = stage.buffers.map((buffer) => (typeof buffer === "string" ? decoded(buffer) : buffer));
+    if (this.inputs.length === 0) this.inputs = stage.sliders.map((slider) => this.slider(slider));
     this.said.textContent = "";
     this.tell("starting");
-    const session = (this.session = new Session(this, this.stage));
+    const session = (this.session = new Session(this, stage));
     this.update();
     session.run().catch(async (error) => {
       // If the device was lost, all its work fails, often before the loss is known; that message is the better one.
@@ -330,43 +336,51 @@ class Panel {
 }
 
 // In a figure of two pictures of one shape, a button lays the second over the first, as far as a slider says. A drag
-// then turns both.
-function addWipe(root, [first, second]) {
-  const { stage: a } = first, { stage: b } = second;
-  if (a.width * b.height !== a.height * b.width) return;
+// then turns both, if they are live.
+function addWipe(root, live) {
+  const [first, second] = root.querySelectorAll(".panel");
+  const shape = (panel) => ["width", "height"].map((side) => panel.querySelector("img").getAttribute(side));
+  const [[aWidth, aHeight], [bWidth, bHeight]] = [first, second].map(shape);
+  if (aWidth * bHeight !== aHeight * bWidth) return;
   const slider = element("input", { type: "range", className: "live-wipe", min: 0, max: 100, step: 0.5, value: 50 });
   slider.setAttribute("aria-label", "Wipe between the two pictures");
   slider.hidden = true;
   slider.oninput = () => root.style.setProperty("--live-wipe", `${slider.value}%`);
-  const button = second.toggle("Wipe", () => {
+  const button = toggle("Wipe", () => {
     const isOn = slider.hidden;
     slider.hidden = !isOn;
     slider.oninput();
     root.classList.toggle("live-wiping", isOn);
     button.setAttribute("aria-pressed", isOn);
-    for (const panel of [first, second]) panel.linked = isOn ? [first, second] : [panel];
+    for (const panel of live) panel.linked = isOn ? live : [panel];
     // A still beside a picture that was turned would show another view.
-    const running = [first, second].find((panel) => panel.session);
+    const running = live.find((panel) => panel.session);
     if (!isOn || !running) return;
-    for (const panel of [first, second]) {
+    for (const panel of live) {
       if (!panel.session) panel.start();
       const { from, at, up } = running.session.settings.camera;
       if (panel !== running) panel.session.move((camera) => ({ ...camera, from, at, up }));
     }
   });
-  second.button.after(button);
+  let bar = second.querySelector(".live-bar");
+  if (!bar) {
+    for (const panel of [first, second]) framed(panel);
+    bar = element("div", { className: "live-bar" });
+    second.append(element("div", { className: "live-controls" }, bar));
+  }
+  bar.hidden = false;
+  bar.insertBefore(button, bar.children[1] ?? null);
   root.append(slider);
 }
 
 function start() {
   use(JSON.parse(document.getElementById("live-data").textContent));
-  for (const stage of Object.values(data.stages)) stage.buffers = stage.buffers.map(decoded);
   for (const root of document.querySelectorAll(".panels")) {
     const made = [...root.querySelectorAll(".panel[data-stage]")]
       .filter((panel) => data.stages[panel.dataset.stage])
       .map((panel) => (panel.live = new Panel(panel, data.stages[panel.dataset.stage])));
     panels.push(...made);
-    if (made.length === 2) addWipe(root, made);
+    if (root.querySelectorAll(".panel").length === 2) addWipe(root, made);
   }
   if (!navigator.gpu && panels.length > 0) {
     const textContent = "In a browser with WebGPU, the pictures of this page can be turned and changed.";

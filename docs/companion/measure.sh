@@ -1,14 +1,29 @@
 #!/bin/sh
-# Measures what the companion shows, in one run on one machine; a graphics card is not needed. Takes about ten minutes.
-# Close other programs first. Then set machine and date in measured.toml.
-# Usage: docs/companion/measure.sh [PROGRAM]
-set -e
+# Measures what the companion shows, in one run on one machine, and notes machine and date in measured.toml. A graphics
+# card is not needed, but a processor with AVX-512 is, because sentences quote rows of that level. Takes less than
+# ten minutes on two cores; close other programs first. TRY=1 tries it in a minute, with numbers that mean nothing.
+# Usage: cargo build --release --bins --example mappings && docs/companion/measure.sh
+set -eu
 program=${1:-target/release/weekender}
-out=docs/companion/measured
+mappings=$(dirname "$program")/examples/mappings
+texts=docs/companion
+out=$texts/measured
 report=$(mktemp -d)
-"$program" bench --runs 3 --run-limit 1 --json $out/speed.json
-"$program" report --out "$report" --backends cpu,scalar,c89 --seeds 4 --time-limit 4
-cp "$report"/report.json $out/error.json
-rm -r "$report"
-cargo run --release --example mappings -- gpu samples=64 runs=5 > $out/mappings.json
-cargo run --release --example mappings -- cpu samples=128 runs=9 > $out/refill.json
+trap 'rm -r "$report"' EXIT
+bench="--runs 3 --run-limit 1" errors="--seeds 4 --time-limit 4" gpu="samples=64 runs=5" cpu="samples=128 runs=9"
+if [ -n "${TRY:-}" ]; then
+    bench="--runs 1 --run-limit .05" errors="--seeds 2 --time-limit .2 --reference-samples 64"
+    gpu="samples=64 runs=1" cpu="samples=64 runs=1"
+fi
+# The options are words of their own.
+# shellcheck disable=SC2086
+{
+    "$program" bench $bench --json "$report"/speed.json
+    "$program" report --out "$report" --backends cpu,scalar,c89 $errors
+    "$mappings" gpu $gpu > "$report"/mappings.json
+    "$mappings" cpu $cpu > "$report"/refill.json
+}
+for name in speed mappings refill; do mv "$report/$name.json" "$out"; done
+mv "$report"/report.json $out/error.json
+machine="$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1), $(nproc) cores"
+sed -i "s/^date = .*/date = \"$(date +%F)\"/; s/^machine = .*/machine = \"$machine\"/" $texts/measured.toml

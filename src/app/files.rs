@@ -179,8 +179,8 @@ impl Files {
         self.companion_stop = Some(Arc::clone(&interrupt));
         let options = CompanionOptions {
             out,
-            bench: None,
             source: None,
+            watch: false,
             quick: is_quick,
             progress: ProgressChoice::Off,
             backend: BackendChoice::Cpu(CpuOptions::default()),

@@ -66,12 +66,12 @@ pub struct CompanionOptions {
     /// Write index.html and its figures to this directory
     #[arg(long, value_name = "DIRECTORY")]
     pub out: PathBuf,
-    /// Show the figures of this benchmark, made by weekender bench --json, instead of those of the release machine
-    #[arg(long, value_name = "FILE.json")]
-    pub bench: Option<PathBuf>,
     /// Read texts and sources from this checkout instead of the copies in the program, to see a changed text at once
     #[arg(long, value_name = "DIRECTORY")]
     pub source: Option<PathBuf>,
+    /// Write the page again when a file of --source changes, and reload it in the browser, until Ctrl-C
+    #[arg(long, requires = "source")]
+    pub watch: bool,
     /// Small figures with some noise, within a minute; finished full ones are kept
     #[arg(long)]
     pub quick: bool,

@@ -30,6 +30,12 @@ for (const width of [400, 800, 1280, 1920]) {
 }
 await page.setViewportSize({ width: 1280, height: 900 });
 
+// Diagrams start when the reader comes near.
+for (const figure of await page.locator("figure:is(.diagram, .timeline)").all()) {
+  await figure.scrollIntoViewIfNeeded();
+  await page.waitForTimeout(100);
+}
+
 // Each handle is dragged and moved by keys, each slider is set: the reading must change.
 for (const figure of await page.locator("figure:has(.reading)").all()) {
   const reading = figure.locator(".reading"), id = await figure.getAttribute("id");
@@ -41,6 +47,8 @@ for (const figure of await page.locator("figure:has(.reading)").all()) {
   for (const knob of await figure.locator(".knob").all()) {
     const name = await knob.getAttribute("aria-label");
     await knob.scrollIntoViewIfNeeded();
+    // Chapters that come near get their height, and the page moves until then.
+    await page.waitForTimeout(200);
     await changes(`drag ${name}`, async () => {
       const { x, y, width } = await knob.boundingBox();
       await page.mouse.move(x + width / 2, y + width / 2);
@@ -61,6 +69,11 @@ for (const figure of await page.locator("figure:has(.reading)").all()) {
   }
 }
 seen.diagrams = await page.locator("figure:has(.reading)").count();
+
+// Two still pictures can be wiped, too.
+const pair = page.locator("[id^=denoised-]");
+await pair.getByRole("button", { name: "Wipe" }).click();
+if ((await pair.locator(".live-wiping").count()) !== 1) seen.still.push("the wipe of a denoised picture");
 
 // Each link that sets a picture: the sliders then have the values.
 for (const link of await page.locator("a.try").all()) {

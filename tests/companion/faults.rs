@@ -51,7 +51,7 @@ fn chapter_errors_name_line() {
         ("{{figure red-sphere}}", "on the page already"),
         ("{{code\nsrc/lib.rs: mod nothing\n}}", "no line begins with \"mod nothing\""),
         ("{{code\nsrc/nothing.rs: fn a\n}}", "src/nothing.rs"),
-        ("{{mistakes sky\nno-such\n}}", "no mistake \"no-such\""),
+        ("{{mistakes sky\nno-such\n}}", "can have no mistake \"no-such\""),
         ("{{value 2 speed/no-such}}", "speed/no-such is no number"),
         ("[x](live:no-such?fuzz=1)", "no figure shows the stage \"no-such\""),
         ("{{table no-such}}", "no measurement \"no-such\""),

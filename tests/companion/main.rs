@@ -56,10 +56,10 @@ fn page_is_valid_small_and_rendered_once() {
         let files = std::fs::read_dir(directory.join(folder)).unwrap();
         files.map(|file| file.unwrap().metadata().unwrap().len()).sum()
     };
-    let bytes = size("figures") + size("figures/mistakes");
+    let bytes = size("figures") + size("figures/more");
     assert!(PAGE.html.len() as u64 + bytes < SIZE_LIMIT, "{} + {bytes} bytes", PAGE.html.len());
     let again = companion(directory, &[]);
-    assert!(text(&again.stdout).starts_with("0 figures rendered"), "{}", text(&again.stdout));
+    assert!(text(&again.stdout).starts_with("0 pictures rendered"), "{}", text(&again.stdout));
 }
 
 #[test]
@@ -109,27 +109,6 @@ fn page_is_complete_and_self_contained() {
     }
 }
 
-#[test]
-fn bench_flag_replaces_stored_benchmark() {
-    let directory = TempDir::new().unwrap();
-    let kept = checkout().join("docs/companion/measured/speed.json");
-    let own =
-        std::fs::read_to_string(kept).unwrap().replace("\"processor\": \"", "\"processor\": \"Reader's ");
-    let file = directory.path().join("own.json");
-    std::fs::write(&file, own).unwrap();
-    // Reuses the stills of the other page.
-    let output = companion(PAGE.directory.path(), &["--bench", file.to_str().unwrap()]);
-    assert!(output.status.success(), "{}", text(&output.stderr));
-    let html = std::fs::read_to_string(PAGE.directory.path().join("index.html")).unwrap();
-    assert!(html.contains("Reader's "), "the processor's name");
-
-    std::fs::write(&file, "{}").unwrap();
-    let refused = companion(&directory.path().join("out"), &["--bench", file.to_str().unwrap()]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(text(&refused.stderr).contains("weekender bench --json"), "{}", text(&refused.stderr));
-    assert!(!directory.path().join("out").exists());
-}
-
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_page_and_tells_how_to_resume() {
@@ -146,6 +125,6 @@ fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     assert!(signalled.success());
     said.read_to_string(&mut line).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");
-    assert!(line.contains("figures missing; run the same command again to go on"), "{line}");
+    assert!(line.contains("pictures missing; run the same command again to go on"), "{line}");
     assert!(directory.path().join("index.html").exists());
 }

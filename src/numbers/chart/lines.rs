@@ -3,9 +3,9 @@
 use super::axis::position;
 use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, color};
 use super::{LineChart, Look, Point};
-use plotters::chart::SeriesAnno;
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
@@ -17,7 +17,9 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) 
         .ruler(points().flat_map(|point| [point.y].into_iter().chain(point.spread.into_iter().flatten())));
 
     let mut builder = ChartBuilder::on(area);
-    builder.margin(8).margin_right(18);
+    let measured = chart.series.iter().filter(|series| series.look == Look::Measured);
+    let longest = measured.map(|series| series.name.chars().count()).max().unwrap_or(0);
+    builder.margin(8).margin_right(18 + 15 * longest as i32 / 2);
     builder.x_label_area_size(46).y_label_area_size(64);
     if !chart.title.is_empty() {
         builder.caption(&chart.title, (FONT, 17, &INK));
@@ -36,14 +38,19 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) 
         .draw()?;
 
     let mut colors = 0;
+    let mut ends = Vec::new();
     for series in &chart.series {
         let at = |point: &Point| Some((position(point.x)?, position(point.y)?));
         let points: Vec<(f64, f64)> = series.points.iter().filter_map(at).collect();
-        match series.look {
+        // A law has its name at its beginning.
+        let end = if series.look == Look::Guide { points.first() } else { points.last() };
+        let end = end.filter(|_| !series.name.is_empty());
+        let end = end.map(|end| context.plotting_area().map_coordinate(end));
+        let style = match series.look {
             Look::Guide => {
                 let style = GUIDE.stroke_width(2);
-                let line = DashedLineSeries::new(points, 7, 5, style);
-                name(context.draw_series(line)?, &series.name, style);
+                context.draw_series(DashedLineSeries::new(points, 7, 5, style))?;
+                style
             }
             Look::Measured => {
                 let color = color(colors);
@@ -58,27 +65,29 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) 
                     context.draw_series([Polygon::new(band, color.mix(0.22).filled())])?;
                 }
                 let style = color.filled().stroke_width(2);
-                let line = LineSeries::new(points, style).point_size(5);
-                name(context.draw_series(line)?, &series.name, style);
+                context.draw_series(LineSeries::new(points, style).point_size(5))?;
+                style
             }
+        };
+        ends.extend(end.map(|end| (series, end, style)));
+    }
+    // The names are at the ends of the lines; those that would overlap move apart.
+    let (left, top) = area.get_base_pixel();
+    ends.sort_by_key(|(_, (_, y), _)| *y);
+    let mut free = i32::MIN;
+    for (series, (x, y), style) in ends {
+        let (x, y) = (x - left, y - top);
+        let text = (FONT, 14, &INK).into_text_style(area);
+        if series.look == Look::Guide {
+            let pos = Pos::new(HPos::Left, VPos::Bottom);
+            area.draw_text(&series.name, &text.pos(pos), (x, y - 3))?;
+            continue;
         }
+        let moved = y.max(free);
+        free = moved + 17;
+        let at = (x + 16, moved);
+        area.draw(&PathElement::new([(x + 5, y), (at.0 - 3, at.1)], style))?;
+        area.draw_text(&series.name, &text.pos(Pos::new(HPos::Left, VPos::Center)), at)?;
     }
-    let Some(corner) = chart.legend.clone() else { return Ok(()) };
-    context
-        .configure_series_labels()
-        .position(corner)
-        .margin(12)
-        .legend_area_size(34)
-        .label_font((FONT, 14, &INK))
-        .background_style(WHITE.mix(0.9))
-        .border_style(GRID.stroke_width(1))
-        .draw()
-}
-
-/// Adds a series to the legend if it has a name.
-fn name<'a, B: DrawingBackend + 'a>(series: &mut SeriesAnno<'a, B>, name: &str, style: ShapeStyle) {
-    if !name.is_empty() {
-        let length = 26;
-        series.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + length, y)], style));
-    }
+    Ok(())
 }

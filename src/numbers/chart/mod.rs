@@ -12,7 +12,6 @@ mod style;
 pub use axis::Axis;
 pub use file::svg;
 pub use page::{UNTITLED_TOP, page_svg};
-pub use plotters::chart::SeriesLabelPosition as Corner;
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,15 +34,14 @@ pub struct LineChart {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// Back to front. Unnamed series are not in the legend.
+    /// Back to front.
     pub series: Vec<Series>,
-    /// `None` for no legend.
-    pub legend: Option<Corner>,
 }
 
 /// Points drawn as one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
+    /// Shown at the end of the line; may be empty.
     pub name: String,
     /// In the order they are joined. Points that an axis cannot show are left out.
     pub points: Vec<Point>,

@@ -54,7 +54,6 @@ mod tests {
             x: Axis::new("x"),
             y: Axis::new("y"),
             series: vec![series("a", Look::Measured), series("b", Look::Guide)],
-            legend: Some(super::super::Corner::UpperLeft),
         };
         let figure = Figure {
             title: "Title".to_owned(),

@@ -30,8 +30,6 @@ pub struct Facts {
     short: Option<String>,
     /// Number of the book's chapter.
     pub book: Option<String>,
-    /// Heading of the book's chapter.
-    pub book_title: Option<String>,
     /// Symbols of formulas and names in code, with the number of their colour.
     #[serde(default)]
     pub colours: BTreeMap<String, u8>,
@@ -43,7 +41,7 @@ const FIRST_BEYOND_BOOK: u8 = 20;
 impl Chapter {
     /// Reads all chapters, by number.
     pub fn read_all(library: &Library) -> Result<Vec<Chapter>, Fault> {
-        library.chapters()?.iter().map(|path| Chapter::parse(path, &library.read(path)?)).collect()
+        Library::chapters().map(|path| Chapter::parse(path, &library.read(path)?)).collect()
     }
 
     pub fn short(&self) -> &str {
@@ -95,10 +93,10 @@ mod tests {
 
     #[test]
     fn a_chapter_has_facts_and_text() {
-        let text = "+++\ntitle = \"Normals\"\nbook = \"6\"\nbook_title = \"Surface Normals\"\n+++\n\nText\n";
+        let text = "+++\ntitle = \"Normals\"\nbook = \"6\"\n+++\n\nText\n";
         let chapter = Chapter::parse(FILE, text).unwrap();
         assert_eq!((chapter.number, chapter.id.as_str(), chapter.short()), (6, "normals", "Normals"));
-        assert_eq!((chapter.body.as_str(), chapter.lines_before), ("\nText\n", 5));
+        assert_eq!((chapter.body.as_str(), chapter.lines_before), ("\nText\n", 4));
         assert_eq!(chapter.shown_number().as_deref(), Some("6"));
         let shown = |number, book: Option<&str>| {
             let facts = Facts { book: book.map(str::to_owned), ..chapter.facts.clone() };

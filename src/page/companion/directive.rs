@@ -2,7 +2,7 @@
 
 use super::excerpt::{self, Excerpt};
 use super::library::FOLDER;
-use super::mistakes;
+use super::pictures;
 use super::prose::Place;
 use super::site::{Site, Uses};
 use super::timeline;
@@ -13,13 +13,21 @@ use anyhow::{Context, Result, bail};
 use maud::{Markup, PreEscaped, html};
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
-const KNOWN: &str = "figure ID, code, mistakes STAGE, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
+const KNOWN: &str = "figure ID, code, mistakes STAGE, limits STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
 /// Marks the glossary's place until all chapters are rendered.
 pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
 
 /// Marks the references' place.
 pub const REFERENCES_MARK: &str = "<!-- references -->";
+
+/// Marks the place of a figure's number.
+pub const NUMBER_MARK: &str = "<!-- number -->";
+
+/// The caption of a figure that has a number.
+pub fn numbered(caption: &Markup) -> Markup {
+    html! { figcaption { (PreEscaped(NUMBER_MARK)) (caption) } }
+}
 
 /// Replaces apostrophes by typographic ones.
 pub fn typographic(text: &str) -> String {
@@ -39,7 +47,13 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["figure", id] => figure(id, caption()?, None, uses),
         ["figure", id, "crop", crop @ ..] => figure(id, caption()?, Some(&crop.join(" ")), uses),
         ["code"] => code(site, place, more),
-        ["mistakes", stage] => mistakes::strip(stage, more, uses),
+        ["mistakes", stage] => pictures::mistakes(stage, more, uses),
+        ["limits", stage] => pictures::limits(stage, more, uses),
+        ["denoised", stage, samples] => {
+            let caption = caption()?.context("a figure of denoising needs a caption")?;
+            let panels = pictures::denoised(stage, samples, uses)?;
+            Ok(html! { figure .figure .wide id={ "denoised-" (stage) } { (panels) (numbered(&caption)) } })
+        }
         ["table", name] => site.measured.table(name),
         ["chart", name] => site.measured.chart(name),
         ["diagram", name] => diagram(site, name, caption()?),
@@ -84,10 +98,10 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<&str>, uses: &mut Uses
             div .panels .{ "of-" (figure.panels.len()) } {
                 @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, false)) }
             }
-            figcaption {
+            (numbered(&html! {
                 strong { (typographic(&figure.title)) "." } " "
                 (caption.unwrap_or_else(|| html! { (typographic(&figure.caption)) }))
-            }
+            }))
         }
     })
 }
@@ -138,7 +152,7 @@ fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     Ok(html! {
         figure .diagram id={ "diagram-" (name) } {
             div .scroll { (PreEscaped(text[start..].trim())) }
-            @if let Some(caption) = caption { figcaption { (caption) } }
+            (numbered(&caption.unwrap_or_default()))
         }
     })
 }

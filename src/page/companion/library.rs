@@ -5,8 +5,8 @@ use crate::system::files;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::DirEntry;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::time::SystemTime;
 use toml::Spanned;
 
 /// Reads project files by their paths in the checkout.
@@ -96,6 +96,12 @@ impl Library {
         content.map_err(|message| Fault::new(path, 0, message))
     }
 
+    /// When the files were last changed; `None` for those that are not there.
+    pub fn stamps(&self) -> Vec<Option<SystemTime>> {
+        let Library::Checkout(directory) = self else { return Vec::new() };
+        FILES.iter().map(|(path, _)| directory.join(path).metadata().ok()?.modified().ok()).collect()
+    }
+
     pub fn toml<T: DeserializeOwned>(&self, path: &str) -> Result<T, Fault> {
         let text = self.read(path)?;
         toml::from_str(&text).map_err(|error| {
@@ -118,27 +124,9 @@ impl Library {
     }
 
     /// Paths of the chapters, ascending.
-    pub fn chapters(&self) -> Result<Vec<String>, Fault> {
-        let mut chapters: Vec<String> = match self {
-            Library::Embedded => FILES.iter().map(|(path, _)| (*path).to_owned()).collect(),
-            Library::Checkout(directory) => std::fs::read_dir(directory.join(FOLDER))
-                .and_then(|entries| {
-                    let path = |entry: DirEntry| format!("{FOLDER}/{}", entry.file_name().to_string_lossy());
-                    entries.map(|entry| entry.map(path)).collect()
-                })
-                .map_err(|error| Fault::new(FOLDER, 0, error))?,
-        };
-        chapters.retain(|path| is_chapter(path));
-        chapters.sort();
-        Ok(chapters)
+    pub fn chapters() -> impl Iterator<Item = &'static str> {
+        FILES.iter().map(|(path, _)| *path).filter(|path| path.starts_with(FOLDER) && path.ends_with(".md"))
     }
-}
-
-/// Whether this is `docs/companion/NN-name.md`.
-fn is_chapter(path: &str) -> bool {
-    let name = Path::new(path).strip_prefix(FOLDER).ok().and_then(Path::to_str).unwrap_or_default();
-    let number = name.split('-').next().unwrap_or_default();
-    name.ends_with(".md") && !name.contains('/') && number.len() == 2 && number.parse::<u8>().is_ok()
 }
 
 #[cfg(test)]
@@ -166,14 +154,12 @@ mod tests {
             );
         }
         assert_eq!(embedded, found, "left: FILES in library.rs; right: {FOLDER}");
-        let library = Library::Checkout(checkout());
-        assert_eq!(library.chapters().unwrap(), Library::Embedded.chapters().unwrap());
     }
 
     #[test]
     fn sources_that_chapters_cite_exist() {
-        for path in Library::Embedded.chapters().unwrap() {
-            let text = Library::Embedded.read(&path).unwrap();
+        for path in Library::chapters() {
+            let text = Library::Embedded.read(path).unwrap();
             for cited in text.split("](source:").skip(1) {
                 let cited = cited.split(')').next().unwrap();
                 assert!(checkout().join(cited).exists(), "{path}: {cited}");

@@ -11,8 +11,8 @@ mod formula;
 mod highlight;
 mod library;
 mod measured;
-mod mistakes;
 mod page;
+mod pictures;
 mod prose;
 mod reference;
 mod section;
@@ -24,24 +24,58 @@ pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
 use crate::page::gallery::{self, Order, Quality};
+use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{self, check_page, write_text};
+use crate::system::files::{check_page, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context, Result};
 use library::Library;
 use page::Page;
 use site::Site;
 use std::process::ExitCode;
+use std::thread::sleep;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Largest JSON of `weekender bench` read, bytes.
-const BENCH_LIMIT: u64 = 16 << 20;
+/// How often `--watch` looks for changes.
+const POLL_INTERVAL: Duration = Duration::from_millis(300);
+
+/// Reloads the page when `build.js` tells of another build. A page from disk may load scripts but not fetch files.
+const RELOAD: &str = "<script>
+function built(build) { if (build !== BUILD) location.reload(); }
+setInterval(() => {
+  const script = document.createElement(\"script\");
+  script.src = `build.js?${Date.now()}`;
+  script.onload = () => script.remove();
+  document.head.append(script);
+}, 1000);
+</script>
+";
 
 /// Writes the page and renders the stills that changed. [`Failure::Input`] if nothing was written;
 /// [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
 pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let index = options.out.join("index.html");
-    write(options, &interrupt)?.report("figure", &index, &interrupt)
+    let library = library(options);
+    let mut stamps = library.stamps();
+    let code = write(options, &interrupt)?.report(&index, &interrupt)?;
+    while options.watch && !interrupt.is_set() {
+        sleep(POLL_INTERVAL);
+        let now = library.stamps();
+        if now != stamps {
+            stamps = now;
+            match write(options, &interrupt) {
+                Ok(_) => console::note(&format!("rebuilt {}", index.display())),
+                // The author corrects the text and saves again.
+                Err(failure) => drop(failure.report()),
+            }
+        }
+    }
+    Ok(if interrupt.is_set() { interrupt.exit_code() } else { code })
+}
+
+fn library(options: &CompanionOptions) -> Library {
+    options.source.clone().map_or(Library::Embedded, Library::Checkout)
 }
 
 /// Writes the page and renders the stills that changed, until `interrupt` is set.
@@ -57,7 +91,9 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<galler
     let index = out.join("index.html");
     check_page(&index).map_err(Failure::input)?;
     // Write the page first, so that it can be read while its figures are rendered.
-    write_text(&index, &page.html).map_err(Failure::run)?;
+    let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
+    let reload = if options.watch { RELOAD.replace("BUILD", &build.to_string()) } else { String::new() };
+    write_text(&index, &(page.html + &reload)).map_err(Failure::run)?;
     let order = Order {
         directory: &out.join("figures"),
         stages: &page.stages,
@@ -66,26 +102,22 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<galler
         progress: options.progress,
         prints_stills: false,
     };
-    let pictures = out.join("figures/mistakes");
+    let pictures = out.join(pictures::FOLDER);
     std::fs::create_dir_all(&pictures)
         .with_context(|| format!("cannot create the directory {}", pictures.display()))
         .map_err(Failure::Run)?;
-    for picture in page.mistakes.iter().take_while(|_| !interrupt.is_set()) {
+    for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
         picture.render(out).map_err(Failure::Run)?;
     }
-    gallery::render(&order, interrupt)
+    let outcome = gallery::render(&order, interrupt)?;
+    if options.watch {
+        write_text(&out.join("build.js"), &format!("built({build});\n")).map_err(Failure::run)?;
+    }
+    Ok(outcome)
 }
 
 fn build(options: &CompanionOptions) -> Result<Page> {
-    let library = options.source.clone().map_or(Library::Embedded, Library::Checkout);
-    let mut site = Site::read(&library)?;
-    if let Some(path) = &options.bench {
-        let bytes = files::read(path, "the JSON of a benchmark", BENCH_LIMIT)?;
-        site.measured
-            .set_bench(String::from_utf8_lossy(&bytes).into_owned())
-            .context("the file of --bench")?;
-    }
-    page::render(&site)
+    page::render(&Site::read(&library(options))?)
 }
 
 #[cfg(test)]

@@ -1,10 +1,9 @@
 //! The page around the chapters.
 
 use super::back_matter;
-use super::chapter::Chapter;
 use super::directive;
 use super::fault::Fault;
-use super::mistakes::Thumbnail;
+use super::pictures::Picture;
 use super::prose;
 use super::site::{Site, Uses};
 use crate::page::gallery::Panel;
@@ -23,8 +22,8 @@ pub struct Page {
     pub html: String,
     /// The stages whose stills it shows, in the book's order.
     pub stages: Vec<&'static Stage>,
-    /// The pictures of mistakes that it shows.
-    pub mistakes: Vec<Thumbnail>,
+    /// Its own pictures.
+    pub pictures: Vec<Picture>,
 }
 
 /// Renders everything. Fails with the first [`Fault`] of the texts, or if a stage has no data for a browser.
@@ -34,7 +33,7 @@ pub fn render(site: &Site) -> Result<Page> {
     let chapters = html! {
         @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
     };
-    let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses)?;
+    let chapters = back_matter::fill(&numbered(&chapters.into_string()), site, &mut uses)?;
     site.check(&uses)?;
     let mut stages: Vec<&Stage> =
         uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();
@@ -43,7 +42,16 @@ pub fn render(site: &Site) -> Result<Page> {
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
     let page = document(site, &PreEscaped(chapters), &PreEscaped(live))?;
-    Ok(Page { html: page.into_string(), stages, mistakes: uses.mistakes })
+    Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
+}
+
+/// Numbers the figures.
+fn numbered(html: &str) -> String {
+    let mut parts = html.split(directive::NUMBER_MARK);
+    let first = parts.next().unwrap_or_default().to_owned();
+    (1..).zip(parts).fold(first, |html, (number, part)| {
+        html + &format!("<span class=\"figure-number\">Figure {number}.</span> {part}")
+    })
 }
 
 /// The last stage, whose picture opens the page.
@@ -159,10 +167,11 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
     let chapter = &site.chapters[place];
     let (id, title) = (&chapter.id, &chapter.facts.title);
     let text = prose::chapter(site, chapter, uses)?;
-    let book = match &chapter.facts.book {
-        Some(number) => Some((number, book_chapter(site, chapter, number)?)),
-        None => None,
+    let of_book = |number| {
+        let found = site.book.url(number).zip(site.book.heading(number)).map(|found| (number, found));
+        found.ok_or_else(|| Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")))
     };
+    let book = chapter.facts.book.as_deref().map(of_book).transpose()?;
     let before = place.checked_sub(1).and_then(|place| site.chapters.get(place));
     let after = site.chapters.get(place + 1);
     Ok(html! {
@@ -192,16 +201,5 @@ fn section(site: &Site, place: usize, uses: &mut Uses) -> Result<Markup, Fault> 
                 }
             }
         }
-    })
-}
-
-/// Address and heading of a chapter of the book. The heading must match the one that our chapter states.
-fn book_chapter<'a>(site: &'a Site, chapter: &Chapter, number: &str) -> Result<(String, &'a str), Fault> {
-    let heading =
-        site.book.heading(number).filter(|found| Some(*found) == chapter.facts.book_title.as_deref());
-    site.book.url(number).zip(heading).ok_or_else(|| {
-        let title = chapter.facts.book_title.as_deref().unwrap_or_default();
-        let message = format!("the book has no chapter {number:?} with the book_title {title:?}");
-        Fault::new(&chapter.file, 1, message)
     })
 }

@@ -7,7 +7,7 @@ use super::formula::Formulas;
 use super::highlight::Highlighter;
 use super::library::{Entry, Library};
 use super::measured::Measured;
-use super::mistakes::Thumbnail;
+use super::pictures::Picture;
 use super::reference::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::page::gallery::Figure;
 use anyhow::Result;
@@ -34,8 +34,8 @@ pub struct Site {
 pub struct Uses {
     /// Keys of linked terms, each with the short title of the first chapter that links it.
     pub terms: BTreeMap<String, String>,
-    /// The pictures of mistakes, in the order of the page.
-    pub mistakes: Vec<Thumbnail>,
+    /// The page's own pictures.
+    pub pictures: Vec<Picture>,
     /// In the order of the page.
     pub figures: Vec<&'static Figure>,
     /// Existing anchors.

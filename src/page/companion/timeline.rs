@@ -1,5 +1,6 @@
 //! A figure of the steps of a packet's lanes, laid out from recorded paths.
 
+use super::directive::numbered;
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::stages::Stage;
@@ -44,7 +45,6 @@ pub fn figure(id: &str) -> Result<Markup> {
     let summary = |timeline: &Timeline| {
         format!("{} steps, {:.0} % of the lanes at work", timeline.len(), 100.0 * timeline.share_at_work())
     };
-    let title = format!("Without refill: {}. With refill: {}.", summary(&plain), summary(&refilled));
     Ok(html! {
         figure .timeline id={ "timeline-" (id) } {
             p .label { "Without refill, all lanes wait for the longest path: " (summary(&plain)) }
@@ -54,12 +54,11 @@ pub fn figure(id: &str) -> Result<Markup> {
             ul .legend aria-hidden="true" {
                 @for (_, class, meaning) in LEGEND { li { span .swatch .(class) {} (meaning) } }
             }
-            figcaption {
+            (numbered(&html! {
                 "The " (LANES) " lanes of a packet in the middle of “" (stage.title) "”, each with " (SAMPLES)
                 " samples of its pixel: a row is a lane, a column a step. Laid out from the tracer’s own paths; only after \
-                 its last sample does a refilled lane wait here. "
-                span .hidden { (title) }
-            }
+                 its last sample does a refilled lane wait here."
+            }))
         }
     })
 }

@@ -96,7 +96,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
     };
     let outcome = render(&order, &interrupt)?;
     write_text(&index, &page::page(&outcome.stills)).map_err(Failure::run)?;
-    outcome.report("picture", &index, &interrupt)
+    outcome.report(&index, &interrupt)
 }
 
 /// The stages with these figure or stage ids, in the book's order; all stages if no ids are given.

@@ -49,13 +49,13 @@ pub struct Outcome {
 
 impl Outcome {
     /// Reports what was done, and where the page is or how to continue.
-    pub fn report(&self, noun: &str, page: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
+    pub fn report(&self, page: &Path, interrupt: &Interrupt) -> Result<ExitCode, Failure> {
         if self.missing > 0 {
-            let missing = counted(self.missing as u64, noun);
+            let missing = counted(self.missing as u64, "picture");
             console::note(&format!("interrupted: {missing} missing; run the same command again to go on"));
             return Ok(interrupt.exit_code());
         }
-        let rendered = counted(self.rendered as u64, noun);
+        let rendered = counted(self.rendered as u64, "picture");
         print(&format!("{rendered} rendered, {} unchanged\nopen {}\n", self.kept, page.display()))
             .map_err(Failure::Run)?;
         Ok(ExitCode::SUCCESS)

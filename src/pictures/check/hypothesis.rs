@@ -51,8 +51,8 @@ pub enum Change {
     /// Detected in the bytes, even where blocks differ only by noise.
     InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
     /// Detected, if nothing else explains the picture, in the difference from the right one, with a picture of one sample
-    /// a pixel.
-    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool),
+    /// a pixel. Other random numbers give another picture, so it is not compared with one.
+    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool, &'static Change),
 }
 
 impl Mistake {
@@ -78,8 +78,9 @@ impl Change {
         let mut changed = recipe.clone();
         match self {
             Change::Several(pictures) => return pictures(recipe),
-            Change::InNoise(_) => return Vec::new(),
-            Change::AtEdges(change) | Change::InBytes(_, change) => return change.pictures(recipe),
+            Change::AtEdges(change) | Change::InBytes(_, change) | Change::InNoise(_, change) => {
+                return change.pictures(recipe);
+            }
             Change::Written(change) => {
                 change(&mut picture.written);
                 return vec![picture];

@@ -185,7 +185,7 @@ impl<'a> Trial<'a> {
     fn of_unexplained(mut self) -> Result<Finding> {
         let recipe = self.studio.recipe().clone();
         for mistake in applying_to(&recipe) {
-            if let Change::InNoise(test) = mistake.change {
+            if let Change::InNoise(test, _) = mistake.change {
                 let single =
                     Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..self.right.hypothesis.clone() };
                 let single = self.studio.render(&single, 1)?;
@@ -255,7 +255,8 @@ fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<(usize, usiz
 }
 
 fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
-    applying_to(recipe).flat_map(|mistake| mistake.pictures(recipe)).collect()
+    let is_compared = |mistake: &&Mistake| !matches!(mistake.change, Change::InNoise(..));
+    applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
 /// The stages that can be checked. The final picture places its small balls at random, so every program's differs.

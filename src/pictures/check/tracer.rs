@@ -12,6 +12,8 @@ use rayon::prelude::*;
 /// The replaceable steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
+    /// Number of the sequence of random numbers that a pixel uses.
+    pub random: fn(u32) -> u32,
     pub aspect: fn(u32, u32) -> f64,
     /// Number of pixel spacings along a side of this many pixels.
     pub spacings: fn(f64) -> f64,
@@ -41,6 +43,7 @@ pub struct Steps {
 
 impl Steps {
     pub const OF_THE_BOOK: Steps = Steps {
+        random: |pixel| pixel,
         aspect: |width, height| f64::from(width) / f64::from(height),
         spacings: |pixels| pixels,
         first_pixel: 0.5,
@@ -71,17 +74,17 @@ struct Hit {
     material: usize,
 }
 
-/// Random numbers of one pixel.
+/// A sequence of random numbers.
 pub struct Random {
     counter: u32,
-    pixel: u32,
+    sequence: u32,
 }
 
 impl Random {
     /// Two numbers in `0..1`.
     fn pair(&mut self) -> [f64; 2] {
         self.counter += 1;
-        let [a, b, ..] = pcg4d([self.counter, self.pixel, 0x1D1E, 0xC4EC]);
+        let [a, b, ..] = pcg4d([self.counter, self.sequence, 0x1D1E, 0xC4EC]);
         [a, b].map(|bits| f64::from(bits) / 4_294_967_296.0)
     }
 
@@ -155,7 +158,7 @@ impl<'a> Tracer<'a> {
             .into_par_iter()
             .with_min_len(256)
             .map(|pixel| {
-                let mut random = Random { counter: 0, pixel };
+                let mut random = Random { counter: 0, sequence: (self.steps.random)(pixel) };
                 let (column, row) = (pixel % width, pixel / width);
                 let sum: DVec3 = (0..samples).map(|_| self.sample(column, row, &mut random)).sum();
                 (sum / f64::from(samples)).to_array()
