@@ -4,13 +4,11 @@ use super::dialogs::{Dialog, Keys, Palette, Purpose};
 use super::facts::Facts;
 use super::layout::NARROW;
 use super::model::device::Device;
-use super::model::origin::Source;
 use super::model::remembered::{Dock, Tab, Theme};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::tone::{Channel, Tone};
 use super::model::view::{Mode, With};
-use super::model::viewpoint::Viewpoint;
 use super::places;
 use super::spheres::neighbour;
 use super::theme;
@@ -26,13 +24,10 @@ use std::sync::LazyLock;
 pub enum Command {
     Open,
     CheckPicture,
-    Reload,
     Save,
     /// Opens the dialog of `Save` with this format.
     SaveAs(OutputFormat),
     ShowInFolder,
-    /// Opens the file that was saved last, with the system's program for it.
-    ViewSaved,
     StopSaving,
     /// Goes on with the film of a window that ended early.
     Recover,
@@ -49,7 +44,6 @@ pub enum Command {
     DeleteSphere,
     SkyColours,
     Home,
-    FocusOnLookAt,
     Show(Show),
     Fit,
     ActualSize,
@@ -58,12 +52,9 @@ pub enum Command {
     Info,
     Dock(Dock),
     Panels,
-    Axes,
     Present,
     FullScreen,
     Theme(Theme),
-    Larger,
-    Smaller,
     Pause,
     Restart,
     SwitchDevice,
@@ -94,11 +85,9 @@ pub enum Command {
     ZoomOut,
     Channel(Channel),
     Denoise,
-    ViewFrom(Viewpoint),
     NextSphere,
     PreviousSphere,
     Deselect,
-    LookAtSphere,
     FocusSphere,
     Flip,
     KeptWipe,
@@ -106,7 +95,6 @@ pub enum Command {
     OnlyNoise,
     GoOnFromKept,
     DeleteKept,
-    LookLive,
     NextRay,
     PreviousRay,
     ClearPaths,
@@ -273,13 +261,6 @@ fn rows() -> Vec<Row> {
         "Finds the mistake in a picture that your own program has rendered", 
         |w, c| w.ask_path(c, Purpose::Check),
         also("wrong mistake homework verify compare")}
-    row! {C::Reload, "Reload the scene", "Reads the scene file again, after another program has changed it",
-        
-        |w, c| w.files.scene_file.reload(c, &w.model.document.origin), keys(CTRL, Key::R),
-        needs(
-            |f| matches!(f.document().origin.source, Source::File(_)),
-            "This picture is not from a scene file"
-        )}
     row! {C::Save, "Save…", "Saves the picture, the film or the scene",
         |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
         also("export png ppm exr toml download film scene")}
@@ -318,14 +299,11 @@ fn rows() -> Vec<Row> {
         key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
         also("home lost back original")}
-    row! {C::FocusOnLookAt, "Keep Look at in focus",
-        "Sets the focus distance to the point that the camera looks at", |w, _| w.toggle_focus_on_look_at(),
-        off(|f| f.no_rays().map(str::to_owned)), on(|f| f.document().camera.focus_distance.is_none())}
 
     menu = Some(Menu::Show);
     for (place, show) in Show::ALL.into_iter().enumerate() {
         let [name, help, synonyms] = show.words();
-        row! {C::Show(show), name, help, move |w, c| w.show_as(c, show),
+        row! {C::Show(show), name, help, move |w, _| w.model.view.choose(show),
             keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
             on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
             also(synonyms)}
@@ -357,8 +335,6 @@ fn rows() -> Vec<Row> {
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality")}
     row! {C::Panels, "Only the picture", "Hides all panels; again shows them", |w, _| w.toggle_panels(),
         key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels")}
-    row! {C::Axes, "Axes in the corner", "Shows the axes; a click on an end looks from that side",
-        |w, _| w.toggle(|r| &mut r.has_axes), on(|f| f.model.remembered.has_axes), also("gizmo")}
     row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
         |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
         also("lecture slides projector beamer")}
@@ -372,13 +348,6 @@ fn rows() -> Vec<Row> {
             move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
             on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
-    menu = Some(Menu::View);
-    row! {C::Larger, "Larger", "Makes text and controls larger",
-        |_, c| c.set_zoom_factor((c.zoom_factor() + 0.1).min(3.0)), keys(CTRL, Key::Plus),
-        also("scale font")}
-    row! {C::Smaller, "Smaller", "Makes text and controls smaller; Ctrl+0 returns",
-        |_, c| c.set_zoom_factor((c.zoom_factor() - 0.1).max(0.5)), keys(CTRL, Key::Minus),
-        also("scale font")}
 
     menu = Some(Menu::Render);
     row! {C::Pause, "Pause or go on",
@@ -460,7 +429,8 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Help);
     row! {C::FirstSteps, "First steps", "Brings back the card with three things to try",
-        |w, _| w.toggle_first_steps(), off(no_presentation), on(|f| f.model.has_first_steps),
+        |w, _| (w.model.has_first_steps, w.model.remembered.is_greeted) =
+            (!w.model.has_first_steps, w.model.has_first_steps), off(no_presentation), on(|f| f.model.has_first_steps),
         also("tutorial introduction")}
     row! {C::Help, "Keys and mouse", "All keys, and what the mouse does",
         |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
@@ -496,19 +466,12 @@ fn rows() -> Vec<Row> {
             off(Facts::no_exposure), on(move |f| f.model.view.tone.channel == Some(channel)),
             also("channel rgb")}
     }
-    for side in Viewpoint::ALL {
-        row! {C::ViewFrom(side), side.name(), "Looks at the same point from that side",
-            move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
-    }
     row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", 
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, true),
         key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, false), key(Key::Comma),
         needs(has_spheres, "There is no sphere in this scene"), also("select")}
-    row! {C::LookAtSphere, "Look at the sphere",
-        "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
-        needs(has_selection, NO_SPHERE), also("centre")}
     row! {C::FocusSphere, "Focus on the sphere",
         "Sets the focus distance to the nearest point of the selected sphere", |w, _| w.focus_sphere(),
         needs(has_selection, NO_SPHERE), also("sharp depth of field")}
@@ -537,7 +500,6 @@ fn rows() -> Vec<Row> {
         keys(CTRL_SHIFT, Key::S), unlisted()}
     row! {C::SaveAs(OutputFormat::Exr), "Save film…", "", |w, _| w.ask_save(OutputFormat::Exr),
         keys(CTRL, Key::E), unlisted()}
-    row! {C::ViewSaved, "Open", "Opens it outside of Weekender", |w, c| w.view_saved(c), unlisted()}
     row! {C::StopSaving, "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted()}
     row! {C::Recover, "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted()}
     row! {C::NotNow, "Not now", "Leaves it until the window closes",
@@ -553,8 +515,6 @@ fn rows() -> Vec<Row> {
         |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
         needs(has_kept, NOTHING_KEPT), unlisted()}
-    row! {C::LookLive, "Return to the picture", "Leaves the kept picture", |w, _| w.model.view.look(None),
-        keys(Modifiers::ALT, Key::Num0), unlisted()}
     row! {C::NextRay, "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::PreviousRay, "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),

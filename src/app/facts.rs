@@ -161,19 +161,9 @@ impl Facts {
     /// Why a view has nothing to show now, if so.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
-        let (settings, shading) = (self.shown().settings, self.shown().rules().shading);
+        let (has_error, shading) = (self.shown().settings.estimate_error, self.shown().rules().shading);
         match show {
-            Show::Error if !settings.estimate_error => no("The film has one half; switch on Estimate error"),
-            Show::Difference => match &self.model.view.reference {
-                None => None,
-                Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
-                    Some(format!(
-                        "The film is {} × {} and the picture is {} × {}",
-                        film.width, film.height, settings.width, settings.height
-                    ))
-                }
-                Some(_) => None,
-            },
+            Show::Error if !has_error => no("The film has one half; switch on Estimate error"),
             Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
                 if let Some(reason) = self.shown().no_rays() =>
             {

@@ -18,7 +18,7 @@ use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
 use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop};
+use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
@@ -77,8 +77,6 @@ pub struct Files {
     pub resumed: Answers<Result<Resumed, String>>,
     /// Pictures for the clipboard, and what they are, in words.
     pub copied: Answers<(ColorImage, String)>,
-    /// Films to compare with.
-    pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
     /// Whether the companion that was written is the full one.
     pub companions: Answers<Result<bool, String>>,
     /// Where the companion is written.
@@ -101,7 +99,6 @@ impl Files {
             opened: Answers::default(),
             resumed: Answers::default(),
             copied: Answers::default(),
-            references: Answers::default(),
             companions: Answers::default(),
             companion: cache_directory().map(|cache| cache.join("companion")),
             companion_stop: None,
@@ -238,13 +235,6 @@ impl Files {
         });
     }
 
-    /// Writes a text.
-    pub fn save_text(&self, context: &Context, path: &Path, text: &str) {
-        let outcome = replace_file(path, |writer| writer.write_all(text.as_bytes()));
-        let outcome = outcome.map(|()| path.to_owned()).map_err(|error| error.to_string());
-        self.saved.answer(context).give(outcome);
-    }
-
     /// Writes a scene file. The text of a large scene takes seconds.
     pub fn save_scene(&self, context: &Context, path: PathBuf, document: &Document) {
         let (recipe, checked) = (document.recipe(), Arc::clone(&document.checked));
@@ -285,14 +275,6 @@ impl Files {
         let begun = document.clone();
         read(&self.resumed, context, move || {
             saved::resume(&path, &job).map(|film| Resumed { path, begun, film })
-        });
-    }
-
-    /// Reads a film to compare with.
-    pub fn load_reference(&self, context: &Context, path: PathBuf) {
-        read(&self.references, context, move || {
-            let (_, read) = saved::open_film(&path)?;
-            Ok((path, ReferenceMeans::of(&read.film)))
         });
     }
 }
@@ -360,18 +342,6 @@ mod tests {
 
     fn files() -> Files {
         Files::new(Autosave::new(None, Duration::MAX))
-    }
-
-    #[test]
-    fn a_text_is_written_or_it_is_said_why_not() {
-        let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (files(), Context::default());
-        let path = directory.path().join("plot.csv");
-        files.save_text(&context, &path, "1,2\n");
-        assert_eq!(files.saved.take(), Some(Ok(path.clone())));
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "1,2\n");
-        files.save_text(&context, &path.join("plot.csv"), "1,2\n");
-        assert!(matches!(files.saved.take(), Some(Err(_))), "a file is no folder");
     }
 
     #[test]

@@ -10,16 +10,14 @@ use super::model::companion;
 use super::model::device::{self, Device};
 use super::model::document::Document;
 use super::model::edit::Edit;
-use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
 use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::view::{Mode, ViewState, With};
-use super::model::viewpoint::Viewpoint;
 use super::navigation;
 use super::sight::Sighted;
-use super::spheres::grip::{new_body, to_copy};
+use super::spheres::grip::new_body;
 use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
@@ -113,7 +111,6 @@ impl Window {
     }
 
     pub(super) fn step_stage(&mut self, is_next: bool) {
-        self.note_step(Step::Leaf);
         if let Some(stage) = self.facts().neighbour(is_next) {
             self.show_stage(stage);
         }
@@ -168,20 +165,6 @@ impl Window {
         self.shell.toasts.withdraw(Command::Home);
     }
 
-    /// Lets the focus follow the point looked at, or keeps it where it is now.
-    pub(super) fn toggle_focus_on_look_at(&mut self) {
-        let camera = &mut self.model.document.camera;
-        camera.focus_distance = match camera.focus_distance {
-            Some(_) => None,
-            None => Some(camera.effective_focus_distance()),
-        };
-    }
-
-    pub(super) fn view_from(&mut self, side: Viewpoint) {
-        let up = self.document().origin.recipe.camera.vup;
-        self.model.document.camera = side.camera(&self.document().camera, up);
-    }
-
     pub(super) fn add_bookmark(&mut self) {
         let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
@@ -198,9 +181,8 @@ impl Window {
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
-        match spheres::edit(&mut self.model, edit) {
-            Ok(()) => self.note_step(Step::Change),
-            Err(reason) => self.shell.toasts.bad(reason),
+        if let Err(reason) = spheres::edit(&mut self.model, edit) {
+            self.shell.toasts.bad(reason);
         }
     }
 
@@ -211,24 +193,17 @@ impl Window {
         self.edit(Edit::Add(body));
     }
 
+    /// Puts a copy to the right of the selected sphere.
     pub(super) fn duplicate_sphere(&mut self) {
-        let document = self.document();
-        if let Some(sphere) = self.model.selected {
-            let by = to_copy(document.scene(), &document.camera, document.aspect(), sphere);
-            self.edit(Edit::Duplicate(sphere, by));
+        if let Some(Selected { sphere, body, .. }) = Selected::of(&self.model) {
+            let right = self.document().camera.basis().u;
+            self.edit(Edit::Duplicate(sphere, 2.2 * body.radius * right));
         }
     }
 
     pub(super) fn delete_sphere(&mut self) {
         if let Some(sphere) = self.model.selected {
             self.edit(Edit::Delete(sphere));
-        }
-    }
-
-    pub(super) fn look_at_sphere(&mut self) {
-        if let Some(selected) = Selected::of(&self.model) {
-            let camera = navigation::recentre(&self.document().camera, selected.body.center);
-            self.model.document.camera = camera;
         }
     }
 
@@ -246,14 +221,6 @@ impl Window {
     }
 
     // View
-
-    pub(super) fn show_as(&mut self, context: &Context, show: Show) {
-        if show == Show::Difference && self.model.view.reference.is_none() {
-            self.ask_path(context, Purpose::ReferenceFilm);
-        } else {
-            self.model.view.choose(show);
-        }
-    }
 
     /// Compares with the other stage; a picture that is no stage, with the book's arithmetic.
     pub(super) fn compare(&mut self, mode: Mode) {
@@ -378,26 +345,8 @@ impl Window {
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
                 self.model.view.look(None);
-                self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
-        }
-    }
-
-    pub(super) fn toggle_first_steps(&mut self) {
-        let has_card = &mut self.model.has_first_steps;
-        *has_card = !*has_card;
-        if *has_card {
-            self.model.remembered.first_steps.forget();
-        } else {
-            self.model.remembered.first_steps.is_over = true;
-        }
-    }
-
-    /// Ticks a step of the first-steps card.
-    pub(super) fn note_step(&mut self, step: Step) {
-        if self.model.has_first_steps {
-            self.model.remembered.first_steps.note(step);
         }
     }
 
@@ -476,10 +425,7 @@ impl Window {
     // Files
 
     pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
-        let mut from = self.folder();
-        if purpose == Purpose::SavePlot {
-            from.push(format!("{}.csv", file_name(self.document())));
-        }
+        let from = self.folder();
         self.shell.dialogs.system.ask(context, purpose, from);
     }
 
@@ -521,11 +467,6 @@ impl Window {
         match purpose {
             Purpose::Open => self.files.open(context, path),
             Purpose::Check => self.tools.check.begin(context, &path, None),
-            Purpose::ReferenceFilm => self.files.load_reference(context, path),
-            Purpose::SavePlot => {
-                let csv = super::plot::csv(&self.tracing.main.status().history);
-                self.files.save_text(context, &path, &csv);
-            }
             Purpose::Save(what, size) => {
                 if let Some(folder) =
                     path.parent().filter(|folder| default_folder().as_deref() == Some(folder))
@@ -616,12 +557,6 @@ impl Window {
     pub(super) fn show_in_folder(&mut self, context: &Context) {
         let folder = self.model.remembered.recent.first().and_then(|path| path.parent());
         if let Some(url) = folder.map(companion::file_url) {
-            self.open_or_tell(context, url);
-        }
-    }
-
-    pub(super) fn view_saved(&mut self, context: &Context) {
-        if let Some(url) = self.model.remembered.recent.first().map(|path| companion::file_url(path)) {
             self.open_or_tell(context, url);
         }
     }

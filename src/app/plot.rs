@@ -17,8 +17,8 @@ use std::fmt::Write;
 /// The largest number of decades for which an axis has grid lines.
 const MOST_DECADES: f64 = 40.0;
 
-/// Draws the plot. Returns whether the points are to be saved.
-pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
+/// Draws the plot.
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let status = &facts.status;
     if points(status).is_empty() {
         hint(
@@ -28,15 +28,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
                 false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
             },
         );
-        return false;
+        return;
     }
-    let mut is_saved = false;
     Sides::new().shrink_left().wrap().show(
         ui,
         |ui| ui.label("How far the picture still is from the finished one. Four times the samples halve it."),
         |ui| {
-            let save = ui.button("Save CSV");
-            is_saved = tip(ui, save, "Saves the points of the curves as a table", None).clicked();
             let copy = ui.button("Copy");
             if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
                 ui.ctx().copy_text(csv(&status.history));
@@ -44,7 +41,6 @@ pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
         },
     );
     plot(ui, facts.document().stop.noise, status);
-    is_saved
 }
 
 fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
@@ -172,7 +168,7 @@ fn at(point: &Point) -> [f64; 2] {
 }
 
 /// The points as CSV with a header line.
-pub fn csv(history: &[HistoryPoint]) -> String {
+fn csv(history: &[HistoryPoint]) -> String {
     let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
     for HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate } in history
     {

@@ -7,12 +7,10 @@ use super::model::document::Document;
 use super::model::kept::{Kept, Named};
 use super::model::origin::{Origin, Source};
 use super::model::remembered::{Dock, Tab};
-use super::model::show::Show;
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
-use crate::progressive::{ReferenceMeans, Stop};
+use crate::progressive::Stop;
 use eframe::egui::Context;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 impl Window {
@@ -24,8 +22,7 @@ impl Window {
                     self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
-                    let offers = [Command::ViewSaved, Command::ShowInFolder];
-                    self.shell.toasts.good_with(format!("Saved {name}"), &offers);
+                    self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
                 }
                 Err(reason) => {
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
@@ -76,12 +73,6 @@ impl Window {
         while let Some(outcome) = self.files.companions.take() {
             self.show_companion(context, outcome);
         }
-        while let Some(outcome) = self.files.references.take() {
-            match outcome {
-                Ok((path, reference)) => self.take_reference(path, reference),
-                Err(reason) => self.shell.toasts.bad(format!("Not subtracted: {reason}")),
-            }
-        }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
         }
@@ -129,19 +120,6 @@ impl Window {
             self.shell.toasts.bad(format!(
                 "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
             ));
-        }
-    }
-
-    fn take_reference(&mut self, path: PathBuf, reference: ReferenceMeans) {
-        self.remember_directory(&path);
-        let ([x, y], [a, b]) = (self.document().size(), [reference.width, reference.height]);
-        self.model.view.reference = Some(Arc::new(reference));
-        if [x, y] == [a, b] {
-            self.model.view.choose(Show::Difference);
-        } else {
-            self.model.document.give_size([a, b]);
-            self.model.view.choose(Show::Difference);
-            self.shell.toasts.good(format!("Rendering at {a} × {b}, the size of {}", path.display()));
         }
     }
 

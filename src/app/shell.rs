@@ -3,7 +3,6 @@
 use super::dialogs::Dialogs;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::places::Place;
-use super::present::Presenter;
 use super::toasts::Toasts;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context as _, Result};
@@ -13,7 +12,6 @@ use std::sync::Arc;
 pub struct Shell {
     pub dialogs: Dialogs,
     pub toasts: Toasts,
-    pub presenter: Presenter,
     pub frame_log: Option<FrameLog>,
     pub frame_times: FrameTimes,
     /// The command that was carried out last.
@@ -37,7 +35,6 @@ impl Shell {
         Ok(Shell {
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
-            presenter: Presenter::default(),
             frame_log: frame_log.map(create).transpose()?,
             frame_times: FrameTimes::default(),
             performed: None,

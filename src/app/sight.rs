@@ -74,10 +74,10 @@ impl Sighted {
         {
             document.camera = camera;
         }
-        let (exposure, reference) = (view.tone.exposure, view.reference.take());
+        let exposure = view.tone.exposure;
         let kept = std::mem::take(&mut view.kept);
         *view = self.view;
-        (view.kept, view.reference, view.tone.exposure) = (kept, reference, exposure);
+        (view.kept, view.tone.exposure) = (kept, exposure);
         *placement = self.placement;
     }
 }

@@ -120,12 +120,6 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
     let scene = document.scene();
     let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
     title(ui, &format!("{spheres} spheres, {materials} materials"), &document.origin.recipe.name);
-    if let Some((frames, command)) = document.animation() {
-        let text =
-            format!("{frames} frames along the scene file's keyframes. This command makes an animated PNG:");
-        paragraph(ui, "Animation", &text);
-        ui.add(Label::new(RichText::new(command).monospace()).wrap());
-    }
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.

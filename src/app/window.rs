@@ -26,18 +26,19 @@ use eframe::egui;
 use std::time::{Duration, Instant};
 
 /// The window of the program.
+#[doc(hidden)]
 pub struct Window {
     /// What the user has chosen.
-    pub(super) model: Model,
+    pub model: Model,
     /// What can be undone.
-    pub(super) changes: Changes,
-    pub(super) tracing: Tracing,
-    pub(super) display: Display,
-    pub(super) tools: Tools,
-    pub(super) files: Files,
-    pub(super) shell: Shell,
+    pub changes: Changes,
+    pub tracing: Tracing,
+    pub display: Display,
+    pub tools: Tools,
+    pub files: Files,
+    pub shell: Shell,
     /// What is to be done in this frame.
-    pub(super) commands: Vec<Command>,
+    pub commands: Vec<Command>,
 }
 
 impl Window {
@@ -58,7 +59,7 @@ impl Window {
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
-        let has_first_steps = !options.is_picture_given && !remembered.first_steps.is_over;
+        let has_first_steps = !options.is_picture_given && !remembered.is_greeted;
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
@@ -111,7 +112,7 @@ impl Window {
     }
 
     /// What panels show.
-    pub(super) fn facts(&self) -> Facts {
+    pub fn facts(&self) -> Facts {
         Facts {
             status: self.tracing.main.status().clone(),
             seconds_before: self.tracing.seconds_before,
@@ -220,6 +221,10 @@ impl Window {
         // The selection may be of another scene.
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
+        if let Err(error) = self.document().camera.validate() {
+            self.shell.toasts.bad(error.to_string());
+            self.model.document.camera = self.changes.last().camera;
+        }
         self.ask_about_size();
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.

@@ -2,6 +2,7 @@
 
 use crate::common::{SMALL, choose_from_menu, drag, has_samples, middle, open, send, until, until_drawn};
 use crate::objects::{on_screen, spheres};
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, vec2};
 use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;

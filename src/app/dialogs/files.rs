@@ -48,10 +48,6 @@ pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
-    /// To load a film to compare with.
-    ReferenceFilm,
-    /// To save the points of the error over time.
-    SavePlot,
     /// To save it, the picture with this size.
     Save(What, [u32; 2]),
     /// To change name and folder in the dialog of saving.
@@ -63,22 +59,18 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
-            Purpose::ReferenceFilm => "Film to compare with",
-            Purpose::SavePlot => "Save the error over time",
             Purpose::Save(..) | Purpose::Place(_) => "Save",
         }
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(..) | Purpose::Place(_) | Purpose::SavePlot)
+        matches!(self, Purpose::Save(..) | Purpose::Place(_))
     }
 
     fn endings(self) -> Vec<&'static str> {
         match self {
             Purpose::Open => vec!["png", "ppm", "exr", "toml"],
             Purpose::Check => vec!["png", "ppm"],
-            Purpose::ReferenceFilm => vec!["exr"],
-            Purpose::SavePlot => vec!["csv"],
             Purpose::Save(what, _) | Purpose::Place(what) => vec![what.ending()],
         }
     }

@@ -114,10 +114,6 @@ impl KeptList {
         self.pictures.get(place)
     }
 
-    pub fn name_mut(&mut self, place: usize) -> Option<&mut String> {
-        self.pictures.get_mut(place).map(|named| &mut named.name)
-    }
-
     /// As it is called in sentences.
     pub fn title(&self, place: usize) -> String {
         self.get(place).map_or_else(String::new, |named| format!("{}: {}", place + 1, named.name))

@@ -7,7 +7,6 @@ pub mod companion;
 pub mod device;
 pub mod document;
 pub mod edit;
-pub mod first_steps;
 pub mod further;
 pub mod kept;
 pub mod origin;
@@ -17,7 +16,6 @@ pub mod show;
 pub mod sizing;
 pub mod tone;
 pub mod view;
-pub mod viewpoint;
 
 use crate::backends::BackendChoice;
 use crate::progressive::Stop;

@@ -43,11 +43,6 @@ impl Origin {
         Origin { recipe, source, scene }
     }
 
-    /// The same with another recipe of the same scene.
-    pub fn with_recipe(&self, recipe: Recipe) -> Self {
-        Origin { recipe, source: self.source.clone(), scene: Arc::clone(&self.scene) }
-    }
-
     /// The origin of a stage.
     pub fn of_stage(stage: &'static Stage) -> Self {
         Origin::new(stage.recipe(), Source::Stage(stage))

@@ -2,7 +2,6 @@
 
 use super::Model;
 use super::device::{self, Device};
-use super::first_steps::FirstSteps;
 use super::sizing::Sizing;
 use super::view::ViewState;
 use crate::render_cpu::Isa;
@@ -106,8 +105,6 @@ pub struct Remembered {
     pub tab: Tab,
     /// The size of pictures that have no size of their own.
     pub sizing: Sizing,
-    /// Whether the axes are always shown in a corner of the picture.
-    pub has_axes: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -121,8 +118,8 @@ pub struct Remembered {
     pub directory: Option<PathBuf>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
-    /// What the user has tried of the first steps.
-    pub first_steps: FirstSteps,
+    /// The card with the first steps was closed: it does not come back by itself.
+    pub is_greeted: bool,
 }
 
 /// A path that is not Unicode has no place in a text. An error would keep all settings from being stored.
@@ -140,14 +137,13 @@ impl Default for Remembered {
             dock: None,
             tab: Tab::Stage,
             sizing: Sizing::Viewport,
-            has_axes: false,
             device: Device::Cpu,
             lanes: None,
             threads: None,
             bookmarks: Vec::new(),
             directory: None,
             recent: Vec::new(),
-            first_steps: FirstSteps::default(),
+            is_greeted: false,
         }
     }
 }
