@@ -3,10 +3,7 @@
 
 use super::answers::Answers;
 use super::files::describer;
-use super::model::Model;
-use super::model::checked::CheckedScene;
-use super::model::document::Document;
-use super::model::origin::{Origin, Source};
+use super::model::{CheckedScene, Document, Model, Origin, Source};
 use super::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
 use crate::job::recipe::file;

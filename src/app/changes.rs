@@ -1,6 +1,6 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
-use super::model::document::Document;
+use super::model::Document;
 use eframe::egui::Context;
 use std::time::{Duration, Instant};
 
@@ -153,7 +153,7 @@ fn restore(document: &mut Document, state: Document) -> Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]

@@ -1,14 +1,10 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Keys, Palette, Purpose};
+use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
+use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::device::Device;
-use super::model::remembered::{Dock, Tab, Theme};
-use super::model::show::Show;
-use super::model::sizing::Sizing;
-use super::model::tone::{Channel, Tone};
-use super::model::view::{Mode, With};
+use super::model::{Channel, Device, Dock, Mode, Show, Sizing, Tab, Theme, Tone, With};
 use super::places;
 use super::spheres::neighbour;
 use super::theme;
@@ -436,7 +432,7 @@ fn rows() -> Vec<Row> {
         |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
         also("shortcuts keyboard help")}
     row! {C::Palette, "Find a command…", "Type what you want to do",
-        |w, c| w.shell.dialogs.open(Dialog::Palette(Palette::typed(c))), keys(CTRL, Key::P),
+        |w, c| w.shell.dialogs.open(Dialog::Palette(Finder::typed(c))), keys(CTRL, Key::P),
         also("palette search")}
     row! {C::About, "About Weekender", "Version, licences, folder of the log, and how to report a fault",
         |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug")}

@@ -2,11 +2,7 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::device::{Device, core_count, lane_counts};
-use super::model::document::Document;
-use super::model::edit::{Body, Edit};
-use super::model::remembered::Remembered;
-use super::model::sizing::Sizing;
+use super::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
 use super::spheres::Selected;
 use super::widgets::{
     About, Header, Number, above, check, colour, command_button, entry, fold, group, hint, list, panel_line,

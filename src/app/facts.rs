@@ -1,11 +1,7 @@
 //! What panels show but do not change: a snapshot of the window at the start of the frame.
 
 use super::command::Command;
-use super::model::Model;
-use super::model::device::Device;
-use super::model::document::Document;
-use super::model::show::Show;
-use super::model::view::{Mode, partner};
+use super::model::{Device, Document, Mode, Model, Show, partner};
 use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
@@ -24,6 +20,8 @@ pub struct Facts {
     pub redo: Option<&'static str>,
     /// The render is a preview, and the camera or a sphere is being moved.
     pub is_coarse: bool,
+    /// There is a picture of the document, at any size.
+    pub has_picture: bool,
     pub is_moving: bool,
     /// The render began during the pause that lasts, and stops early.
     pub is_held: bool,

@@ -5,7 +5,7 @@ use super::answers::Answers;
 use super::autosave::Autosave;
 use super::command::Command;
 use super::kept::Subject;
-use super::model::document::Document;
+use super::model::Document;
 use super::scene_file::SceneFile;
 use super::toasts::Toasts;
 use crate::backends::BackendChoice;

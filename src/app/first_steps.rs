@@ -4,7 +4,7 @@ use super::command::Command;
 use super::facts::Facts;
 use super::places::Place;
 use super::theme;
-use super::widgets::{Sign, primary, sign_button, tip};
+use super::widgets::{Sign, command_button, primary, sign_button, tip};
 use crate::stages::Stage;
 use eframe::egui::{self, Align, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
 
@@ -40,12 +40,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     panel.frame(around).show(ui, |ui| {
         card.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            content(ui, has_columns, commands);
+            content(ui, has_columns, facts, commands);
         });
     });
 }
 
-fn content(ui: &mut Ui, has_columns: bool, commands: &mut Vec<Command>) {
+fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
     Place::FirstSteps.begin(ui);
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), 20.0),
@@ -81,10 +81,7 @@ fn content(ui: &mut Ui, has_columns: bool, commands: &mut Vec<Command>) {
                 commands.push(Command::Stage(first));
             }
         }
-        let response = ui.button("Check my picture…");
-        if tip(ui, response, Command::CheckPicture.help(), None).clicked() {
-            commands.push(Command::CheckPicture);
-        }
+        command_button(ui, facts, Command::CheckPicture, "Check my picture…", commands);
     });
 }
 

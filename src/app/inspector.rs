@@ -1,7 +1,7 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
 use super::kept::{FilmId, Query, Subject};
-use super::model::document::Document;
+use super::model::Document;
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
@@ -205,7 +205,7 @@ fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::{Origin, Source};
+    use crate::app::model::{Origin, Source};
     use crate::job::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;

@@ -4,8 +4,7 @@
 use super::answers::Answers;
 use super::dock::swatch;
 use super::facts::Facts;
-use super::model::device::Device;
-use super::model::document::Document;
+use super::model::{Device, Document};
 use super::theme;
 use super::widgets::{hint, small};
 use crate::backends::explain::{Activity, Timeline, timeline};
@@ -148,7 +147,7 @@ fn pixel_of(lane: usize, lanes: usize, [width, height]: [u32; 2]) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     #[test]

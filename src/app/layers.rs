@@ -1,7 +1,7 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use super::answers::{Answer, Answers};
-use super::model::document::Document;
+use super::model::Document;
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
@@ -218,7 +218,7 @@ fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use std::time::{Duration, Instant};
 
     fn small() -> Document {

@@ -20,6 +20,7 @@ mod display;
 mod dock;
 mod facts;
 mod files;
+mod finder;
 mod first_steps;
 mod frame_log;
 mod input;
@@ -63,12 +64,7 @@ mod window;
 mod wording;
 
 pub use command::{Command, Menu, ROWS};
-pub use model::device::Device;
-pub use model::document::Document;
-pub use model::origin::{Origin, Source};
-pub use model::remembered::{Dock, Remembered, Tab, Theme};
-pub use model::show::Show;
-pub use model::sizing::Sizing;
+pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab, Theme};
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};

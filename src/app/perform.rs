@@ -5,16 +5,10 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
-use super::model::Presentation;
-use super::model::companion;
-use super::model::device::{self, Device};
-use super::model::document::Document;
-use super::model::edit::Edit;
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
-use super::model::show::Show;
-use super::model::sizing::Sizing;
-use super::model::view::{Mode, ViewState, With};
+use super::model::{
+    Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Sizing, Source,
+    Tab, ViewState, With, companion, device,
+};
 use super::navigation;
 use super::sight::Sighted;
 use super::spheres::grip::new_body;
@@ -34,7 +28,6 @@ impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &Context, command: Command) {
         self.shell.performed = Some(command);
-        self.shell.dialogs.note_used(command);
         let facts = self.facts();
         if let Some(log) = &mut self.shell.frame_log {
             log.command(&facts.name(command));
@@ -154,7 +147,7 @@ impl Window {
         }
         let is_same_origin = Arc::ptr_eq(&origin, &after.origin);
         let [old, new] = [&checked, &after.checked].map(|checked| checked.scene().spheres.len());
-        let first = super::model::edit::first_difference(checked.scene(), after.scene());
+        let first = super::model::first_difference(checked.scene(), after.scene());
         self.model.selected = first.filter(|_| is_same_origin && new >= old);
     }
 

@@ -65,7 +65,7 @@ pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Pla
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Dock;
+    use crate::app::model::Dock;
     use crate::app::tests::facts_of;
 
     #[test]

@@ -10,12 +10,9 @@ use crate::numbers::statistics::fit::Point;
 use crate::progressive::{HistoryPoint, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, Vec2b};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points,
+    AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
 };
 use std::fmt::Write;
-
-/// The largest number of decades for which an axis has grid lines.
-const MOST_DECADES: f64 = 40.0;
 
 /// Draws the plot.
 pub fn ui(ui: &mut Ui, facts: &Facts) {
@@ -87,8 +84,8 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         .custom_y_axes(vec![
             axis(AxisHints::new_y(), "error, % of white").label_spacing(Rangef { min: 8.0, max: 14.0 }),
         ])
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
+        .x_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .y_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
         .grid_color(theme::colours(ui).line)
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position: place, .. }
@@ -121,20 +118,6 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
             plot.line(line.width(1.0).allow_hover(false));
         }
     });
-}
-
-/// Grid lines at powers of ten, and fainter ones at 2 and 5 times these; none if they would merge into solid grey.
-fn decades(grid: GridInput) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    if !(0.0..=MOST_DECADES).contains(&(high - low)) {
-        return Vec::new();
-    }
-    let powers = low.floor() as i32..=high.floor() as i32;
-    let marks = powers.flat_map(|power| {
-        [(1.0_f64, 1.0), (2.0, 0.3), (5.0, 0.3)]
-            .map(|(digit, step_size)| GridMark { value: f64::from(power) + digit.log10(), step_size })
-    });
-    marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
 /// Rounds to two significant digits.

@@ -3,10 +3,7 @@
 use super::command::Command;
 use super::files::{NotOpened, Resumed};
 use super::kept::Reopened;
-use super::model::document::Document;
-use super::model::kept::{Kept, Named};
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Dock, Tab};
+use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
 use crate::progressive::Stop;

@@ -1,8 +1,7 @@
 //! The scene file of the picture is read again when another program has changed it.
 
 use super::answers::Answers;
-use super::model::checked::stamp_of;
-use super::model::origin::{Origin, Source};
+use super::model::{Origin, Source, stamp_of};
 use super::window::Window;
 use crate::job::recipe::{Recipe, file};
 use eframe::egui::Context;

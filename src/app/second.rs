@@ -3,13 +3,9 @@
 
 use super::answers::Answers;
 use super::kept::KeptPicture;
-use super::model::document::Document;
-use super::model::kept::Kept;
-use super::model::origin::Origin;
-use super::model::view::{Mode, Other, ViewState, differ_in_camera};
+use super::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
 use super::tracer::{Shown, Tracer, Want};
 use crate::progressive::ReferenceMeans;
-use crate::scene::Camera;
 use eframe::egui::Context;
 use std::sync::{Arc, Weak};
 
@@ -112,7 +108,7 @@ impl Second {
         let is_possible =
             tracer.want(&Want { document: &document, stop, view: view.tone.of_picture(), ..*want }).is_ok();
         let is_full = tracer.is_full(&document);
-        let has_picture = tracer.shown().is_some_and(|shown| shown.document.has_same_film(&document));
+        let has_picture = tracer.has_picture(&document);
         let is_waiting = self.waiting.strong_count() > 0;
         if view.mode() != Some(Mode::Difference) {
             self.film = None;
@@ -166,38 +162,15 @@ impl Second {
         }
         let usual_stop = origin.usual_stop();
         let stop = if usual_stop == mine.origin.usual_stop() { mine.stop } else { usual_stop };
-        let camera = if differ_in_camera(base, theirs) {
-            camera_of(&mine.camera, &base.camera, &theirs.camera)
-        } else {
-            mine.camera
-        };
+        let camera = if differ_in_camera(base, theirs) { theirs.camera } else { mine.camera };
         Document { camera, settings, stop, ..Document::of(Arc::clone(origin)) }
-    }
-}
-
-/// The main camera, except for the settings in which the stages' cameras differ.
-fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
-    fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
-        if base == theirs { mine } else { theirs }
-    }
-    Camera {
-        look_from: choose(mine.look_from, base.look_from, theirs.look_from),
-        look_at: choose(mine.look_at, base.look_at, theirs.look_at),
-        vup: choose(mine.vup, base.vup, theirs.vup),
-        vfov_degrees: choose(mine.vfov_degrees, base.vfov_degrees, theirs.vfov_degrees),
-        defocus_angle_degrees: choose(
-            mine.defocus_angle_degrees,
-            base.defocus_angle_degrees,
-            theirs.defocus_angle_degrees,
-        ),
-        focus_distance: choose(mine.focus_distance, base.focus_distance, theirs.focus_distance),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::view::{differ_in_camera, partner};
+    use crate::app::model::{differ_in_camera, partner};
     use crate::measure::stress::shown_cases;
     use crate::stages::{Stage, SurfaceRule};
 

@@ -3,9 +3,7 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::kept::{FilmId, Query, Subject};
-use super::model::show::Show;
-use super::model::tone::{Channel, Tone};
-use super::model::view::ViewState;
+use super::model::{Channel, Show, Tone, ViewState};
 use super::theme;
 use super::widgets::{
     About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,

@@ -2,9 +2,7 @@
 
 use super::changes::Changes;
 use super::kept::FilmId;
-use super::model::Model;
-use super::model::device::Device;
-use super::model::sizing::Sizing;
+use super::model::{Device, Model, Sizing};
 use super::second::Second;
 use super::sizer::{Present, Sizer};
 use super::toasts::Toasts;

@@ -7,7 +7,7 @@ use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Key, Label, Layout, Painter, Pos2,
     Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, Tooltip, Ui,
-    UiBuilder, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    UiBuilder, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -91,6 +91,12 @@ fn show_tip(ui: &Ui, response: &Response, text: &str) {
     let aligns = if is_panel || is_menu { BESIDE } else { BELOW };
     let mut tooltip = Tooltip::for_widget(response);
     tooltip.popup = tooltip.popup.anchor(around).align(aligns[0]).align_alternatives(aligns).gap(8.0);
+    if is_panel || is_menu {
+        // As wide as there is room beside it.
+        let screen = ui.ctx().content_rect();
+        let room = (screen.right() - around.right()).max(around.left() - screen.left()) - 32.0;
+        tooltip.popup = tooltip.popup.width(room.clamp(120.0, ui.spacing().tooltip_width));
+    }
     tooltip.show(|ui| ui.label(text));
 }
 
@@ -154,14 +160,31 @@ pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
 
 /// A button for a command, under this name.
 pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str, commands: &mut Vec<Command>) {
+    add_command(ui, facts, command, Button::new(name), commands);
+}
+
+/// A control for a command, with its help and keys as tooltip.
+pub fn add_command(
+    ui: &mut Ui,
+    facts: &Facts,
+    command: Command,
+    control: impl Widget,
+    commands: &mut Vec<Command>,
+) -> Response {
     let reason = facts.disabled_reason(command);
-    let response = ui.add_enabled(reason.is_none(), Button::new(name));
-    let help = match command.keys(ui.ctx()) {
-        Some(keys) => format!("{} ({keys})", command.help()),
-        None => command.help().to_owned(),
-    };
-    if tip(ui, response, &help, reason.as_deref()).clicked() {
+    let response = ui.add_enabled(reason.is_none(), control);
+    let response = tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref());
+    if response.clicked() {
         commands.push(command);
+    }
+    response
+}
+
+/// A help with the keys of a command.
+pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
+    match command.keys(ui.ctx()) {
+        Some(keys) => format!("{help} ({keys})"),
+        None => help.to_owned(),
     }
 }
 

@@ -9,12 +9,7 @@ use super::facts::Facts;
 use super::files::Files;
 use super::input;
 use super::kept::Subject;
-use super::model::Model;
-use super::model::device::{Device, DeviceOptions};
-use super::model::document::Document;
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Stored, Tab};
-use super::model::view::ViewState;
+use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use super::shell::Shell;
 use super::theme;
 use super::tools::Tools;
@@ -119,6 +114,7 @@ impl Window {
             undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
             redo: self.changes.later().map(|other| self.document().difference(other)),
             is_coarse: self.tracing.main.is_coarse(),
+            has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture(),
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost,

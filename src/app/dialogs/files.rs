@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::app::answers::Answers;
 use crate::app::facts::Facts;
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::status::time;
 use crate::app::theme;
 use crate::app::widgets::{About, Number, hint, named, primary, small};

@@ -3,8 +3,7 @@
 use super::{KeptPicture, Verdict, run};
 use crate::app::answers::Answers;
 use crate::app::dock::Cards;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
+use crate::app::model::{Document, Kept};
 use crate::app::tracer::Tracer;
 use crate::film::Film;
 use eframe::egui::Context;

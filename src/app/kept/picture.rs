@@ -2,7 +2,7 @@
 
 use super::run;
 use crate::app::answers::Answers;
-use crate::app::model::kept::Kept;
+use crate::app::model::Kept;
 use crate::app::texture::Texture;
 use crate::app::tracer::Shown;
 use crate::progressive::View;

@@ -1,9 +1,7 @@
 //! The film on the screen: the live one, or one that was kept.
 
 use crate::app::answers::Answers;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
-use crate::app::model::view::ViewState;
+use crate::app::model::{Document, Kept, ViewState};
 use crate::app::tracer::Tracer;
 use crate::denoise::Denoised;
 use crate::film::Film;
@@ -174,8 +172,7 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::kept::Named;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::{Named, Origin};
     use crate::stages::Stage;
     use std::sync::mpsc::channel;
 

@@ -1,8 +1,7 @@
 //! Whether a kept picture and the traced one differ only by noise: the statistics of `weekender compare`, on a thread.
 
 use crate::app::answers::Answers;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
+use crate::app::model::{Document, Kept};
 use crate::app::theme;
 use crate::app::tracer::Tracer;
 use crate::film::Film;
@@ -116,7 +115,7 @@ fn place_of(test: &BlockTest, size: [u32; 2]) -> String {
 mod tests {
     use super::*;
     use crate::app::kept::tests::small_film;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     #[test]

@@ -1,7 +1,6 @@
 //! The command line that renders a document.
 
-use super::document::Document;
-use super::origin::Source;
+use super::{Document, Source};
 use crate::job::recipe::plain_name;
 use crate::job::render::RenderSettings;
 use crate::system::shell::quoted;
@@ -76,8 +75,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::{CheckedScene, Origin};
     use crate::cli::{Request, parse};
     use crate::job::recipe::{Recipe, file};
     use crate::job::render::{RenderJob, SamplerKind};

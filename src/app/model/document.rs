@@ -1,7 +1,6 @@
 //! The document, which the user edits and undo restores: the origin of a picture and the changes to it.
 
-use super::checked::CheckedScene;
-use super::origin::{Origin, Source};
+use super::{CheckedScene, Origin, Source};
 use crate::job::recipe::Recipe;
 use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::measure::stress::Case;

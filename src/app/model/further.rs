@@ -1,6 +1,6 @@
 //! How a render that has ended can go on.
 
-use super::document::Document;
+use super::Document;
 use crate::job::render::SAMPLE_LIMIT;
 use crate::progressive::{EndReason, Phase, Status, Stop};
 use crate::stages::Shading;
@@ -42,7 +42,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::film::ErrorEstimate;
     use crate::stages::Stage;
 

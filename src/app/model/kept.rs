@@ -1,6 +1,6 @@
 //! The pictures that the user has kept to compare with. They live in memory until the window closes.
 
-use super::document::Document;
+use super::Document;
 use crate::film::Film;
 use crate::progressive::{ReferenceMeans, Status};
 use crate::system::memory::words;
@@ -191,7 +191,7 @@ impl KeptList {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::film::PixelSum;
     use crate::stages::Stage;
 

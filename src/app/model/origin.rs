@@ -1,6 +1,6 @@
 //! The origin of a picture.
 
-use super::checked::CheckedScene;
+use super::CheckedScene;
 use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;

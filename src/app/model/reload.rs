@@ -1,7 +1,6 @@
 //! A document whose scene file has been read again.
 
-use super::document::Document;
-use super::origin::Origin;
+use super::{Document, Origin};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 
@@ -33,7 +32,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Source;
+    use crate::app::model::Source;
     use crate::progressive::Stop;
     use crate::stages::Stage;
     use std::sync::Arc;

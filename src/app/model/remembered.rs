@@ -1,9 +1,7 @@
 //! Settings that the window keeps from one run to the next.
 
 use super::Model;
-use super::device::{self, Device};
-use super::sizing::Sizing;
-use super::view::ViewState;
+use super::{Device, Sizing, ViewState, device};
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;

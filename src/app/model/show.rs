@@ -1,6 +1,6 @@
 //! The views of a film.
 
-use super::tone::Tone;
+use super::Tone;
 use crate::backends::layers::Layer;
 use crate::numbers::heat::HeatScale;
 use crate::progressive::View;

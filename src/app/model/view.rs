@@ -1,11 +1,6 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
-use super::checked::CheckedScene;
-use super::document::Document;
-use super::kept::{Kept, KeptList};
-use super::origin::Origin;
-use super::show::Show;
-use super::tone::Tone;
+use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::app::denoising::Found;
 use crate::app::kept::FilmId;
 use crate::denoise::Denoised;

@@ -5,7 +5,7 @@ mod side;
 mod tab;
 
 use super::answers::Answers;
-use super::model::document::Document;
+use super::model::Document;
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::scene::Sphere;
@@ -153,7 +153,7 @@ pub fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     /// A small picture of a stage with the paths of one of its pixels.

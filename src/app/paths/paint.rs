@@ -1,7 +1,7 @@
 //! Paths drawn as lines over the picture.
 
 use super::{Path, Paths};
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::theme;
 use crate::backends::explain::{Event, Lobe, Step};
 use crate::scene::Camera;

@@ -1,7 +1,7 @@
 //! A path seen from the side: from the eye, its first ray is only a point.
 
 use super::{Path, is_ground};
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::theme;
 use crate::backends::explain::{Event, Lobe};
 use crate::scene::{Look, Sphere};

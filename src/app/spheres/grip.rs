@@ -1,6 +1,6 @@
 //! What a drag does to a sphere, and where a new sphere goes.
 
-use crate::app::model::edit::Body;
+use crate::app::model::Body;
 use crate::scene::{Camera, Material, Pick};
 use glam::DVec3;
 

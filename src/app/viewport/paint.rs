@@ -2,9 +2,7 @@
 
 use super::placement::Placement;
 use crate::app::facts::Facts;
-use crate::app::model::document::Document;
-use crate::app::model::show::Show;
-use crate::app::model::view::Mode;
+use crate::app::model::{Document, Mode, Show};
 use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
