@@ -4,14 +4,16 @@ use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{Channel, Device, Dock, Mode, Show, Sizing, Tab, Theme, Tone, With};
+use super::model::{
+    Bookmark, Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With,
+};
 use super::places;
 use super::spheres::neighbour;
 use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
-use crate::stages::Stage;
+use crate::stages::{BOOK_URL, Stage};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 use std::sync::LazyLock;
 
@@ -89,7 +91,6 @@ pub enum Command {
     KeptWipe,
     KeptDifference,
     OnlyNoise,
-    GoOnFromKept,
     DeleteKept,
     NextRay,
     PreviousRay,
@@ -279,19 +280,19 @@ fn rows() -> Vec<Row> {
     row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
         needs(|f| f.redo.is_some(), "Nothing has been undone")}
     row! {C::ResetAll, "Reset everything",
-        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
+        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.keep_selection_after(|w| w.model.document.reset()),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
         also("original lost back")}
     row! {C::AddSphere, "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
         key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball")}
     row! {C::DuplicateSphere, "Duplicate the sphere", "Puts a copy beside the selected sphere",
         |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball")}
-    row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.delete_sphere(),
+    row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
         key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball")}
     row! {C::SkyColours, "Sky colours…", "Changes the two colours that the sky fades between",
         |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
         also("background light gradient")}
-    row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.home(),
+    row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.model.document.camera = w.document().origin.recipe.camera,
         key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
         also("home lost back original")}
@@ -354,13 +355,18 @@ fn rows() -> Vec<Row> {
             "More samples would change nothing"
         ),
         on(|f| f.model.is_paused), also("stop resume continue")}
-    row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| w.restart(),
+    row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| {
+            if std::mem::take(&mut w.model.is_paused) {
+                w.tracing.resume();
+            }
+            w.tracing.restart();
+        },
         key(Key::R)}
     row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-        |w, _| w.switch_device(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
+        |w, _| w.model.remembered.device.toggle(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
     row! {C::Device(Device::Reference), "Reference (f64)",
         "Traces with twice the digits, slowly, to show rounding errors", 
-        |w, _| w.switch_device(Device::Reference),
+        |w, _| w.model.remembered.device.toggle(Device::Reference),
         on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
     row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
         |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
@@ -411,10 +417,17 @@ fn rows() -> Vec<Row> {
         }),
         also("rays bounce trace")}
     row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
-        |w, _| w.toggle_code(), key(Key::K),
+        |w, _| {
+            let tab = if w.model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
+            let r = &mut w.model.remembered;
+            (r.tab, r.has_panels, r.has_info) = (tab, true, true);
+        }, key(Key::K),
         off(|f| no_presentation(f).or_else(|| no_stage(f))),
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
-    row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| w.open_book(c),
+    row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
+            let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
+            w.open_or_tell(c, url);
+        },
         also("web section")}
     row! {C::Companion, "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds",
@@ -506,16 +519,16 @@ fn rows() -> Vec<Row> {
     row! {C::StopCompanion, "Stop", "Leaves out the pictures that are missing",
         |w, _| w.files.stop_companion(), unlisted()}
     row! {C::Deselect, "Deselect the sphere", "", |w, _| w.model.selected = None, unlisted()}
-    row! {C::GoOnFromKept, "Go on from it",
-        "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
-        |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
         needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::NextRay, "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::PreviousRay, "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
-    row! {C::ClearPaths, "Close the paths", "", |w, _| w.clear_paths(), needs(|f| f.has_paths, NO_PATHS),
+    row! {C::ClearPaths, "Close the paths", "", |w, _| {
+            w.tools.paths.forget();
+            w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
+        }, needs(|f| f.has_paths, NO_PATHS),
         unlisted()}
     row! {C::NextPanel, "Next panel", "", |w, c| w.shell.panel = places::next(c, w.shell.panel, &w.model), key(Key::F6), off(no_presentation),
         unlisted()}
@@ -526,7 +539,11 @@ fn rows() -> Vec<Row> {
     for sizing in Sizing::ALL {
         row! {C::Size(sizing), "Render at this size",
             "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
-            move |w, _| w.take_size(sizing), unlisted()}
+            move |w, _| {
+                w.model.remembered.sizing = sizing;
+                w.model.document.has_own_size = false;
+                w.tracing.sizer.ask();
+            }, unlisted()}
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row! {C::Kept(place), "", "Shows it instead of the picture",
@@ -632,9 +649,13 @@ impl Command {
     pub(super) fn run(self, window: &mut Window, context: &Context) {
         match self {
             Command::Stage(stage) => window.show_stage(stage),
-            Command::Extreme(case) => window.show_case(case),
+            Command::Extreme(case) => window.show_origin(Origin::of_case(case)),
             Command::Recent(place) => window.open_recent(context, place),
-            Command::Bookmark(place) => window.jump_to_bookmark(place),
+            Command::Bookmark(place) => {
+                let bookmark = window.model.remembered.bookmarks.get(place);
+                let camera = bookmark.map(Bookmark::camera);
+                window.model.document.camera = camera.unwrap_or(window.document().camera);
+            }
             Command::Field(name) => {
                 let remembered = &mut window.model.remembered;
                 (remembered.has_panels, remembered.has_controls) = (true, true);

@@ -123,14 +123,8 @@ const ACTIONS: [(&str, Command); 5] = [
 ];
 
 /// What the menu of a right click on it offers.
-pub const MENU: [Command; 6] = [
-    Command::Flip,
-    Command::KeptWipe,
-    Command::KeptDifference,
-    Command::OnlyNoise,
-    Command::GoOnFromKept,
-    Command::DeleteKept,
-];
+pub const MENU: [Command; 5] =
+    [Command::Flip, Command::KeptWipe, Command::KeptDifference, Command::OnlyNoise, Command::DeleteKept];
 
 /// The actions, from right to left. The first three are a switch.
 fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {

@@ -110,14 +110,7 @@ impl Facts {
             return bookmark.name.clone();
         }
         let Some(path) = self.path(command) else { return command.name() };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        let is_same = |other: &&PathBuf| other.file_name() == path.file_name();
-        let is_alone = self.model.remembered.recent.iter().filter(is_same).count() == 1;
-        match path.parent() {
-            // Files of the same name are told apart by their directories.
-            Some(directory) if !is_alone => format!("{name} in {}", directory.display()),
-            _ => name.to_string(),
-        }
+        path.file_name().unwrap_or(path.as_os_str()).display().to_string()
     }
 
     /// Why there is nothing to compare this picture with, if so.

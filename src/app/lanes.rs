@@ -68,12 +68,6 @@ impl Lanes {
         self.answers.ask("lanes", context, record, Err);
     }
 
-    /// The numbers of steps without and with refill, once they are recorded.
-    pub fn steps(&self) -> Option<[usize; 2]> {
-        let [without, with] = self.traced.as_ref()?.as_ref().ok()?;
-        Some([without.len(), with.len()])
-    }
-
     pub fn ui(&self, ui: &mut Ui, facts: &Facts) {
         let is_one_ray = facts.no_rays().is_some() || facts.document().rules().shading != Shading::Path;
         let empty = match (facts.model.remembered.device, &self.traced) {

@@ -6,8 +6,8 @@ use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
 use super::model::{
-    Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Sizing, Source,
-    Tab, ViewState, With, companion, device,
+    Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source, ViewState,
+    With, companion, device,
 };
 use super::navigation;
 use super::sight::Sighted;
@@ -17,8 +17,7 @@ use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
-use crate::measure::stress::Case;
-use crate::stages::{BOOK_URL, Stage};
+use crate::stages::Stage;
 use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -99,10 +98,6 @@ impl Window {
         self.show_origin(Origin::of_stage(stage));
     }
 
-    pub(super) fn show_case(&mut self, case: &'static Case) {
-        self.show_origin(Origin::of_case(case));
-    }
-
     pub(super) fn step_stage(&mut self, is_next: bool) {
         if let Some(stage) = self.facts().neighbour(is_next) {
             self.show_stage(stage);
@@ -133,12 +128,8 @@ impl Window {
         self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
     }
 
-    pub(super) fn reset_all(&mut self) {
-        self.keep_selection_after(|window| window.model.document.reset());
-    }
-
     /// Selects the sphere that `change` brings back or alters.
-    fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
+    pub(super) fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
         let (checked, origin) = (Arc::clone(&self.document().checked), Arc::clone(&self.document().origin));
         change(self);
         let after = self.document();
@@ -153,11 +144,6 @@ impl Window {
 
     // Camera and spheres
 
-    pub(super) fn home(&mut self) {
-        self.model.document.camera = self.document().origin.recipe.camera;
-        self.shell.toasts.withdraw(Command::Home);
-    }
-
     pub(super) fn add_bookmark(&mut self) {
         let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
@@ -165,12 +151,6 @@ impl Window {
         let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
         bookmarks.push(Bookmark::new(name, &document.camera));
         self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
-    }
-
-    pub(super) fn jump_to_bookmark(&mut self, place: usize) {
-        if let Some(bookmark) = self.model.remembered.bookmarks.get(place) {
-            self.model.document.camera = bookmark.camera();
-        }
     }
 
     pub(super) fn edit(&mut self, edit: Edit) {
@@ -191,12 +171,6 @@ impl Window {
         if let Some(Selected { sphere, body, .. }) = Selected::of(&self.model) {
             let right = self.document().camera.basis().u;
             self.edit(Edit::Duplicate(sphere, 2.2 * body.radius * right));
-        }
-    }
-
-    pub(super) fn delete_sphere(&mut self) {
-        if let Some(sphere) = self.model.selected {
-            self.edit(Edit::Delete(sphere));
         }
     }
 
@@ -277,11 +251,6 @@ impl Window {
         }
     }
 
-    pub(super) fn clear_paths(&mut self) {
-        self.tools.paths.forget();
-        self.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
-    }
-
     // Panels
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
@@ -297,13 +266,6 @@ impl Window {
         let is_open = remembered.has_panels && remembered.dock == Some(dock);
         remembered.has_panels = true;
         remembered.dock = if is_open { None } else { Some(dock) };
-    }
-
-    pub(super) fn toggle_code(&mut self) {
-        let is_open = self.model.shows(Tab::Code);
-        let remembered = &mut self.model.remembered;
-        remembered.tab = if is_open { Tab::Stage } else { Tab::Code };
-        (remembered.has_panels, remembered.has_info) = (true, true);
     }
 
     pub(super) fn toggle_panels(&mut self) {
@@ -358,25 +320,6 @@ impl Window {
         }
     }
 
-    pub(super) fn restart(&mut self) {
-        if std::mem::take(&mut self.model.is_paused) {
-            self.tracing.resume();
-        }
-        self.tracing.restart();
-    }
-
-    /// Traces on this device, or on the CPU again.
-    pub(super) fn switch_device(&mut self, other: Device) {
-        let device = &mut self.model.remembered.device;
-        *device = if *device == other { Device::Cpu } else { other };
-    }
-
-    pub(super) fn take_size(&mut self, sizing: Sizing) {
-        self.model.remembered.sizing = sizing;
-        self.model.document.has_own_size = false;
-        self.tracing.sizer.ask();
-    }
-
     // Kept pictures
 
     /// Keeps the picture once it has samples.
@@ -395,13 +338,6 @@ impl Window {
                 display.kept.is_wanted = false;
                 shell.toasts.bad(format!("Not kept: {reason}"));
             }
-        }
-    }
-
-    pub(super) fn go_on_from_kept(&mut self, context: &Context) {
-        let kept = &self.model.view.kept;
-        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
-            self.display.kept.reopen(context, &named.kept);
         }
     }
 
@@ -554,15 +490,10 @@ impl Window {
         }
     }
 
-    fn open_or_tell(&mut self, context: &Context, url: String) {
+    pub(super) fn open_or_tell(&mut self, context: &Context, url: String) {
         if !self.open_page(context, url.clone()) {
             self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
-    }
-
-    pub(super) fn open_book(&mut self, context: &Context) {
-        let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
-        self.open_or_tell(context, url);
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {

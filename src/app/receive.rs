@@ -2,7 +2,6 @@
 
 use super::command::Command;
 use super::files::{NotOpened, Resumed};
-use super::kept::Reopened;
 use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
@@ -51,12 +50,6 @@ impl Window {
             match outcome {
                 Ok(kept) => self.add_kept(kept),
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
-            }
-        }
-        while let Some(outcome) = self.display.kept.reopened.take() {
-            match outcome {
-                Ok(reopened) => self.go_on_from(reopened),
-                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
         self.display.kept.verdict.receive();
@@ -127,14 +120,5 @@ impl Window {
             self.model.remembered.dock = Some(Dock::Kept);
         }
         self.shell.toasts.good(format!("Kept as number {}", place + 1));
-    }
-
-    fn go_on_from(&mut self, Reopened { document, film, seconds }: Reopened) {
-        self.model.view.look(None);
-        self.model.view.end_comparison();
-        self.show_document(document);
-        (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
-        self.changes.step_to(&self.model.document);
-        self.shell.toasts.good(format!("Going on from {}; Undo returns", self.document().title()));
     }
 }

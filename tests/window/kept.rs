@@ -184,25 +184,3 @@ fn noise_is_told_from_a_difference() {
         assert!(harness.query_by_label(expected).is_some(), "the dock says it");
     }
 }
-
-#[test]
-fn a_render_goes_on_from_a_kept_picture_with_all_its_samples() {
-    let mut harness = finished(8);
-    let before = harness.state().shown_document().clone();
-    keep(&mut harness);
-    change(&mut harness);
-    let changed = harness.state().shown_document().camera;
-    send(&mut harness, Command::GoOnFromKept);
-    until(&mut harness, "the kept picture", |window| *window.shown_document() == before);
-    until(&mut harness, "its samples", is_done);
-    // All samples are there, and none was traced again.
-    assert_eq!(harness.state().status().samples_per_pixel, 8);
-    assert!(harness.state().status().contributions.is_empty(), "{:?}", harness.state().status());
-    assert_eq!(only_noise(&mut harness), "Identical to the bit.");
-    send(&mut harness, Command::Undo);
-    assert_eq!(harness.state().shown_document().camera, changed);
-    send(&mut harness, Command::Redo);
-    assert_eq!(*harness.state().shown_document(), before);
-    harness.state_mut().document_mut().stop = Stop::at_samples(12);
-    until(&mut harness, "more samples", has_samples(12));
-}

@@ -12,11 +12,11 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
-use crate::system::files::{home_directory, pictures_directory};
+use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
-use std::path::{Path, PathBuf, is_separator};
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
@@ -84,16 +84,6 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     let mut name = path.into_os_string();
     name.push(format!(".{ending}"));
     name.into()
-}
-
-/// A path as it was typed, from `folder`; the home directory can be written as `~`.
-fn typed_path(text: &str, folder: &Path) -> PathBuf {
-    let text = text.trim();
-    let rest = text.strip_prefix('~').filter(|rest| rest.is_empty() || rest.starts_with(is_separator));
-    match (rest, home_directory()) {
-        (Some(rest), Some(home)) => home.join(rest.trim_start_matches(is_separator)),
-        _ => folder.join(text),
-    }
 }
 
 /// The system's file dialog.
@@ -171,7 +161,7 @@ impl PathField {
         named(&field, "File name");
         focus(ui, &field, &self.text);
         let is_saving = self.purpose.is_saving();
-        let path = typed_path(&self.text, &self.folder);
+        let path = self.folder.join(self.text.trim());
         let path = if is_saving { with_ending(path, self.purpose.endings()[0]) } else { path };
         let reason = if is_saving { missing_folder(&path) } else { None };
         note(ui, reason.as_deref(), is_saving && path.exists());
@@ -256,7 +246,7 @@ impl SaveBox {
     }
 
     fn path(&self) -> PathBuf {
-        with_ending(typed_path(&self.name, &self.folder), self.what.ending())
+        with_ending(self.folder.join(self.name.trim()), self.what.ending())
     }
 
     fn pixels(&self, size: Size, shown: &Document) -> [u32; 2] {
@@ -370,17 +360,11 @@ fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
 fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help: &str) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let (colours, is_on) = (theme::colours(ui), *chosen == value);
-        let widgets = &mut ui.visuals_mut().widgets;
-        for widget in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
-            widget.bg_stroke = Stroke::new(1.0, if is_on { colours.accent } else { colours.edge });
-        }
+        let edge = if *chosen == value { theme::colours(ui).accent } else { theme::colours(ui).edge };
+        ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, edge);
         ui.radio_value(chosen, value, label);
         ui.spacing_mut().interact_size.y = 16.0;
-        ui.horizontal(|ui| {
-            ui.add_space(24.0);
-            small(ui, help);
-        });
+        ui.indent(label, |ui| small(ui, help));
     });
 }
 
@@ -424,10 +408,10 @@ fn seconds_at(facts: &Facts, [width, height]: [u32; 2]) -> Option<f64> {
 
 /// A size that needs much memory or time, and asks before it is rendered.
 pub struct LargeSize {
-    /// The one that is asked for, or the largest of its shape that fits into the free memory.
     size: [u32; 2],
     words: String,
-    label: &'static str,
+    /// There is memory for it.
+    fits: bool,
 }
 
 impl LargeSize {
@@ -448,21 +432,16 @@ impl LargeSize {
         }
         let [width, height] = size;
         let needs = format!("{width} × {height} needs {}", memory::words(bytes));
-        let Err(refused) = memory::check(|| needs.clone(), bytes, "choose a smaller size") else {
-            let words = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
-            return Some(LargeSize { size, words: format!("{needs}{words}."), label: "Render" });
-        };
-        let share = (0.9 * refused.free_bytes as f64 / refused.needed_bytes as f64).sqrt();
-        let [x, y] = size.map(|side| ((f64::from(side) * share) as u32).max(1));
-        let free = memory::words(refused.free_bytes);
-        let words = format!("{needs}; {free} are free. The largest that fits is {x} × {y}.");
-        Some(LargeSize { size: [x, y], words, label: "Use that" })
+        let time = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
+        let fits = memory::check(|| needs.clone(), bytes, "choose a smaller size");
+        let words = fits.as_ref().map_or_else(ToString::to_string, |()| format!("{needs}{time}."));
+        Some(LargeSize { size, words, fits: fits.is_ok() })
     }
 
     pub(super) fn ui(&self, ui: &mut Ui) -> Outcome {
         let words = ui.label(&self.words);
         ui.add_space(12.0);
-        match buttons(ui, &words, self.label, true) {
+        match buttons(ui, &words, "Render", self.fits) {
             Some(true) => Outcome::Size(self.size),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
