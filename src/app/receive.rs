@@ -1,7 +1,7 @@
 //! What background threads have answered.
 
 use super::command::Command;
-use super::files::{NotOpened, Resumed};
+use super::files::Resumed;
 use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
@@ -28,12 +28,10 @@ impl Window {
         }
         while let Some(outcome) = self.files.opened.take() {
             match outcome {
-                Ok(opened) => self.show_opened(opened),
+                Ok(Ok(opened)) => self.show_opened(opened),
                 // A picture of another program is the user's own, to be checked.
-                Err(NotOpened { path, is_picture: true, .. }) => {
-                    self.tools.check.begin(context, &path, None);
-                }
-                Err(NotOpened { reason, .. }) => self.shell.toasts.bad(format!("Not opened: {reason}")),
+                Ok(Err(path)) => self.tools.check.begin(context, &path, None),
+                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
         if let Some(path) = self.tools.check.follow() {
@@ -42,7 +40,7 @@ impl Window {
         if self.tools.check.take_news() {
             (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
         }
-        while let Some((picture, what)) = self.files.copied.take() {
+        while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);
         }

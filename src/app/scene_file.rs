@@ -16,7 +16,7 @@ const LOOKS_APART: Duration = Duration::from_millis(500);
 pub struct SceneFile {
     /// The origin whose file is watched, until the token is dropped.
     watched: Option<(Arc<Origin>, Arc<()>)>,
-    reread: Answers<(Arc<Origin>, Result<Recipe, String>)>,
+    reread: Answers<Recipe>,
 }
 
 impl SceneFile {
@@ -24,18 +24,18 @@ impl SceneFile {
         if self.watched.as_ref().is_some_and(|(watched, _)| Arc::ptr_eq(watched, origin)) {
             return;
         }
-        self.watched = None;
+        *self = SceneFile::default();
         let Source::File(path) = &origin.source else { return };
         let token = Arc::new(());
         let (path, answer) = (path.clone(), self.reread.answer(context));
-        let (watched, needed) = (Arc::clone(origin), Arc::downgrade(&token));
+        let needed = Arc::downgrade(&token);
         let read = move |path: &Path| {
             let recipe = file::load(path).map_err(|error| error.to_string());
             let recipe = recipe.and_then(|recipe| match recipe.job() {
                 Ok(_) => Ok(recipe),
                 Err(error) => Err(error.to_string()),
             });
-            answer.give_one((Arc::clone(&watched), recipe));
+            answer.give_one(recipe);
         };
         let look = move || look_repeatedly(&path, &needed, read);
         if let Err(error) = thread::Builder::new().name("scene file".to_owned()).spawn(look) {
@@ -66,10 +66,10 @@ impl Window {
         self.files.scene_file.watch(context, &origin);
         let Source::File(path) = &origin.source else { return };
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        while let Some((of, recipe)) = self.files.scene_file.reread.take() {
+        while let Some(recipe) = self.files.scene_file.reread.take() {
             let is_own = self.document().checked.file().is_some_and(|saved| saved == *path);
             match recipe {
-                _ if is_own || !Arc::ptr_eq(&of, &origin) => {}
+                _ if is_own => {}
                 Ok(recipe) => {
                     let reloaded = self.document().reloaded(recipe);
                     self.show_document(reloaded);

@@ -7,7 +7,7 @@ use super::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_cam
 use super::tracer::{Shown, Tracer, Want};
 use crate::progressive::ReferenceMeans;
 use eframe::egui::Context;
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
 /// The second picture.
 #[derive(Default)]
@@ -19,9 +19,7 @@ pub struct Second {
     picture: KeptPicture,
     /// Its film when it was last read.
     film: Option<Arc<ReferenceMeans>>,
-    films: Answers<(Arc<Origin>, ReferenceMeans)>,
-    /// Can be upgraded as long as a request for the film is open.
-    waiting: Weak<()>,
+    films: Answers<(Arc<Origin>, Arc<ReferenceMeans>)>,
 }
 
 impl Second {
@@ -70,9 +68,9 @@ impl Second {
 
     /// Takes the film if it has been read.
     pub fn receive(&mut self) {
-        while let Some((origin, film)) = self.films.take() {
+        while let Some(Ok((origin, film))) = self.films.take() {
             if self.of.as_ref().is_some_and(|(_, of)| Arc::ptr_eq(of, &origin)) {
-                self.film = Some(Arc::new(film));
+                self.film = Some(film);
             }
         }
     }
@@ -109,17 +107,13 @@ impl Second {
             tracer.want(&Want { document: &document, stop, view: view.tone.of_picture(), ..*want }).is_ok();
         let is_full = tracer.is_full(&document);
         let has_picture = tracer.has_picture(&document);
-        let is_waiting = self.waiting.strong_count() > 0;
+        let is_waiting = self.films.is_open();
         if view.mode() != Some(Mode::Difference) {
             self.film = None;
         } else if is_full && has_picture && !is_waiting && (is_new || self.film.is_none()) {
-            let question = Arc::new(());
-            self.waiting = Arc::downgrade(&question);
             let (answer, origin) = (self.films.answer(context), Arc::clone(&document.origin));
             tracer.inspect(move |film| {
-                let film = ReferenceMeans::of(film);
-                drop(question);
-                answer.give((origin, film));
+                answer.give(Ok((origin, Arc::new(ReferenceMeans::of(film)))));
             });
         }
         is_possible
@@ -133,14 +127,11 @@ impl Second {
         self.picture.follow(context, &kept, &view.tone.of_picture());
         let is_difference = view.mode() == Some(Mode::Difference);
         self.film = kept.known_means().filter(|_| is_difference).cloned();
-        if is_difference && self.film.is_none() && self.waiting.strong_count() == 0 {
-            let question = Arc::new(());
-            self.waiting = Arc::downgrade(&question);
-            let (kept, context) = (Arc::clone(&kept), context.clone());
+        if is_difference && self.film.is_none() && !self.films.is_open() {
+            let (kept, answer) = (Arc::clone(&kept), self.films.answer(context));
             super::kept::run(move || {
-                kept.means();
-                drop(question);
-                context.request_repaint();
+                let means = Arc::clone(kept.means());
+                answer.give(Ok((Arc::clone(&kept.document.origin), means)));
             });
         }
         let origin = Arc::clone(&kept.document.origin);
@@ -181,7 +172,7 @@ mod tests {
         let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
         let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] };
         let answer = |second: &mut Second, origin: &Arc<Origin>| {
-            second.films.answer(&context).give((Arc::clone(origin), film()));
+            second.films.answer(&context).give(Ok((Arc::clone(origin), Arc::new(film()))));
             second.receive();
             second.film().is_some()
         };

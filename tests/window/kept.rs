@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Show, Window};
 use weekender::film::to_byte;
 use weekender::numbers::heat::HeatScale;
-use weekender::progressive::{Phase, Stop, luminance};
+use weekender::progressive::{Phase, luminance};
 use weekender::stages::Transfer;
 
 /// A pixel in the sky above the left ball.

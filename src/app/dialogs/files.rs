@@ -17,7 +17,6 @@ use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 /// What is saved.
@@ -91,8 +90,6 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
 pub struct System {
     /// There is one; else the field for a path is shown at once.
     pub is_there: bool,
-    /// Can be upgraded as long as the dialog is open.
-    open: Weak<()>,
     /// What the dialog was for, where it began, and the path that was chosen, if there was a dialog to choose in.
     chosen: Answers<(Purpose, PathBuf, Option<PathBuf>)>,
 }
@@ -101,22 +98,19 @@ impl System {
     /// A dialog that closes sooner than this was never visible.
     const SEEN: Duration = Duration::from_millis(300);
 
-    pub fn chosen(&self) -> Option<(Purpose, PathBuf, Option<PathBuf>)> {
-        self.chosen.take()
+    pub fn chosen(&mut self) -> Option<(Purpose, PathBuf, Option<PathBuf>)> {
+        self.chosen.take()?.ok()
     }
 
     /// Opens the dialog at a folder or a file, on a thread of its own, because it can block for any time.
     pub fn ask(&mut self, context: &egui::Context, purpose: Purpose, from: PathBuf) {
-        let start = from.clone();
-        let answer = self.chosen.answer_or(context, move |_| (purpose, start, None));
+        if self.chosen.is_open() {
+            return;
+        }
+        let answer = self.chosen.answer(context);
         if !self.is_there {
-            return answer.give((purpose, from, None));
+            return answer.give(Ok((purpose, from, None)));
         }
-        if self.open.strong_count() > 0 {
-            return answer.wake();
-        }
-        let token = Arc::new(());
-        self.open = Arc::downgrade(&token);
         let choose = move || {
             let begin = Instant::now();
             let (folder, name) = match from.file_name().filter(|_| !from.is_dir()) {
@@ -130,10 +124,9 @@ impl System {
                 .set_directory(folder);
             let path =
                 if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
-            drop(token);
             match path {
-                None if begin.elapsed() >= System::SEEN => answer.wake(),
-                path => answer.give((purpose, from, path)),
+                None if begin.elapsed() >= System::SEEN => answer.end(),
+                path => answer.give(Ok((purpose, from, path))),
             }
         };
         // Without a thread the answer is that there is no dialog.

@@ -14,7 +14,7 @@ pub struct KeptActions {
     pub picture: KeptPicture,
     pub cards: Cards,
     pub verdict: Verdict,
-    pub copied: Answers<Result<Kept, String>>,
+    pub copied: Answers<Kept>,
     /// The picture is to be kept as soon as it has samples.
     pub is_wanted: bool,
 }
@@ -29,7 +29,7 @@ impl KeptActions {
     ) {
         self.is_wanted = false;
         let (document, status) = (document.clone(), Arc::clone(main.status()));
-        let answer = self.copied.answer_or(context, Err);
+        let answer = self.copied.promise(context);
         main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());
             answer.give(copy.map(|film| Kept::new(document, film, status, seconds_before)));

@@ -25,7 +25,7 @@ pub struct Verdict {
     /// The kept picture and the run of the render that it is compared with.
     of: Option<(u64, u64)>,
     answer: Option<Result<Answer, String>>,
-    answers: Answers<Result<Answer, String>>,
+    answers: Answers<Answer>,
 }
 
 impl Verdict {
@@ -34,7 +34,7 @@ impl Verdict {
         let of = Some((kept.number(), main.status().run));
         *self = Verdict { of, ..Verdict::default() };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
-        let answer = self.answers.answer_or(context, Err);
+        let answer = self.answers.promise(context);
         main.inspect(move |film| match film.try_copy() {
             Ok(film) => answer.give_from("compare", move || compared(&kept, recipe, film)),
             Err(error) => answer.give(Err(error.to_string())),
