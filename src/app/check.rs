@@ -162,9 +162,6 @@ impl Check {
                 self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
                 ui.add_space(8.0);
                 panel_line(ui);
-                let (summary, why) = certainty(answer.kind);
-                let header = Header { title: "How sure is this?", summary, ..Header::default() };
-                fold(ui, header, false, |ui| _ = hint(ui, why));
                 fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
                     for line in &answer.evidence {
                         hint(ui, &format!("{line}."));
@@ -200,7 +197,7 @@ impl Check {
             .stage
             .map_or("Ours".to_owned(), |stage| format!("Ours: {} {}", stage.section, stage.title));
         let label = |rect: Rect, corner: Align2, text: &String| {
-            paint::title(ui, ui.painter(), rect, corner, std::slice::from_ref(text));
+            paint::title(ui, ui.painter(), rect, corner, text);
         };
         match self.side {
             Side::Wipe => {
@@ -287,27 +284,6 @@ fn links(ui: &mut Ui, answer: &Answer, commands: &mut Vec<Command>) {
             }
         }
     });
-}
-
-/// How sure an answer is, and why.
-fn certainty(kind: AnswerKind) -> (&'static str, &'static str) {
-    match kind {
-        AnswerKind::Right => (
-            "very",
-            "No part of your picture differs from ours by more than chance, and neither do its edges.",
-        ),
-        AnswerKind::Mistake => (
-            "very",
-            "With this mistake built into ours, no part of the two pictures differs by more than chance.",
-        ),
-        AnswerKind::LikelyMistake => (
-            "fairly",
-            "Of all known mistakes this one comes closest, but parts of the pictures still differ by more than chance.",
-        ),
-        AnswerKind::Unknown | AnswerKind::CannotCheck => {
-            ("not", "The pictures differ by more than chance, and no known mistake comes close.")
-        }
-    }
 }
 
 #[cfg(test)]

@@ -4,17 +4,14 @@ use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{
-    Bookmark, Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With,
-};
-use super::places;
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With};
 use super::spheres::neighbour;
 use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::{BOOK_URL, Stage};
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+use eframe::egui::{Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 use std::sync::LazyLock;
 
 /// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
@@ -95,7 +92,7 @@ pub enum Command {
     NextRay,
     PreviousRay,
     ClearPaths,
-    NextPanel,
+    FocusControls,
     Blank,
     /// Gives the picture the size of the viewport or of the book.
     Size(Sizing),
@@ -530,8 +527,8 @@ fn rows() -> Vec<Row> {
             w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
         }, needs(|f| f.has_paths, NO_PATHS),
         unlisted()}
-    row! {C::NextPanel, "Next panel", "", |w, c| w.shell.panel = places::next(c, w.shell.panel, &w.model), key(Key::F6), off(no_presentation),
-        unlisted()}
+    row! {C::FocusControls, "Into the controls", "",
+        |_, c| c.memory_mut(|memory| memory.move_focus(FocusDirection::Next)), key(Key::F6), unlisted()}
     row! {C::Blank, "Blank the screen", "", 
         |w, _| w.model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true), key(Key::B),
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
@@ -632,17 +629,7 @@ impl Command {
 
     /// Opens a dialog, which takes the keys that follow.
     pub fn opens_dialog(self) -> bool {
-        matches!(
-            self,
-            Command::Open
-                | Command::Save
-                | Command::SaveAs(_)
-                | Command::Palette
-                | Command::Help
-                | Command::About
-                | Command::SkyColours
-                | Command::CheckPicture
-        )
+        matches!(self, Command::Help | Command::About) || self.name().ends_with('…')
     }
 
     /// Carries it out, whether or not it is off.
@@ -653,7 +640,7 @@ impl Command {
             Command::Recent(place) => window.open_recent(context, place),
             Command::Bookmark(place) => {
                 let bookmark = window.model.remembered.bookmarks.get(place);
-                let camera = bookmark.map(Bookmark::camera);
+                let camera = bookmark.map(|bookmark| bookmark.camera);
                 window.model.document.camera = camera.unwrap_or(window.document().camera);
             }
             Command::Field(name) => {

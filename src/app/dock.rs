@@ -5,7 +5,6 @@ use super::facts::Facts;
 use super::kept::KeptActions;
 use super::menu::item;
 use super::model::{Dock, Kept, Model, ViewState, With};
-use super::places::Place;
 use super::tools::Tools;
 use super::widgets::{About, Sign, TABS, command_button, hint, panel_line, sign_button, small, switch, tip};
 use super::{plot, theme};
@@ -61,7 +60,6 @@ pub fn ui(
         .default_size(usual)
         .size_range(LEAST..=(0.5 * height).max(LEAST))
         .show(ui, |ui| {
-            Place::Dock.begin(ui);
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
             row.show(ui, |ui| tabs(ui, dock, model, facts, commands));

@@ -91,26 +91,18 @@ impl Facts {
 
     /// The name of a command, with the change that it undoes, the file that it opens or the bookmark that it goes to.
     pub fn name(&self, command: Command) -> String {
-        let change = match command {
-            Command::Undo => self.undo,
-            Command::Redo => self.redo,
+        let Model { view, remembered, .. } = &self.model;
+        let named = match command {
+            Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
+            Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
+            Command::Kept(place) => view.kept.get(place).map(|named| named.name.clone()),
+            Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
+            Command::Recent(_) => {
+                self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
+            }
             _ => None,
         };
-        if let Some(change) = change {
-            return format!("{}: {change}", command.name());
-        }
-        if let Command::Kept(place) = command
-            && let Some(named) = self.model.view.kept.get(place)
-        {
-            return named.name.clone();
-        }
-        if let Command::Bookmark(place) = command
-            && let Some(bookmark) = self.model.remembered.bookmarks.get(place)
-        {
-            return bookmark.name.clone();
-        }
-        let Some(path) = self.path(command) else { return command.name() };
-        path.file_name().unwrap_or(path.as_os_str()).display().to_string()
+        named.unwrap_or_else(|| command.name())
     }
 
     /// Why there is nothing to compare this picture with, if so.

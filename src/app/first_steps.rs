@@ -2,7 +2,6 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::places::Place;
 use super::theme;
 use super::widgets::{Sign, command_button, primary, sign_button, tip};
 use crate::stages::Stage;
@@ -46,7 +45,6 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
 }
 
 fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
-    Place::FirstSteps.begin(ui);
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), 20.0),
         Layout::left_to_right(Align::Center),

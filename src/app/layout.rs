@@ -6,7 +6,6 @@ use super::facts::Facts;
 use super::inspector::Inspector;
 use super::model::{Dock, Document, Model, Remembered, Tab, ViewState};
 use super::paths::at_same_place;
-use super::places::Place;
 use super::second::Second;
 use super::spheres::Selected;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
@@ -48,7 +47,6 @@ impl Window {
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
-        Place::Bar.begin(ui);
         bar::ui(ui, facts, commands);
         status::ui(ui, facts, tracing.sizer.offer(), commands);
         let mut edits = Vec::new();
@@ -62,7 +60,6 @@ impl Window {
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
         let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
-            Place::Controls.begin(ui);
             controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
         };
         if has.has_controls && !is_narrow {
@@ -71,7 +68,6 @@ impl Window {
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
-                Place::Info.begin(ui);
                 let (chosen, is_closed) = right::tabs(ui, &tabs, tab);
                 if chosen != tab {
                     remembered.tab = chosen;
@@ -182,16 +178,14 @@ impl Window {
     }
 }
 
-/// The titles of the two sides of a comparison, the other one first, each from the longest to the shortest.
-fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
+/// The titles of the two sides of a comparison, the other one first.
+fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
-    let of = |document: &Document, kept: Option<usize>| match (kept, document.stage()) {
-        (Some(place), _) => vec![view.kept.title(place), (place + 1).to_string()],
-        (None, Some(stage)) => vec![document.title(), stage.section.to_owned()],
-        (None, None) => vec![document.title()],
+    let of = |document: &Document, kept: Option<usize>| {
+        kept.map_or_else(|| document.title(), |place| view.kept.title(place))
     };
-    let other = second.shown().map_or_else(Vec::new, |shown| of(&shown.document, view.compared_kept()));
-    [other, of(facts.shown(), view.kept.looked())]
+    let other = second.shown().map(|shown| of(&shown.document, view.compared_kept()));
+    [other.unwrap_or_default(), of(facts.shown(), view.kept.looked())]
 }
 
 /// The numbers of the pixel under the pointer.

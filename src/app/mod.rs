@@ -35,7 +35,6 @@ mod navigation;
 mod paths;
 mod perform;
 mod pixel_values;
-mod places;
 mod plot;
 mod prediction;
 mod present;

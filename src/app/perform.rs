@@ -48,7 +48,7 @@ impl Window {
 
     /// Leaves the innermost thing that can be left.
     pub(super) fn escape(&mut self) {
-        let Window { model, tools, display, shell, commands, .. } = self;
+        let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
         } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
@@ -68,7 +68,6 @@ impl Window {
         } else if model.is_full_screen {
             commands.push(Command::FullScreen);
         }
-        shell.panel = None;
     }
 
     // The picture that is shown
@@ -149,7 +148,7 @@ impl Window {
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
         let place = document.place();
         let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
-        bookmarks.push(Bookmark::new(name, &document.camera));
+        bookmarks.push(Bookmark { name, camera: document.camera });
         self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
     }
 
@@ -383,20 +382,9 @@ impl Window {
 
     pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
         match outcome {
-            Outcome::Named(purpose, path) => self.use_path(context, purpose, path),
-            Outcome::Size(size) => {
-                self.tracing.sizer.accepted = Some(size);
-                self.model.document.give_size(size);
-            }
-            Outcome::Stay | Outcome::Close => {}
-        }
-    }
-
-    fn use_path(&mut self, context: &Context, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::Open => self.files.open(context, path),
-            Purpose::Check => self.tools.check.begin(context, &path, None),
-            Purpose::Save(what, size) => {
+            Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
+            Outcome::Named(_, path) => self.files.open(context, path),
+            Outcome::Save(what, size, path) => {
                 if let Some(folder) =
                     path.parent().filter(|folder| default_folder().as_deref() == Some(folder))
                 {
@@ -405,7 +393,11 @@ impl Window {
                 }
                 self.save_as(context, what, size, path);
             }
-            Purpose::Place(_) => {}
+            Outcome::Size(size) => {
+                self.tracing.sizer.accepted = Some(size);
+                self.model.document.give_size(size);
+            }
+            Outcome::Stay | Outcome::Close => {}
         }
     }
 

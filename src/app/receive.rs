@@ -22,7 +22,7 @@ impl Window {
                 }
                 Err(reason) => {
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
-                    self.shell.toasts.add_offer(Command::Save);
+                    self.shell.toasts.add_offers(&[Command::Save]);
                 }
             }
         }

@@ -2,7 +2,6 @@
 
 use super::dialogs::Dialogs;
 use super::frame_log::{FrameLog, FrameTimes};
-use super::places::Place;
 use super::toasts::Toasts;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context as _, Result};
@@ -18,8 +17,6 @@ pub struct Shell {
     pub performed: Option<super::command::Command>,
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
-    /// The part of the window that F6 has chosen.
-    pub panel: Option<Place>,
     pub is_dressed: bool,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
@@ -39,7 +36,6 @@ impl Shell {
             frame_times: FrameTimes::default(),
             performed: None,
             had_focus: false,
-            panel: None,
             is_dressed: false,
             crashes_at,
             interrupt: None,

@@ -47,8 +47,6 @@ pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
-    /// To save it, the picture with this size.
-    Save(What, [u32; 2]),
     /// To change name and folder in the dialog of saving.
     Place(What),
 }
@@ -58,19 +56,19 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
-            Purpose::Save(..) | Purpose::Place(_) => "Save",
+            Purpose::Place(_) => "Save",
         }
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(..) | Purpose::Place(_))
+        matches!(self, Purpose::Place(_))
     }
 
     fn endings(self) -> Vec<&'static str> {
         match self {
             Purpose::Open => vec!["png", "ppm", "exr", "toml"],
             Purpose::Check => vec!["png", "ppm"],
-            Purpose::Save(what, _) | Purpose::Place(what) => vec![what.ending()],
+            Purpose::Place(what) => vec![what.ending()],
         }
     }
 }
@@ -142,9 +140,8 @@ pub struct PathField {
 }
 
 impl PathField {
-    pub fn new(purpose: Purpose, from: PathBuf) -> Self {
-        let text = if purpose.is_saving() { from.display().to_string() } else { String::new() };
-        PathField { purpose, folder: if from.is_dir() { from } else { PathBuf::new() }, text }
+    pub fn new(purpose: Purpose, folder: PathBuf) -> Self {
+        PathField { purpose, folder, text: String::new() }
     }
 
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Outcome {
@@ -153,15 +150,8 @@ impl PathField {
         let field = ui.add(field.hint_text("File name; or drop the file on the window"));
         named(&field, "File name");
         focus(ui, &field, &self.text);
-        let is_saving = self.purpose.is_saving();
-        let path = self.folder.join(self.text.trim());
-        let path = if is_saving { with_ending(path, self.purpose.endings()[0]) } else { path };
-        let reason = if is_saving { missing_folder(&path) } else { None };
-        note(ui, reason.as_deref(), is_saving && path.exists());
-        let label = if is_saving { "Save" } else { "Open" };
-        let is_usable = !self.text.trim().is_empty() && reason.is_none();
-        match buttons(ui, &field, label, is_usable) {
-            Some(true) => Outcome::Named(self.purpose, path),
+        match buttons(ui, &field, "Open", !self.text.trim().is_empty()) {
+            Some(true) => Outcome::Named(self.purpose, self.folder.join(self.text.trim())),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
@@ -298,7 +288,7 @@ impl SaveBox {
             buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable)
         });
         match pressed.inner {
-            Some(true) => Outcome::Named(Purpose::Save(self.what, size), path),
+            Some(true) => Outcome::Save(self.what, size, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }

@@ -22,6 +22,8 @@ pub enum Outcome {
     Close,
     /// It closes: the user chose a file.
     Named(Purpose, PathBuf),
+    /// It closes: this is saved, the picture with this size.
+    Save(What, [u32; 2], PathBuf),
     /// It closes: the picture gets this size.
     Size([u32; 2]),
 }

@@ -55,28 +55,26 @@ impl Show {
         match self {
             Show::Picture => ["Picture", "The picture as it will be saved", "view"],
             Show::Normals => {
-                ["Normals", "Which way each surface faces: x is red, y green, z blue", "view direction"]
+                ["Normals", "Which way surfaces face: x is red, y green, z blue", "view direction"]
             }
             Show::Albedo => {
-                ["Surface colours", "What surfaces reflect (albedo), without light and shadow", "view albedo"]
+                ["Surface colours", "What surfaces reflect (albedo), without light", "view albedo"]
             }
             Show::Bounces => {
-                ["Rays per path", "How many rays a path has: where the time goes", "view heat depth bounces"]
+                ["Rays per path", "How many rays a path has: where the time goes", "view depth bounces"]
             }
             Show::Error => [
                 "Noise",
                 "How uncertain each pixel still is (standard error)",
-                "view grain quality standard error spp samples",
+                "view grain quality spp samples",
             ],
-            Show::Occupancy => [
-                "Lanes at work",
-                "How full the lanes of the processor were",
-                "view simd avx packet occupancy",
-            ],
+            Show::Occupancy => {
+                ["Lanes at work", "How full the lanes of the processor were", "view simd avx packet"]
+            }
             Show::Luminance => [
                 "Brightness",
                 "How bright each pixel is, in false colours with a scale",
-                "view heat false colour luminance",
+                "view heat luminance",
             ],
         }
     }
