@@ -3,10 +3,7 @@
 
 use super::answers::Answers;
 use super::files::describer;
-use super::model::Model;
-use super::model::checked::CheckedScene;
-use super::model::document::Document;
-use super::model::origin::{Origin, Source};
+use super::model::{CheckedScene, Document, Model, Origin, Source};
 use super::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
 use crate::job::recipe::file;
@@ -137,8 +134,8 @@ pub struct Autosave {
     due: Instant,
     /// Run and samples per pixel of the film that was written, or is being written.
     written: (u64, u64),
-    is_writing: bool,
-    outcomes: Answers<(Instant, Result<(), String>)>,
+    begun: Instant,
+    outcomes: Answers<()>,
     has_failed: bool,
 }
 
@@ -150,7 +147,7 @@ impl Autosave {
             every,
             due: Instant::now(),
             written: (0, 0),
-            is_writing: false,
+            begun: Instant::now(),
             outcomes: Answers::default(),
             has_failed: false,
         }
@@ -169,9 +166,8 @@ impl Autosave {
     /// Has the film written if it is time. The render thread only copies it. Returns why it could not be written, once.
     pub fn follow(&mut self, context: &Context, document: &Document, tracing: &Tracing) -> Option<String> {
         let mut told = None;
-        while let Some((begun, outcome)) = self.outcomes.take() {
-            self.is_writing = false;
-            self.due = Instant::now() + self.every.max(begun.elapsed() * SHARE);
+        while let Some(outcome) = self.outcomes.take() {
+            self.due = Instant::now() + self.every.max(self.begun.elapsed() * SHARE);
             let has_failed = std::mem::replace(&mut self.has_failed, outcome.is_err());
             told = outcome.err().filter(|_| !has_failed);
         }
@@ -179,7 +175,7 @@ impl Autosave {
         let status = tracing.main.status();
         let now = (status.run, status.samples_per_pixel);
         let is_long = tracing.main.has_samples(document) && tracing.seconds() >= self.every.as_secs_f64();
-        if !is_long || self.is_writing || now == self.written {
+        if !is_long || self.outcomes.is_open() || now == self.written {
             return told;
         }
         let wait = self.due.saturating_duration_since(Instant::now());
@@ -187,13 +183,12 @@ impl Autosave {
             context.request_repaint_after(wait);
             return told;
         }
-        (self.is_writing, self.written) = (true, now);
-        let begun = Instant::now();
+        (self.written, self.begun) = (now, Instant::now());
         let (path, describe) = (place.film(), describe(document, tracing));
         // A film that is gone before it is copied is no failure.
-        let answer = self.outcomes.answer_or(context, move |_| (begun, Ok(())));
+        let answer = self.outcomes.answer(context);
         tracing.main.inspect(move |film| {
-            let write = move |film: &Film| (begun, write(&path, film, &describe(film)));
+            let write = move |film: &Film| write(&path, film, &describe(film));
             match film.try_copy() {
                 Ok(copy) => answer.give_from("autosave", move || write(&copy)),
                 Err(_) => answer.give(write(film)),
@@ -204,9 +199,7 @@ impl Autosave {
 
     /// Saves the film at the end of the window. Where it has no place of its own, a panic saves it elsewhere.
     pub fn end(&mut self, model: &Model, tracing: &mut Tracing, is_restoring: bool) {
-        if std::mem::take(&mut self.is_writing) {
-            let _ = self.outcomes.wait();
-        }
+        let _ = self.outcomes.wait();
         let is_panic = std::thread::panicking();
         let is_kept = self.place.is_some() || is_panic;
         if is_kept && !is_restoring && tracing.main.has_samples(&model.document) {

@@ -3,14 +3,12 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::menu::menus;
-use super::model::device::{Device, adapter};
-use super::model::document::Document;
-use super::model::origin::Source;
+use super::model::{Device, Document, Source, adapter};
 use super::stage_list;
 use super::theme;
-use super::widgets::{About, Sign, named, paint_sign, switch, tip};
+use super::widgets::{About, Sign, add_command, named, paint_sign, switch, tip, with_keys};
 use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, Response, RichText, Ui, UiBuilder,
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder,
     ViewportCommand, pos2, vec2,
 };
 
@@ -63,8 +61,8 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
             device(ui, facts, commands);
             ui.add_space(16.0);
             pause(ui, facts, commands);
-            let response = ui.add(Button::new("Save…").min_size(vec2(SAVE, 0.0)));
-            send_if_clicked(ui, response, Command::Save, None, commands);
+            let save = Button::new("Save…").min_size(vec2(SAVE, 0.0));
+            add_command(ui, facts, Command::Save, save, commands);
         });
     });
 }
@@ -87,26 +85,6 @@ fn title_of(document: &Document) -> String {
         Source::Extreme(case) => case.title().to_owned(),
         Source::File(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
         _ => document.origin.recipe.name.clone(),
-    }
-}
-
-/// A command's help with its keys.
-fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
-    match command.keys(ui.ctx()) {
-        Some(keys) => format!("{help} ({keys})"),
-        None => help.to_owned(),
-    }
-}
-
-fn send_if_clicked(
-    ui: &Ui,
-    response: Response,
-    command: Command,
-    reason: Option<&str>,
-    commands: &mut Vec<Command>,
-) {
-    if tip(ui, response, &with_keys(ui, command.help(), command), reason).clicked() {
-        commands.push(command);
     }
 }
 
@@ -153,13 +131,12 @@ fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
 }
 
 fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, sign: Sign) {
-    let reason = facts.disabled_reason(command);
-    let response = ui.add_enabled(reason.is_none(), Button::new("").min_size(vec2(24.0, 24.0)));
-    let fade = if reason.is_some() { ui.visuals().disabled_alpha } else { 1.0 };
+    let button = Button::new("").min_size(vec2(24.0, 24.0));
+    let response = add_command(ui, facts, command, button, commands);
+    let fade = if response.enabled() { 1.0 } else { ui.visuals().disabled_alpha };
     let color = ui.style().interact(&response).text_color().gamma_multiply(fade);
     paint_sign(ui.painter(), response.rect, sign, color);
     named(&response, &command.name());
-    send_if_clicked(ui, response, command, reason.as_deref(), commands);
 }
 
 fn device(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {

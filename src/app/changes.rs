@@ -1,6 +1,6 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
-use super::model::document::Document;
+use super::model::Document;
 use eframe::egui::Context;
 use std::time::{Duration, Instant};
 
@@ -103,12 +103,6 @@ impl Changes {
         self.last = document.clone();
     }
 
-    /// Accepts a replaced document that comes with its film, as one step to undo.
-    pub fn step_to(&mut self, document: &Document) {
-        let before = std::mem::replace(&mut self.last, document.clone());
-        self.add(before);
-    }
-
     /// Notes what has changed in this frame. Returns whether the document now needs a different film.
     pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
@@ -153,7 +147,7 @@ fn restore(document: &mut Document, state: Document) -> Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use eframe::egui::{Event, Modifiers, PointerButton, Pos2, RawInput};
 
     #[test]
@@ -216,22 +210,6 @@ mod tests {
         assert!(changes.earlier(&document).is_some());
         changes.undo(&mut document);
         assert_eq!(document.stop.seconds, None);
-    }
-
-    #[test]
-    fn what_is_adopted_is_no_change_and_a_step_is_one() {
-        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
-        let mut changes = Changes::new(document.clone());
-        let first = document.camera;
-        change(&mut document);
-        changes.adopt(&document);
-        assert!(!changes.follow(&context, &document) && changes.earlier(&document).is_none());
-        let second = document.camera;
-        change(&mut document);
-        changes.step_to(&document);
-        assert!(!changes.follow(&context, &document) && changes.earlier(&document).is_some());
-        changes.undo(&mut document);
-        assert!(document.camera == second && second != first);
     }
 
     /// Presses or releases the button of the pointer.

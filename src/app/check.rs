@@ -20,11 +20,7 @@ use std::path::{Path, PathBuf};
 type Compared<T> = Option<([u32; 2], [T; 3])>;
 
 /// A picture that was checked.
-struct Checked {
-    number: u64,
-    answer: Answer,
-    rgb8: Compared<Vec<u8>>,
-}
+type Checked = (Answer, Compared<Vec<u8>>);
 
 /// What the middle of the window shows of the two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -39,7 +35,6 @@ enum Side {
 /// The check of a picture, made by a background thread.
 #[derive(Default)]
 pub struct Check {
-    number: u64,
     /// The picture that is checked or was checked last.
     path: Option<PathBuf>,
     shown: Option<(Answer, Compared<Texture>)>,
@@ -54,37 +49,31 @@ impl Check {
     /// Checks a picture; it is one of `stage` if that is known.
     pub fn begin(&mut self, context: &egui::Context, path: &Path, stage: Option<&'static Stage>) {
         self.close();
-        let (number, checked) = (self.number, path.to_owned());
+        let checked = path.to_owned();
         let work = move || {
             let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
             let found = mine.and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
-            match found {
-                Ok((mine, finding)) => {
-                    let views =
-                        pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
-                    let rgb8 = Some(([mine.width, mine.height], views));
-                    Checked { number, answer: finding.answer(&mine), rgb8 }
-                }
-                Err(error) => Checked { number, answer: Answer::cannot_check(&error), rgb8: None },
-            }
+            let (mine, finding) = match found {
+                Ok(found) => found,
+                Err(error) => return Ok((Answer::cannot_check(&error), None)),
+            };
+            let views = pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
+            Ok((finding.answer(&mine), Some(([mine.width, mine.height], views))))
         };
-        let substitute = move |reason: String| {
-            let answer = Answer::cannot_check(&anyhow::Error::msg(reason));
-            Checked { number, answer, rgb8: None }
-        };
-        self.answers.ask("check", context, work, substitute);
+        self.answers.ask("check", context, work);
         (self.path, self.has_news) = (Some(path.to_owned()), true);
         (self.side, self.divider) = (Side::Wipe, 0.5);
     }
 
     /// Takes answers. Returns the picture that was checked, if it could be compared.
     pub fn follow(&mut self) -> Option<PathBuf> {
-        let checked = self.answers.take().filter(|checked| checked.number == self.number)?;
+        let failed = |reason| (Answer::cannot_check(&anyhow::Error::msg(reason)), None);
+        let (answer, rgb8) = self.answers.take()?.unwrap_or_else(failed);
         let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
             (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
         };
-        let path = checked.rgb8.as_ref().and(self.path.clone());
-        self.shown = Some((checked.answer, checked.rgb8.map(textures)));
+        let path = rgb8.as_ref().and(self.path.clone());
+        self.shown = Some((answer, rgb8.map(textures)));
         self.has_news = true;
         path
     }
@@ -113,7 +102,7 @@ impl Check {
 
     /// Closes the answer. One that is awaited is not shown.
     pub fn close(&mut self) {
-        self.number += 1;
+        self.answers = Answers::default();
         (self.path, self.shown) = (None, None);
     }
 
@@ -173,9 +162,6 @@ impl Check {
                 self.side = switch(ui, 0.0, self.side, &sides).unwrap_or(self.side);
                 ui.add_space(8.0);
                 panel_line(ui);
-                let (summary, why) = certainty(answer.kind);
-                let header = Header { title: "How sure is this?", summary, ..Header::default() };
-                fold(ui, header, false, |ui| _ = hint(ui, why));
                 fold(ui, Header { title: "Figures", ..Header::default() }, false, |ui| {
                     for line in &answer.evidence {
                         hint(ui, &format!("{line}."));
@@ -211,7 +197,7 @@ impl Check {
             .stage
             .map_or("Ours".to_owned(), |stage| format!("Ours: {} {}", stage.section, stage.title));
         let label = |rect: Rect, corner: Align2, text: &String| {
-            paint::title(ui, ui.painter(), rect, corner, std::slice::from_ref(text));
+            paint::title(ui, ui.painter(), rect, corner, text);
         };
         match self.side {
             Side::Wipe => {
@@ -300,48 +286,9 @@ fn links(ui: &mut Ui, answer: &Answer, commands: &mut Vec<Command>) {
     });
 }
 
-/// How sure an answer is, and why.
-fn certainty(kind: AnswerKind) -> (&'static str, &'static str) {
-    match kind {
-        AnswerKind::Right => (
-            "very",
-            "No part of your picture differs from ours by more than chance, and neither do its edges.",
-        ),
-        AnswerKind::Mistake => (
-            "very",
-            "With this mistake built into ours, no part of the two pictures differs by more than chance.",
-        ),
-        AnswerKind::LikelyMistake => (
-            "fairly",
-            "Of all known mistakes this one comes closest, but parts of the pictures still differ by more than chance.",
-        ),
-        AnswerKind::Unknown | AnswerKind::CannotCheck => {
-            ("not", "The pictures differ by more than chance, and no known mistake comes close.")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn only_the_last_picture_is_answered() {
-        let (context, mut check) = (egui::Context::default(), Check::default());
-        let give = |check: &Check, number, reason: &str| {
-            let answer = Answer::cannot_check(&anyhow::anyhow!("{reason}"));
-            check.answers.answer(&context).give(Checked { number, answer, rgb8: None });
-        };
-        (check.number, check.path) = (2, Some("second.ppm".into()));
-        give(&check, 1, "first");
-        assert_eq!((check.follow(), check.answer()), (None, None));
-        give(&check, 2, "second");
-        assert_eq!(check.follow(), None, "it could not be compared");
-        assert_eq!(check.answer().unwrap().explanation, "Second");
-        check.close();
-        give(&check, 2, "second");
-        assert_eq!((check.follow(), check.is_open()), (None, false), "it was stopped");
-    }
 
     #[test]
     fn a_file_that_is_no_picture_gets_an_answer() {
@@ -373,7 +320,7 @@ mod tests {
         let stage = Stage::find("ppm-tiny").unwrap();
         check.begin(&context, &path, Some(stage));
         let checked = check.answers.wait().unwrap();
-        let (size, views) = checked.rgb8.as_ref().unwrap();
+        let (size, views) = checked.as_ref().unwrap().1.as_ref().unwrap();
         assert!(*size == [16, 9] && views[0] == rgb8, "the first picture is the reader's");
         check.answers.answer(&context).give(checked);
         assert_eq!(check.follow(), Some(path));

@@ -8,7 +8,7 @@ use crate::measure::baseline;
 use crate::page::companion::{Excerpt, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::text::{LayoutJob, TextFormat};
-use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, Sides, TextStyle, Ui};
+use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, ScrollArea, Sides, TextStyle, Ui};
 
 /// Words of the three languages.
 const KEYWORDS: &str = "as break const continue crate else enum false fn for if impl in let loop match mut override \
@@ -205,49 +205,11 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
     let well = Frame::new().fill(colours.well).stroke(ui.visuals().window_stroke).corner_radius(4);
     well.inner_margin(Margin::same(8)).show(ui, |ui| {
         ui.set_width(ui.available_width());
-        let font = TextStyle::Monospace.resolve(ui.style());
-        let letter = ui.fonts_mut(|fonts| fonts.glyph_width(&font, 'm'));
-        let columns = ((ui.available_width() / letter) as usize).max(24);
-        ui.add(Label::new(coloured(ui, &fitted(excerpt.text.trim_end(), columns))).extend());
+        let id = (&excerpt.file, excerpt.first);
+        ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
+            ui.add(Label::new(coloured(ui, excerpt.text.trim_end())).extend());
+        });
     });
-}
-
-/// The code in lines of at most `columns` letters: comments are filled anew, and longer lines break after a comma.
-fn fitted(code: &str, columns: usize) -> String {
-    let (mut lines, mut was_comment) = (Vec::<String>::new(), false);
-    for line in code.lines() {
-        let text = line.trim_start();
-        let indentation = &line[..line.len() - text.len()];
-        let is_comment = text.starts_with("//");
-        if is_comment {
-            let mark = &text[..text.find(|c| c != '/').unwrap_or(text.len())];
-            if !was_comment {
-                lines.push(format!("{indentation}{mark}"));
-            }
-            for word in text[mark.len()..].split_whitespace() {
-                match lines.last_mut() {
-                    Some(last) if last.len() + 1 + word.len() <= columns => {
-                        last.push(' ');
-                        last.push_str(word);
-                    }
-                    _ => lines.push(format!("{indentation}{mark} {word}")),
-                }
-            }
-        } else {
-            let (mut rest, hanging) = (line.to_owned(), format!("{indentation}        "));
-            while let Some((end, _)) = rest.char_indices().nth(columns) {
-                let head = &rest[..end];
-                let place = head.rfind(", ").map(|comma| comma + 1).filter(|at| *at > hanging.len());
-                let place = place.or_else(|| head.rfind(' ').filter(|at| *at > hanging.len()));
-                let Some(place) = place else { break };
-                let tail = rest.split_off(place);
-                lines.push(std::mem::replace(&mut rest, format!("{hanging}{}", tail.trim_start())));
-            }
-            lines.push(rest);
-        }
-        was_comment = is_comment;
-    }
-    lines.join("\n")
 }
 
 /// The code with colours for words of the language, types, numbers, comments, and what is called.
@@ -313,21 +275,5 @@ mod tests {
                 );
             }
         }
-    }
-
-    #[test]
-    fn code_fits_and_keeps_its_words() {
-        let words = |text: &str| -> Vec<String> {
-            text.split_whitespace().filter(|word| !word.starts_with("//")).map(str::to_owned).collect()
-        };
-        for excerpt in Stage::ALL.iter().flat_map(excerpts_of) {
-            let broken = fitted(&excerpt.text, 62);
-            assert_eq!(words(&broken), words(&excerpt.text), "{}", excerpt.file);
-            for line in broken.lines() {
-                assert!(line.chars().count() <= 62, "{}: {line}", excerpt.file);
-            }
-        }
-        assert_eq!(fitted("// one two\n// three", 12), "// one two\n// three");
-        assert_eq!(fitted("// one two\n// three", 9), "// one\n// two\n// three");
     }
 }

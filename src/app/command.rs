@@ -1,24 +1,17 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Keys, Palette, Purpose};
+use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
+use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::device::Device;
-use super::model::origin::Source;
-use super::model::remembered::{Dock, Tab, Theme};
-use super::model::show::Show;
-use super::model::sizing::Sizing;
-use super::model::tone::{Channel, Tone};
-use super::model::view::{Mode, With};
-use super::model::viewpoint::Viewpoint;
-use super::places;
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With};
 use super::spheres::neighbour;
 use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
-use crate::stages::Stage;
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+use crate::stages::{BOOK_URL, Stage};
+use eframe::egui::{Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ViewportCommand};
 use std::sync::LazyLock;
 
 /// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
@@ -26,13 +19,10 @@ use std::sync::LazyLock;
 pub enum Command {
     Open,
     CheckPicture,
-    Reload,
     Save,
     /// Opens the dialog of `Save` with this format.
     SaveAs(OutputFormat),
     ShowInFolder,
-    /// Opens the file that was saved last, with the system's program for it.
-    ViewSaved,
     StopSaving,
     /// Goes on with the film of a window that ended early.
     Recover,
@@ -49,7 +39,6 @@ pub enum Command {
     DeleteSphere,
     SkyColours,
     Home,
-    FocusOnLookAt,
     Show(Show),
     Fit,
     ActualSize,
@@ -58,12 +47,9 @@ pub enum Command {
     Info,
     Dock(Dock),
     Panels,
-    Axes,
     Present,
     FullScreen,
     Theme(Theme),
-    Larger,
-    Smaller,
     Pause,
     Restart,
     SwitchDevice,
@@ -94,23 +80,19 @@ pub enum Command {
     ZoomOut,
     Channel(Channel),
     Denoise,
-    ViewFrom(Viewpoint),
     NextSphere,
     PreviousSphere,
     Deselect,
-    LookAtSphere,
     FocusSphere,
     Flip,
     KeptWipe,
     KeptDifference,
     OnlyNoise,
-    GoOnFromKept,
     DeleteKept,
-    LookLive,
     NextRay,
     PreviousRay,
     ClearPaths,
-    NextPanel,
+    FocusControls,
     Blank,
     /// Gives the picture the size of the viewport or of the book.
     Size(Sizing),
@@ -273,13 +255,6 @@ fn rows() -> Vec<Row> {
         "Finds the mistake in a picture that your own program has rendered", 
         |w, c| w.ask_path(c, Purpose::Check),
         also("wrong mistake homework verify compare")}
-    row! {C::Reload, "Reload the scene", "Reads the scene file again, after another program has changed it",
-        
-        |w, c| w.files.scene_file.reload(c, &w.model.document.origin), keys(CTRL, Key::R),
-        needs(
-            |f| matches!(f.document().origin.source, Source::File(_)),
-            "This picture is not from a scene file"
-        )}
     row! {C::Save, "Save…", "Saves the picture, the film or the scene",
         |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
         also("export png ppm exr toml download film scene")}
@@ -302,30 +277,27 @@ fn rows() -> Vec<Row> {
     row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
         needs(|f| f.redo.is_some(), "Nothing has been undone")}
     row! {C::ResetAll, "Reset everything",
-        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.reset_all(),
+        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.keep_selection_after(|w| w.model.document.reset()),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
         also("original lost back")}
     row! {C::AddSphere, "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
         key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball")}
     row! {C::DuplicateSphere, "Duplicate the sphere", "Puts a copy beside the selected sphere",
         |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball")}
-    row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.delete_sphere(),
+    row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
         key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball")}
     row! {C::SkyColours, "Sky colours…", "Changes the two colours that the sky fades between",
         |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
         also("background light gradient")}
-    row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.home(),
+    row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.model.document.camera = w.document().origin.recipe.camera,
         key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
         also("home lost back original")}
-    row! {C::FocusOnLookAt, "Keep Look at in focus",
-        "Sets the focus distance to the point that the camera looks at", |w, _| w.toggle_focus_on_look_at(),
-        off(|f| f.no_rays().map(str::to_owned)), on(|f| f.document().camera.focus_distance.is_none())}
 
     menu = Some(Menu::Show);
     for (place, show) in Show::ALL.into_iter().enumerate() {
         let [name, help, synonyms] = show.words();
-        row! {C::Show(show), name, help, move |w, c| w.show_as(c, show),
+        row! {C::Show(show), name, help, move |w, _| w.model.view.choose(show),
             keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
             on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
             also(synonyms)}
@@ -357,8 +329,6 @@ fn rows() -> Vec<Row> {
         on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality")}
     row! {C::Panels, "Only the picture", "Hides all panels; again shows them", |w, _| w.toggle_panels(),
         key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels")}
-    row! {C::Axes, "Axes in the corner", "Shows the axes; a click on an end looks from that side",
-        |w, _| w.toggle(|r| &mut r.has_axes), on(|f| f.model.remembered.has_axes), also("gizmo")}
     row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
         |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
         also("lecture slides projector beamer")}
@@ -372,13 +342,6 @@ fn rows() -> Vec<Row> {
             move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
             on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
-    menu = Some(Menu::View);
-    row! {C::Larger, "Larger", "Makes text and controls larger",
-        |_, c| c.set_zoom_factor((c.zoom_factor() + 0.1).min(3.0)), keys(CTRL, Key::Plus),
-        also("scale font")}
-    row! {C::Smaller, "Smaller", "Makes text and controls smaller; Ctrl+0 returns",
-        |_, c| c.set_zoom_factor((c.zoom_factor() - 0.1).max(0.5)), keys(CTRL, Key::Minus),
-        also("scale font")}
 
     menu = Some(Menu::Render);
     row! {C::Pause, "Pause or go on",
@@ -389,13 +352,18 @@ fn rows() -> Vec<Row> {
             "More samples would change nothing"
         ),
         on(|f| f.model.is_paused), also("stop resume continue")}
-    row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| w.restart(),
+    row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| {
+            if std::mem::take(&mut w.model.is_paused) {
+                w.tracing.resume();
+            }
+            w.tracing.restart();
+        },
         key(Key::R)}
     row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-        |w, _| w.switch_device(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
+        |w, _| w.model.remembered.device.toggle(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
     row! {C::Device(Device::Reference), "Reference (f64)",
         "Traces with twice the digits, slowly, to show rounding errors", 
-        |w, _| w.switch_device(Device::Reference),
+        |w, _| w.model.remembered.device.toggle(Device::Reference),
         on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
     row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
         |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
@@ -446,10 +414,17 @@ fn rows() -> Vec<Row> {
         }),
         also("rays bounce trace")}
     row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
-        |w, _| w.toggle_code(), key(Key::K),
+        |w, _| {
+            let tab = if w.model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
+            let r = &mut w.model.remembered;
+            (r.tab, r.has_panels, r.has_info) = (tab, true, true);
+        }, key(Key::K),
         off(|f| no_presentation(f).or_else(|| no_stage(f))),
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
-    row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| w.open_book(c),
+    row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
+            let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
+            w.open_or_tell(c, url);
+        },
         also("web section")}
     row! {C::Companion, "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds",
@@ -460,13 +435,14 @@ fn rows() -> Vec<Row> {
 
     menu = Some(Menu::Help);
     row! {C::FirstSteps, "First steps", "Brings back the card with three things to try",
-        |w, _| w.toggle_first_steps(), off(no_presentation), on(|f| f.model.has_first_steps),
+        |w, _| (w.model.has_first_steps, w.model.remembered.is_greeted) =
+            (!w.model.has_first_steps, w.model.has_first_steps), off(no_presentation), on(|f| f.model.has_first_steps),
         also("tutorial introduction")}
     row! {C::Help, "Keys and mouse", "All keys, and what the mouse does",
         |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
         also("shortcuts keyboard help")}
     row! {C::Palette, "Find a command…", "Type what you want to do",
-        |w, c| w.shell.dialogs.open(Dialog::Palette(Palette::typed(c))), keys(CTRL, Key::P),
+        |w, c| w.shell.dialogs.open(Dialog::Palette(Finder::typed(c))), keys(CTRL, Key::P),
         also("palette search")}
     row! {C::About, "About Weekender", "Version, licences, folder of the log, and how to report a fault",
         |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug")}
@@ -496,19 +472,12 @@ fn rows() -> Vec<Row> {
             off(Facts::no_exposure), on(move |f| f.model.view.tone.channel == Some(channel)),
             also("channel rgb")}
     }
-    for side in Viewpoint::ALL {
-        row! {C::ViewFrom(side), side.name(), "Looks at the same point from that side",
-            move |w, _| w.view_from(side), off(|f| f.no_rays().map(str::to_owned)), also("view side axis")}
-    }
     row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", 
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, true),
         key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
     row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, false), key(Key::Comma),
         needs(has_spheres, "There is no sphere in this scene"), also("select")}
-    row! {C::LookAtSphere, "Look at the sphere",
-        "Turns the camera, so that the selected sphere is in the middle", |w, _| w.look_at_sphere(),
-        needs(has_selection, NO_SPHERE), also("centre")}
     row! {C::FocusSphere, "Focus on the sphere",
         "Sets the focus distance to the nearest point of the selected sphere", |w, _| w.focus_sphere(),
         needs(has_selection, NO_SPHERE), also("sharp depth of field")}
@@ -537,7 +506,6 @@ fn rows() -> Vec<Row> {
         keys(CTRL_SHIFT, Key::S), unlisted()}
     row! {C::SaveAs(OutputFormat::Exr), "Save film…", "", |w, _| w.ask_save(OutputFormat::Exr),
         keys(CTRL, Key::E), unlisted()}
-    row! {C::ViewSaved, "Open", "Opens it outside of Weekender", |w, c| w.view_saved(c), unlisted()}
     row! {C::StopSaving, "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted()}
     row! {C::Recover, "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted()}
     row! {C::NotNow, "Not now", "Leaves it until the window closes",
@@ -548,21 +516,19 @@ fn rows() -> Vec<Row> {
     row! {C::StopCompanion, "Stop", "Leaves out the pictures that are missing",
         |w, _| w.files.stop_companion(), unlisted()}
     row! {C::Deselect, "Deselect the sphere", "", |w, _| w.model.selected = None, unlisted()}
-    row! {C::GoOnFromKept, "Go on from it",
-        "Restores the kept picture’s scene, camera, settings and samples; Undo returns",
-        |w, c| w.go_on_from_kept(c), needs(has_kept, NOTHING_KEPT), unlisted()}
     row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
         needs(has_kept, NOTHING_KEPT), unlisted()}
-    row! {C::LookLive, "Return to the picture", "Leaves the kept picture", |w, _| w.model.view.look(None),
-        keys(Modifiers::ALT, Key::Num0), unlisted()}
     row! {C::NextRay, "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
     row! {C::PreviousRay, "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
         needs(|f| f.has_paths, NO_PATHS), unlisted()}
-    row! {C::ClearPaths, "Close the paths", "", |w, _| w.clear_paths(), needs(|f| f.has_paths, NO_PATHS),
+    row! {C::ClearPaths, "Close the paths", "", |w, _| {
+            w.tools.paths.forget();
+            w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
+        }, needs(|f| f.has_paths, NO_PATHS),
         unlisted()}
-    row! {C::NextPanel, "Next panel", "", |w, c| w.shell.panel = places::next(c, w.shell.panel, &w.model), key(Key::F6), off(no_presentation),
-        unlisted()}
+    row! {C::FocusControls, "Into the controls", "",
+        |_, c| c.memory_mut(|memory| memory.move_focus(FocusDirection::Next)), key(Key::F6), unlisted()}
     row! {C::Blank, "Blank the screen", "", 
         |w, _| w.model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true), key(Key::B),
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
@@ -570,7 +536,11 @@ fn rows() -> Vec<Row> {
     for sizing in Sizing::ALL {
         row! {C::Size(sizing), "Render at this size",
             "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
-            move |w, _| w.take_size(sizing), unlisted()}
+            move |w, _| {
+                w.model.remembered.sizing = sizing;
+                w.model.document.has_own_size = false;
+                w.tracing.sizer.ask();
+            }, unlisted()}
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row! {C::Kept(place), "", "Shows it instead of the picture",
@@ -659,26 +629,20 @@ impl Command {
 
     /// Opens a dialog, which takes the keys that follow.
     pub fn opens_dialog(self) -> bool {
-        matches!(
-            self,
-            Command::Open
-                | Command::Save
-                | Command::SaveAs(_)
-                | Command::Palette
-                | Command::Help
-                | Command::About
-                | Command::SkyColours
-                | Command::CheckPicture
-        )
+        matches!(self, Command::Help | Command::About) || self.name().ends_with('…')
     }
 
     /// Carries it out, whether or not it is off.
     pub(super) fn run(self, window: &mut Window, context: &Context) {
         match self {
             Command::Stage(stage) => window.show_stage(stage),
-            Command::Extreme(case) => window.show_case(case),
+            Command::Extreme(case) => window.show_origin(Origin::of_case(case)),
             Command::Recent(place) => window.open_recent(context, place),
-            Command::Bookmark(place) => window.jump_to_bookmark(place),
+            Command::Bookmark(place) => {
+                let bookmark = window.model.remembered.bookmarks.get(place);
+                let camera = bookmark.map(|bookmark| bookmark.camera);
+                window.model.document.camera = camera.unwrap_or(window.document().camera);
+            }
             Command::Field(name) => {
                 let remembered = &mut window.model.remembered;
                 (remembered.has_panels, remembered.has_controls) = (true, true);

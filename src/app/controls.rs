@@ -2,24 +2,20 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::device::{Device, core_count, lane_counts};
-use super::model::document::Document;
-use super::model::edit::{Body, Edit};
-use super::model::remembered::Remembered;
-use super::model::sizing::Sizing;
+use super::model::{Body, Device, Document, Edit, Remembered, Sizing, core_count, lane_counts};
 use super::spheres::Selected;
 use super::widgets::{
-    About, Header, Number, above, check, colour, entry, fold, group, hint, list, panel_line, point_words,
-    row, switch, tip, vector,
+    About, Header, Number, above, check, colour, command_button, entry, fold, group, hint, list, panel_line,
+    point_words, row, switch, vector,
 };
 use crate::job::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::progressive::Stop;
 use crate::scene::{
     Camera, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, Material, RADIUS_LIMITS,
-    REFRACTION_INDEX_LIMITS, SceneError, VFOV_LIMITS_DEGREES,
+    REFRACTION_INDEX_LIMITS, VFOV_LIMITS_DEGREES,
 };
 use crate::stages::Shading;
-use eframe::egui::{Button, Ui};
+use eframe::egui::Ui;
 use glam::DVec3;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -71,7 +67,7 @@ fn camera(ui: &mut Ui, document: &mut Document) {
         let help = "How wide the camera sees, from the lower to the upper edge, in degrees (vfov)";
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
         let number = Number::new(About::new("Field of view", help), narrowest..=widest);
-        number.unit("°", "degrees").slider(ui, &mut camera.vfov_degrees, narrowest..=widest, false);
+        number.unit("°").slider(ui, &mut camera.vfov_degrees, narrowest..=widest, false);
         let summary = point_words(camera.look_from);
         let header = Header { title: "Position", summary: &summary, is_minor: true, ..Header::default() };
         fold(ui, header, false, |ui| position(ui, camera, is_early));
@@ -83,28 +79,14 @@ fn camera(ui: &mut Ui, document: &mut Document) {
 }
 
 fn position(ui: &mut Ui, camera: &mut Camera, is_early: bool) {
-    let before = *camera;
-    let speed = (before.look_from.distance(before.look_at) * 0.005).max(1e-4);
+    let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
     let about = About::new("Look from", "Where the eye is, in units of the scene (lookfrom)");
-    let check = |look_from| camera_fault(Camera { look_from, ..before });
-    vector(ui, about, &mut camera.look_from, POSITIONS, speed, &check);
+    vector(ui, about, &mut camera.look_from, POSITIONS, speed);
     let about = About::new("Look at", "The point in the middle of the picture (lookat)");
-    let check = |look_at| camera_fault(Camera { look_at, ..before });
-    vector(ui, about, &mut camera.look_at, POSITIONS, speed, &check);
+    vector(ui, about, &mut camera.look_at, POSITIONS, speed);
     if !is_early {
         let about = About::new("Up", "Which way is up in the picture; the length does not matter (vup)");
-        let check = |vup| camera_fault(Camera { vup, ..before });
-        vector(ui, about, &mut camera.vup, POSITIONS, 0.01, &check);
-    }
-}
-
-/// Why a camera can't be, if so.
-fn camera_fault(camera: Camera) -> Option<String> {
-    match camera.validate() {
-        Ok(()) => None,
-        Err(SceneError::NoUp { .. }) => Some("Up must not point along the view".to_owned()),
-        Err(SceneError::NoDirection { .. }) => Some("Look at must not be where the eye is".to_owned()),
-        Err(error) => Some(error.to_string()),
+        vector(ui, about, &mut camera.vup, POSITIONS, 0.01);
     }
 }
 
@@ -129,7 +111,7 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     let help = "How wide the lens is open: 0 is a pinhole, which is sharp everywhere (defocus_angle)";
     let limits = 0.0..=DEFOCUS_LIMIT_DEGREES.next_down();
     let widest = 2.0 * (BLUR * (camera.vfov_degrees.to_radians() / 2.0).tan()).atan().to_degrees();
-    let number = Number::new(About::new("Defocus angle", help), limits).unit("°", "degrees").speed(0.02);
+    let number = Number::new(About::new("Defocus angle", help), limits).unit("°").speed(0.02);
     number.slider(ui, &mut camera.defocus_angle_degrees, 0.0..=widest.max(original), true);
     let help = "How far away things are sharp; Ctrl and a click on the picture set it too (focus_dist)";
     let pinhole = (camera.defocus_angle_degrees == 0.0)
@@ -161,16 +143,12 @@ fn sphere(
             edits.push(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
-            for (name, command, help) in [
-                ("Focus", Command::FocusSphere, "Set the focus distance to this sphere"),
-                ("Copy", Command::DuplicateSphere, "Put a copy beside it (Ctrl+D)"),
-                ("Delete", Command::DeleteSphere, "Take it out of the scene; Undo brings it back (Delete)"),
+            for (name, command) in [
+                ("Focus", Command::FocusSphere),
+                ("Copy", Command::DuplicateSphere),
+                ("Delete", Command::DeleteSphere),
             ] {
-                let reason = facts.disabled_reason(command);
-                let response = ui.add_enabled(reason.is_none(), Button::new(name));
-                if tip(ui, response, help, reason.as_deref()).clicked() {
-                    commands.push(command);
-                }
+                command_button(ui, facts, command, name, commands);
             }
         });
     });
@@ -206,7 +184,7 @@ fn body(ui: &mut Ui, selected: &Selected, document: &Document) -> Body {
     }
     let speed = (document.camera.look_from.distance(body.center) * 0.003).max(1e-6);
     let about = About::new("Centre", "The middle of the sphere");
-    vector(ui, about, &mut body.center, POSITIONS, speed, &|_| None);
+    vector(ui, about, &mut body.center, POSITIONS, speed);
     let help = "Half its width; dragging the dot on its outline changes it too";
     Number::new(About::new("Radius", help), RADIUS_LIMITS).row(ui, &mut body.radius);
     body
@@ -323,7 +301,7 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
         let help = "How far pixels may still be from the finished picture, in per cent of white";
         let mut percent = 100.0 * *noise;
         let number = Number::new(About::new("Error", help).disabled_if(no_error), 1e-4..=100.0);
-        if number.unit(" %", "%").speed(0.005).row(ui, &mut percent).changed() {
+        if number.unit(" %").speed(0.005).row(ui, &mut percent).changed() {
             *noise = percent / 100.0;
         }
     }
@@ -337,7 +315,7 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     }
     if let Some(seconds) = &mut stop.seconds {
         let about = About::new("Time", "Seconds of tracing, without pauses");
-        Number::new(about, 0.1..=1e6).unit(" s", "seconds").speed(0.5).row(ui, seconds);
+        Number::new(about, 0.1..=1e6).unit(" s").speed(0.5).row(ui, seconds);
     }
 }
 

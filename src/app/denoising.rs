@@ -8,7 +8,6 @@ use crate::progressive::Phase;
 use eframe::egui::Context;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 /// Fewer samples per pixel are not worth denoising.
@@ -39,10 +38,16 @@ impl Denoising {
             stop.store(true, Ordering::Relaxed);
         }
         let mut found = None;
-        while let Some((answer, took)) = self.answers.take() {
-            self.working = None;
-            self.rest_until = Some(Instant::now() + took * SHARE);
-            found = Some(answer);
+        while let Some(outcome) = self.answers.take() {
+            let working = self.working.take();
+            if let Ok((_, took)) = outcome {
+                self.rest_until = Some(Instant::now() + took * SHARE);
+            }
+            found = match (outcome, working) {
+                (Ok((answer, _)), _) => Some(answer),
+                (Err(reason), Some((film, _))) => Some((film, Err(reason))),
+                (Err(_), None) => None,
+            };
         }
         if !is_on {
             self.last = None;
@@ -55,17 +60,14 @@ impl Denoising {
         if is_on && is_due && samples >= LEAST_SAMPLES && subject.has_samples() && self.working.is_none() {
             let stop = Arc::new(AtomicBool::new(false));
             (self.working, self.last) = (Some((film, Arc::clone(&stop))), Some((film, samples)));
-            let substitute = move |reason| ((film, Err(reason)), Duration::ZERO);
-            let answer = self.answers.answer_or(context, substitute);
+            let answer = self.answers.promise(context);
             subject.inspect(move |film_sums| {
                 let (begin, halves) = (Instant::now(), Halves::of(film_sums));
-                let work = move || {
+                answer.give_from("denoise", move || {
                     let outcome = halves.map_err(|reason| reason.to_string());
                     let outcome = outcome.and_then(|halves| denoise(halves, &stop).ok_or_else(String::new));
-                    answer.give(((film, outcome.map(Arc::new)), begin.elapsed()));
-                };
-                // Without a thread, the answer says so.
-                let _ = Builder::new().name("denoise".to_owned()).spawn(work);
+                    Ok(((film, outcome.map(Arc::new)), begin.elapsed()))
+                });
             });
         }
         found

@@ -1,12 +1,9 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
-use super::command::Command;
 use super::denoising::Denoising;
 use super::kept::{FilmId, KeptActions, Subject};
 use super::layers::Layers;
-use super::model::Model;
-use super::model::checked::CheckedScene;
-use super::model::show::Show;
+use super::model::{CheckedScene, Model, Show};
 use super::pixel_values::PixelValues;
 use super::sight::Sighted;
 use super::spheres::is_lost;
@@ -65,11 +62,7 @@ impl Display {
         };
         if !is_moving && !self.judged.as_ref().is_some_and(is_known) {
             self.judged = Some((document.camera, Arc::clone(&document.checked)));
-            let is_lost = is_lost(document);
-            if is_lost && !std::mem::replace(&mut self.is_lost, is_lost) {
-                toasts.good_with("Home brings you back", &[Command::Home]);
-            }
-            self.is_lost = is_lost;
+            self.is_lost = is_lost(document);
         }
         let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
         if let Some(kept) = view.kept.shown().or_else(other) {

@@ -3,19 +3,15 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::kept::KeptActions;
-use super::model::Model;
-use super::model::kept::{Kept, KeptList};
-use super::model::remembered::Dock;
-use super::model::view::{ViewState, With};
-use super::places::Place;
+use super::menu::item;
+use super::model::{Dock, Kept, Model, ViewState, With};
 use super::tools::Tools;
-use super::widgets::{About, Sign, TABS, hint, panel_line, sign_button, small, switch, tip};
+use super::widgets::{About, Sign, TABS, command_button, hint, panel_line, sign_button, small, switch, tip};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
-    self, Align, Align2, Button, Color32, ColorImage, Frame, Key, Label, Layout, Margin, Rect, Response,
-    RichText, Role, ScrollArea, Sense, Shape, Sides, Stroke, StrokeKind, TextEdit, TextStyle, TextureHandle,
-    TextureOptions, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
+    self, Align, Align2, Color32, ColorImage, Frame, Label, Margin, Rect, RichText, Role, ScrollArea, Sense,
+    Sides, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
@@ -27,35 +23,26 @@ const LOW: f32 = 200.0;
 const PICTURE: Vec2 = vec2(132.0, 74.0);
 const CARD: f32 = 94.0;
 
-/// The small pictures of the cards, and what is done with them.
+/// The small pictures of the cards, by [`Kept::number`].
 #[derive(Default)]
-pub struct Cards {
-    /// By [`Kept::number`].
-    textures: Vec<(u64, TextureHandle)>,
-    /// The picture whose name is being typed, and the name.
-    renamed: Option<(u64, String)>,
-}
+pub struct Cards(Vec<(u64, TextureHandle)>);
 
 impl Cards {
     fn texture(&mut self, ui: &Ui, kept: &Kept) -> &TextureHandle {
-        let place = self.textures.iter().position(|(number, _)| *number == kept.number());
+        let place = self.0.iter().position(|(number, _)| *number == kept.number());
         let place = place.unwrap_or_else(|| {
             let small = &kept.thumbnail;
             let size = [small.width(), small.height()].map(|length| length as usize);
             let image = ColorImage::from_rgb(size, small);
             let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
-            self.textures.push((kept.number(), texture));
-            self.textures.len() - 1
+            self.0.push((kept.number(), texture));
+            self.0.len() - 1
         });
-        &self.textures[place].1
-    }
-
-    fn rename(&mut self, kept: &KeptList, place: usize) {
-        self.renamed = kept.get(place).map(|named| (named.kept.number(), named.name.clone()));
+        &self.0[place].1
     }
 }
 
-/// Draws the dock. Returns whether the points of the error's curves are to be saved.
+/// Draws the dock.
 pub fn ui(
     ui: &mut Ui,
     model: &mut Model,
@@ -63,8 +50,8 @@ pub fn ui(
     kept: &mut KeptActions,
     facts: &Facts,
     commands: &mut Vec<Command>,
-) -> bool {
-    let Some(dock) = model.remembered.dock else { return false };
+) {
+    let Some(dock) = model.remembered.dock else { return };
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
     egui::Panel::bottom("dock")
@@ -73,26 +60,21 @@ pub fn ui(
         .default_size(usual)
         .size_range(LEAST..=(0.5 * height).max(LEAST))
         .show(ui, |ui| {
-            Place::Dock.begin(ui);
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
             row.show(ui, |ui| tabs(ui, dock, model, facts, commands));
             panel_line(ui);
             Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 8.0;
-                let mut is_saved = false;
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
                     Dock::Kept => kept_ui(ui, model, kept, facts, commands),
                     Dock::Lanes => tools.lanes.ui(ui, facts),
-                    Dock::Error => is_saved = plot::ui(ui, facts),
+                    Dock::Error => plot::ui(ui, facts),
                 }
                 ui.take_available_space();
-                is_saved
-            })
-        })
-        .inner
-        .inner
+            });
+        });
 }
 
 fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mut Vec<Command>) {
@@ -129,35 +111,35 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mu
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
 }
 
-/// What can be done with the chosen kept picture: name, command and tooltip.
-const ACTIONS: [(&str, Command, &str); 5] = [
-    ("Look", Command::Flip, "Show it instead of the picture (Alt and its number)"),
-    ("Wipe", Command::KeptWipe, "Drag a divider between it and the picture (Shift+C)"),
-    ("Difference", Command::KeptDifference, "Subtract it from the picture (Shift+X)"),
-    ("Only noise?", Command::OnlyNoise, "Tests whether the two differ by more than chance (Shift+N)"),
-    ("Keep", Command::Keep, "Keep a copy of this picture with all its samples (M)"),
+/// What can be done with the chosen kept picture.
+const ACTIONS: [(&str, Command); 5] = [
+    ("Look", Command::Flip),
+    ("Wipe", Command::KeptWipe),
+    ("Difference", Command::KeptDifference),
+    ("Only noise?", Command::OnlyNoise),
+    ("Keep", Command::Keep),
 ];
+
+/// What the menu of a right click on it offers.
+pub const MENU: [Command; 5] =
+    [Command::Flip, Command::KeptWipe, Command::KeptDifference, Command::OnlyNoise, Command::DeleteKept];
 
 /// The actions, from right to left. The first three are a switch.
 fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    for (name, command, help) in ACTIONS[3..].iter().rev() {
-        let reason = facts.disabled_reason(*command);
-        let response = ui.add_enabled(reason.is_none(), Button::new(*name));
-        if tip(ui, response, help, reason.as_deref()).clicked() {
-            commands.push(*command);
-        }
+    for (name, command) in ACTIONS[3..].iter().rev() {
+        command_button(ui, facts, *command, name, commands);
     }
     let reasons = [0, 1, 2].map(|place| facts.disabled_reason(ACTIONS[place].1));
     let about = |place: usize| {
-        let (name, command, help) = ACTIONS[place];
-        (Some(command), About::new(name, help).disabled_if(reasons[place].as_deref()))
+        let (name, command) = ACTIONS[place];
+        (Some(command), About::new(name, command.help()).disabled_if(reasons[place].as_deref()))
     };
     let is_looked = facts.model.view.kept.looked().is_some();
     let is_on = |command: &Command| match command {
         Command::Flip => is_looked,
         _ => facts.is_on(*command),
     };
-    let chosen = ACTIONS[..3].iter().map(|(_, command, _)| *command).find(is_on);
+    let chosen = ACTIONS[..3].iter().map(|(_, command)| *command).find(is_on);
     commands.extend(switch(ui, 0.0, chosen, &[0, 1, 2].map(about)).flatten());
 }
 
@@ -168,50 +150,27 @@ fn kept_ui(
     facts: &Facts,
     commands: &mut Vec<Command>,
 ) {
-    if model.view.kept.get(0).is_none() {
+    let list = &model.view.kept;
+    let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
         return;
-    }
-    ui.horizontal_wrapped(|ui| sentence(ui, model, kept, facts));
-    let (pictures, chosen) = (model.view.kept.clone(), model.view.kept.chosen());
-    let is_f2 = ui.input(|input| input.key_pressed(Key::F2)) && kept.cards.renamed.is_none();
-    if let Some(place) = chosen.filter(|_| is_f2) {
-        kept.cards.rename(&pictures, place);
-    }
+    };
+    ui.horizontal_wrapped(|ui| {
+        if !kept.verdict.ui(ui, chosen.kept.number(), facts.status.run) {
+            let memory = words(list.bytes());
+            small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
+        }
+    });
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
-            for place in 0..pictures.iter().count() {
+            for place in 0..model.view.kept.iter().count() {
                 card(ui, place, &mut model.view, &mut kept.cards, facts, commands);
-            }
-            if facts.disabled_reason(Command::Keep).is_none() && empty_place(ui).clicked() {
-                commands.push(Command::Keep);
             }
         });
     });
-    kept.cards.textures.retain(|(number, _)| pictures.iter().any(|named| named.kept.number() == *number));
-}
-
-/// The answer to "Only noise?", that sizes differ, or what all kept pictures take.
-fn sentence(ui: &mut Ui, model: &mut Model, kept: &KeptActions, facts: &Facts) {
-    let list = &model.view.kept;
-    let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else { return };
-    let (theirs, mine) = (chosen.kept.size(), model.document.size());
-    if kept.verdict.ui(ui, chosen.kept.number(), facts.status.run) {
-        return;
-    }
-    if theirs != mine {
-        let ([a, b], [x, y]) = (theirs, mine);
-        small(ui, format!("The kept picture is {a} × {b} and this one {x} × {y}."));
-        let help = "Begins the picture anew at that size, so that the two can be subtracted";
-        let link = ui.link(RichText::new("Render at its size").small());
-        if tip(ui, link, help, None).clicked() {
-            model.document.give_size(theirs);
-        }
-        return;
-    }
-    let memory = words(list.bytes());
-    small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
+    let is_there = |number: u64| model.view.kept.iter().any(|named| named.kept.number() == number);
+    kept.cards.0.retain(|(number, _)| is_there(*number));
 }
 
 fn card(
@@ -229,58 +188,16 @@ fn card(
     let title = view.kept.title(place);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
     paint_card(ui, picture, place, cards.texture(ui, &named.kept), is_chosen);
-
-    let name = below.with_min_y(below.bottom() - 16.0);
-    let number = named.kept.number();
-    let layout = Layout::left_to_right(Align::Center);
-    let mut within = ui.new_child(UiBuilder::new().max_rect(name).layout(layout));
-    match &mut cards.renamed {
-        Some((renamed, text)) if *renamed == number => {
-            let edit = TextEdit::singleline(text).font(TextStyle::Small).margin(Margin::ZERO);
-            let edit = within.add(edit);
-            if edit.lost_focus() {
-                let is_given_up = ui.input(|input| input.key_pressed(Key::Escape)) || text.trim().is_empty();
-                if let Some(name) = view.kept.name_mut(place).filter(|_| !is_given_up) {
-                    text.trim().clone_into(name);
-                }
-                cards.renamed = None;
-            } else if !edit.has_focus() {
-                edit.request_focus();
-            }
-        }
-        _ => _ = within.add(Label::new(RichText::new(&named.name).small()).truncate()),
-    }
-
-    let is_at_name = response.interact_pointer_pos().is_some_and(|at| at.y > picture.bottom());
+    let name = Label::new(RichText::new(&named.name).small()).truncate();
+    ui.put(below.with_min_y(below.bottom() - 16.0), name.halign(Align::Min));
     if response.double_clicked() {
-        if is_at_name {
-            cards.rename(&view.kept, place);
-        } else {
-            view.look(Some(place));
-        }
+        view.look(Some(place));
     } else if response.clicked() {
         choose(view, place);
     } else if response.secondary_clicked() {
         view.kept.choose(place);
     }
-    response.context_menu(|ui| {
-        let more = [Command::GoOnFromKept, Command::Save, Command::DeleteKept];
-        let more = more.map(|command| (command.name(), command, command.help()));
-        let of_row = ACTIONS[..4].iter().map(|(name, command, help)| ((*name).to_owned(), *command, *help));
-        for (name, command, help) in of_row.chain(more) {
-            let reason = facts.disabled_reason(command);
-            let button = Button::selectable(false, (name, egui::Atom::grow()));
-            let entry = ui.add_enabled(reason.is_none(), button.min_size(vec2(160.0, 0.0)));
-            if tip(ui, entry, help, reason.as_deref()).clicked() {
-                if command == Command::Save {
-                    // What is on the screen is saved.
-                    view.look(Some(place));
-                }
-                commands.push(command);
-                ui.close();
-            }
-        }
-    });
+    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, commands, *command)));
     let kept = &named.kept;
     let ([width, height], samples) = (kept.size(), kept.samples());
     let memory = words(kept.bytes());
@@ -315,21 +232,6 @@ fn paint_card(ui: &Ui, rect: Rect, place: usize, texture: &TextureHandle, is_cho
     painter.rect_filled(badge, 4, colours.panel.gamma_multiply(0.9));
     let font = TextStyle::Small.resolve(ui.style());
     painter.text(badge.center(), Align2::CENTER_CENTER, (place + 1).to_string(), font, colours.strong);
-}
-
-fn empty_place(ui: &mut Ui) -> Response {
-    let colours = theme::colours(ui);
-    let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
-    let text = "M keeps this one";
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, true, text));
-    let rect = rect.with_max_y(rect.top() + PICTURE.y).shrink(0.5);
-    let corners =
-        [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
-    ui.painter().extend(Shape::dashed_line(&corners, Stroke::new(1.0, colours.edge), 3.0, 3.0));
-    let font = TextStyle::Small.resolve(ui.style());
-    let colour = if response.hovered() { colours.strong } else { colours.weak };
-    ui.painter().text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
-    response
 }
 
 /// An entry of a legend.

@@ -1,11 +1,7 @@
 //! What panels show but do not change: a snapshot of the window at the start of the frame.
 
 use super::command::Command;
-use super::model::Model;
-use super::model::device::Device;
-use super::model::document::Document;
-use super::model::show::Show;
-use super::model::view::{Mode, partner};
+use super::model::{Device, Document, Mode, Model, Show, partner};
 use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
@@ -24,6 +20,8 @@ pub struct Facts {
     pub redo: Option<&'static str>,
     /// The render is a preview, and the camera or a sphere is being moved.
     pub is_coarse: bool,
+    /// There is a picture of the document, at any size.
+    pub has_picture: bool,
     pub is_moving: bool,
     /// The render began during the pause that lasts, and stops early.
     pub is_held: bool,
@@ -93,33 +91,18 @@ impl Facts {
 
     /// The name of a command, with the change that it undoes, the file that it opens or the bookmark that it goes to.
     pub fn name(&self, command: Command) -> String {
-        let change = match command {
-            Command::Undo => self.undo,
-            Command::Redo => self.redo,
+        let Model { view, remembered, .. } = &self.model;
+        let named = match command {
+            Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
+            Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
+            Command::Kept(place) => view.kept.get(place).map(|named| named.name.clone()),
+            Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
+            Command::Recent(_) => {
+                self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
+            }
             _ => None,
         };
-        if let Some(change) = change {
-            return format!("{}: {change}", command.name());
-        }
-        if let Command::Kept(place) = command
-            && let Some(named) = self.model.view.kept.get(place)
-        {
-            return named.name.clone();
-        }
-        if let Command::Bookmark(place) = command
-            && let Some(bookmark) = self.model.remembered.bookmarks.get(place)
-        {
-            return bookmark.name.clone();
-        }
-        let Some(path) = self.path(command) else { return command.name() };
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        let is_same = |other: &&PathBuf| other.file_name() == path.file_name();
-        let is_alone = self.model.remembered.recent.iter().filter(is_same).count() == 1;
-        match path.parent() {
-            // Files of the same name are told apart by their directories.
-            Some(directory) if !is_alone => format!("{name} in {}", directory.display()),
-            _ => name.to_string(),
-        }
+        named.unwrap_or_else(|| command.name())
     }
 
     /// Why there is nothing to compare this picture with, if so.
@@ -161,19 +144,9 @@ impl Facts {
     /// Why a view has nothing to show now, if so.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
-        let (settings, shading) = (self.shown().settings, self.shown().rules().shading);
+        let (has_error, shading) = (self.shown().settings.estimate_error, self.shown().rules().shading);
         match show {
-            Show::Error if !settings.estimate_error => no("The film has one half; switch on Estimate error"),
-            Show::Difference => match &self.model.view.reference {
-                None => None,
-                Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
-                    Some(format!(
-                        "The film is {} × {} and the picture is {} × {}",
-                        film.width, film.height, settings.width, settings.height
-                    ))
-                }
-                Some(_) => None,
-            },
+            Show::Error if !has_error => no("The film has one half; switch on Estimate error"),
             Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
                 if let Some(reason) = self.shown().no_rays() =>
             {

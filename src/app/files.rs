@@ -5,7 +5,7 @@ use super::answers::Answers;
 use super::autosave::Autosave;
 use super::command::Command;
 use super::kept::Subject;
-use super::model::document::Document;
+use super::model::Document;
 use super::scene_file::SceneFile;
 use super::toasts::Toasts;
 use crate::backends::BackendChoice;
@@ -18,7 +18,7 @@ use crate::job::render::RenderJob;
 use crate::job::saved::{self, OpenError, Opened, SavedFilm};
 use crate::page::companion;
 use crate::progressive::describe::describe;
-use crate::progressive::{Phase, Plan, Progressive, ReferenceMeans, RenderRequest, Status, Stop};
+use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::render_cpu::CpuOptions;
 use crate::system::files::{cache_directory, replace_file};
 use crate::system::interrupt::Interrupt;
@@ -37,16 +37,6 @@ pub struct Resumed {
     pub begun: Document,
     /// The film that was read.
     pub film: SavedFilm,
-}
-
-/// A file that was not opened.
-pub struct NotOpened {
-    /// The file.
-    pub path: PathBuf,
-    /// Why, in words.
-    pub reason: String,
-    /// It is a picture of another program, which says nothing about how it was made.
-    pub is_picture: bool,
 }
 
 /// A picture that is rendered at its own size, to be saved.
@@ -70,17 +60,15 @@ pub struct Files {
     /// To be copied once there are samples.
     pub pending_copy: bool,
     /// Files that were written.
-    pub saved: Answers<Result<PathBuf, String>>,
-    /// Files that were opened.
-    pub opened: Answers<Result<Opened, NotOpened>>,
+    pub saved: Answers<PathBuf>,
+    /// Files that were opened, and pictures of other programs, which say nothing about how they were made.
+    pub opened: Answers<Result<Opened, PathBuf>>,
     /// Films to resume.
-    pub resumed: Answers<Result<Resumed, String>>,
+    pub resumed: Answers<Resumed>,
     /// Pictures for the clipboard, and what they are, in words.
     pub copied: Answers<(ColorImage, String)>,
-    /// Films to compare with.
-    pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
     /// Whether the companion that was written is the full one.
-    pub companions: Answers<Result<bool, String>>,
+    pub companions: Answers<bool>,
     /// Where the companion is written.
     pub companion: Option<PathBuf>,
     /// Stops the companion that is being written.
@@ -101,7 +89,6 @@ impl Files {
             opened: Answers::default(),
             resumed: Answers::default(),
             copied: Answers::default(),
-            references: Answers::default(),
             companions: Answers::default(),
             companion: cache_directory().map(|cache| cache.join("companion")),
             companion_stop: None,
@@ -163,7 +150,7 @@ impl Files {
             let describe = describer(&document, &status, Some(0.0));
             write(&film, None, &document, describe, (format, path))
         };
-        self.saved.ask("files", context, work, Err);
+        self.saved.ask("files", context, work);
     }
 
     /// Writes the companion, a quick one with small figures or the full one.
@@ -189,7 +176,7 @@ impl Files {
             let written = companion::write(&options, &interrupt);
             written.map(|_| !is_quick).map_err(|failure| failure.to_string())
         };
-        self.companions.ask("companion", context, work, Err);
+        self.companions.ask("companion", context, work);
         Ok(())
     }
 
@@ -218,35 +205,28 @@ impl Files {
     }
 
     /// Writes the film on the screen at the next end of a pass.
-    pub fn save(&self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
+    pub fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
         let document = subject.document().clone();
         let describe = describer(&document, subject.status(), subject.seconds_before());
-        let answer = self.saved.answer_or(context, Err);
+        let answer = self.saved.promise(context);
         let denoised = subject.denoised().map(Arc::clone);
         subject
             .inspect(move |film| answer.give(write(film, denoised.as_deref(), &document, describe, named)));
     }
 
     /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
-    pub fn copy(&self, context: &Context, subject: &Subject<'_>) {
+    pub fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
         let transfer = subject.document().rules().transfer;
         let answer = self.copied.answer(context);
         subject.inspect_shown(move |film| {
             let size = [film.width(), film.height()];
             let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
-            answer.give((picture, format!("picture, {} × {}", size[0], size[1])));
+            answer.give(Ok((picture, format!("picture, {} × {}", size[0], size[1]))));
         });
     }
 
-    /// Writes a text.
-    pub fn save_text(&self, context: &Context, path: &Path, text: &str) {
-        let outcome = replace_file(path, |writer| writer.write_all(text.as_bytes()));
-        let outcome = outcome.map(|()| path.to_owned()).map_err(|error| error.to_string());
-        self.saved.answer(context).give(outcome);
-    }
-
     /// Writes a scene file. The text of a large scene takes seconds.
-    pub fn save_scene(&self, context: &Context, path: PathBuf, document: &Document) {
+    pub fn save_scene(&mut self, context: &Context, path: PathBuf, document: &Document) {
         let (recipe, checked) = (document.recipe(), Arc::clone(&document.checked));
         let work = move || {
             let text = file::to_toml(&recipe);
@@ -255,45 +235,30 @@ impl Files {
             checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
             Ok(path)
         };
-        let substitute = |reason: String| Err(format!("the scene cannot be written: {reason}"));
-        self.saved.ask("files", context, work, substitute);
+        self.saved.ask("files", context, work);
     }
 
     /// Reads a scene file, picture or film.
-    pub fn open(&self, context: &Context, path: PathBuf) {
-        let opened = path.clone();
-        let work = move || {
-            saved::open(&path).map_err(|error| {
-                let is_picture = matches!(error, OpenError::Picture(_)) && path.exists();
-                let reason = if is_picture && !is_named_picture(&path) {
-                    format!("{} is no picture, film or scene (PNG, PPM, EXR, TOML)", path.display())
-                } else {
-                    error.to_string()
-                };
-                NotOpened { is_picture: is_picture && is_named_picture(&path), reason, path }
-            })
+    pub fn open(&mut self, context: &Context, path: PathBuf) {
+        let work = move || match saved::open(&path) {
+            Ok(opened) => Ok(Ok(opened)),
+            Err(OpenError::Picture(_)) if path.exists() && is_named_picture(&path) => Ok(Err(path)),
+            Err(OpenError::Picture(_)) if path.exists() => {
+                Err(format!("{} is no picture, film or scene (PNG, PPM, EXR, TOML)", path.display()))
+            }
+            Err(error) => Err(error.to_string()),
         };
-        let substitute = move |reason: String| {
-            let reason = format!("{} cannot be read: {reason}", opened.display());
-            Err(NotOpened { path: opened, reason, is_picture: false })
-        };
-        self.opened.ask("files", context, work, substitute);
+        self.opened.ask("files", context, work);
     }
 
     /// Reads the film of `job`, which is the job of `document`.
-    pub fn resume(&self, context: &Context, path: PathBuf, job: RenderJob, document: &Document) {
+    pub fn resume(&mut self, context: &Context, path: PathBuf, job: RenderJob, document: &Document) {
         let begun = document.clone();
-        read(&self.resumed, context, move || {
-            saved::resume(&path, &job).map(|film| Resumed { path, begun, film })
-        });
-    }
-
-    /// Reads a film to compare with.
-    pub fn load_reference(&self, context: &Context, path: PathBuf) {
-        read(&self.references, context, move || {
-            let (_, read) = saved::open_film(&path)?;
-            Ok((path, ReferenceMeans::of(&read.film)))
-        });
+        let work = move || match saved::resume(&path, &job) {
+            Ok(film) => Ok(Resumed { path, begun, film }),
+            Err(error) => Err(error.to_string()),
+        };
+        self.resumed.ask("files", context, work);
     }
 }
 
@@ -343,16 +308,6 @@ pub fn describer(
     }
 }
 
-/// Runs a read on its own thread.
-fn read<T: Send + 'static>(
-    answers: &Answers<Result<T, String>>,
-    context: &Context,
-    work: impl FnOnce() -> Result<T, OpenError> + Send + 'static,
-) {
-    let work = move || work().map_err(|error| error.to_string());
-    answers.ask("files", context, work, |reason| Err(format!("the file cannot be read: {reason}")));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -363,22 +318,10 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_written_or_it_is_said_why_not() {
-        let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (files(), Context::default());
-        let path = directory.path().join("plot.csv");
-        files.save_text(&context, &path, "1,2\n");
-        assert_eq!(files.saved.take(), Some(Ok(path.clone())));
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "1,2\n");
-        files.save_text(&context, &path.join("plot.csv"), "1,2\n");
-        assert!(matches!(files.saved.take(), Some(Err(_))), "a file is no folder");
-    }
-
-    #[test]
     fn a_film_is_saved_under_a_name_of_its_format() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (files(), Context::default());
-        let save = |format: OutputFormat, name: &str| {
+        let (mut files, context) = (files(), Context::default());
+        let mut save = |format: OutputFormat, name: &str| {
             let path = directory.path().join(name);
             let screen = OnScreen::new(small_film(1, 0.5));
             screen.before_answers(|subject| files.save(&context, subject, (format, path.clone())));
@@ -398,7 +341,7 @@ mod tests {
     #[test]
     fn a_film_without_samples_is_not_saved() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, path) = (files(), directory.path().join("a.png"));
+        let (mut files, path) = (files(), directory.path().join("a.png"));
         let (screen, context) = (OnScreen::new(Film::new(4, 2, 1)), Context::default());
         let named = (OutputFormat::Png, path.clone());
         screen.before_answers(|subject| files.save(&context, subject, named));
@@ -410,16 +353,18 @@ mod tests {
     #[test]
     fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
         let directory = tempfile::tempdir().unwrap();
-        let (files, context) = (files(), Context::default());
+        let (mut files, context) = (files(), Context::default());
         let white = image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3]));
         white.save(directory.path().join("a.png")).unwrap();
         std::fs::write(directory.path().join("a.toml"), "[camera").unwrap();
         for (name, is_picture) in [("a.png", true), ("a.toml", false), ("none.toml", false)] {
             let path = directory.path().join(name);
             files.open(&context, path.clone());
-            let Some(Err(found)) = files.opened.wait() else { panic!("{name} was opened") };
-            assert_eq!((found.path, found.is_picture), (path, is_picture), "{name}");
-            assert!(found.reason.contains(name), "{}", found.reason);
+            match files.opened.wait() {
+                Some(Ok(Err(found))) => assert!(is_picture && found == path, "{name}"),
+                Some(Err(reason)) => assert!(!is_picture && reason.contains(name), "{reason}"),
+                _ => panic!("{name} was opened"),
+            }
         }
     }
 }

@@ -2,20 +2,18 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::first_steps::Step;
-use super::places::Place;
 use super::theme;
-use super::widgets::{Sign, primary, sign_button, tip};
+use super::widgets::{Sign, command_button, primary, sign_button, tip};
 use crate::stages::Stage;
-use eframe::egui::{self, Align, Color32, Frame, Label, Layout, Margin, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Align, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
 
 /// Narrower cards have a step on each line, points.
 const THREE_COLUMNS: f32 = 620.0;
 
-const STEPS: [(Step, &str); 3] = [
-    (Step::Orbit, "Drag the picture to look around it. Home returns."),
-    (Step::Change, "Click a sphere, then drag it or change its material."),
-    (Step::Leaf, "Page Down and Page Up turn the pages of the book."),
+const STEPS: [&str; 3] = [
+    "Drag the picture to look around it. Home returns.",
+    "Click a sphere, then drag it or change its material.",
+    "Page Down and Page Up turn the pages of the book.",
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
@@ -47,19 +45,15 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
 }
 
 fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
-    Place::FirstSteps.begin(ui);
-    let steps = &facts.model.remembered.first_steps;
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), 20.0),
         Layout::left_to_right(Align::Center),
         |ui| {
             ui.label(RichText::new("First steps").size(16.0).strong());
-            let about = match (steps.has_all(), has_columns) {
-                (true, _) => "That is all. The book begins at 2.1.",
-                (false, true) => "Every picture of Ray Tracing in One Weekend, rendered while you watch.",
-                (false, false) => "",
-            };
-            ui.label(RichText::new(about).color(theme::colours(ui).weak));
+            if has_columns {
+                let about = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
+                ui.label(RichText::new(about).color(theme::colours(ui).weak));
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let close = sign_button(ui, Sign::Close, 20.0, "Close first steps");
                 if tip(ui, close, "Help > First steps brings this back", None).clicked() {
@@ -70,13 +64,13 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
     );
     if has_columns {
         ui.columns(STEPS.len(), |uis| {
-            for (ui, (step, text)) in uis.iter_mut().zip(STEPS) {
-                hint(ui, steps.has(step), text, 40.0);
+            for (number, ui) in uis.iter_mut().enumerate() {
+                step(ui, number, 40.0);
             }
         });
     } else {
         ui.spacing_mut().item_spacing.y = 4.0;
-        STEPS.into_iter().for_each(|(step, text)| hint(ui, steps.has(step), text, 20.0));
+        (0..STEPS.len()).for_each(|number| step(ui, number, 20.0));
     }
     ui.horizontal(|ui| {
         if let Some(first) = Stage::ALL.first() {
@@ -85,34 +79,17 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
                 commands.push(Command::Stage(first));
             }
         }
-        let response = ui.button("Check my picture…");
-        if tip(ui, response, Command::CheckPicture.help(), None).clicked() {
-            commands.push(Command::CheckPicture);
-        }
+        command_button(ui, facts, Command::CheckPicture, "Check my picture…", commands);
     });
 }
 
-/// A step with a tick, or the place for one.
-fn hint(ui: &mut Ui, is_done: bool, text: &str, height: f32) {
+/// A step behind its number.
+fn step(ui: &mut Ui, number: usize, height: f32) {
     let colours = theme::colours(ui);
-    let (fill, edge, color) = match is_done {
-        true => (colours.accent, colours.accent, colours.weak),
-        false => (Color32::TRANSPARENT, colours.edge, colours.text),
-    };
     ui.allocate_ui_with_layout(vec2(ui.available_width(), height), Layout::left_to_right(Align::Min), |ui| {
         ui.set_min_height(height);
-        let (rect, _) = ui.allocate_exact_size(vec2(16.0, 20.0), Sense::hover());
-        let painter = ui.painter();
-        painter.circle(rect.center(), 7.5, fill, Stroke::new(1.0, edge));
-        if is_done {
-            let mark = [[-3.2, 0.2], [-0.9, 2.6], [3.4, -2.8]].map(|[x, y]| rect.center() + vec2(x, y));
-            painter.line(mark.to_vec(), Stroke::new(1.5, colours.on_accent));
-        }
-        let label = ui.add(Label::new(RichText::new(text).color(color).line_height(Some(20.0))).wrap());
-        if is_done {
-            // Where AccessKit keeps the text of a label.
-            let done = format!("Done: {text}");
-            label.ctx.accesskit_node_builder(label.id, |node| node.set_value(done));
-        }
+        let text = |text: RichText| Label::new(text.line_height(Some(20.0))).wrap();
+        ui.add(text(RichText::new((number + 1).to_string()).strong().color(colours.accent)));
+        ui.add(text(RichText::new(STEPS[number])));
     });
 }

@@ -1,21 +1,21 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
 use super::kept::{FilmId, Query, Subject};
-use super::model::document::Document;
+use super::model::Document;
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
 use crate::film::to_byte;
 use crate::progressive::standard_error;
 use crate::scene::Scene;
-use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, Ui, UiBuilder, vec2};
+use eframe::egui::{self, Align, Color32, Layout, Rect, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
 
 /// With more spheres than this, searching for the one under the pointer would stall the window.
 const PICK_LIMIT: usize = 50_000;
 
-/// Height of a row and distance of the columns of numbers, points.
-const ROW: f32 = 16.0;
-const COLUMN: f32 = 56.0;
+/// Height of a row and distance of the columns of numbers, sizes of the font.
+const ROW: f32 = 4.0 / 3.0;
+const COLUMN: f32 = 14.0 / 3.0;
 
 /// A pixel of the film.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,7 +95,7 @@ impl Inspector {
     ) {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The header and four rows, so that what is above stays where it is.
-        ui.set_min_height(24.0 + 4.0 * ROW);
+        ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
         let Some(pixel) = &self.pixel else {
             ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
@@ -187,7 +187,8 @@ fn signed(value: f64) -> String {
 
 /// A row of the table.
 fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
-    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+    let em = TextStyle::Small.resolve(ui.style()).size;
+    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW * em), Sense::hover());
     tip(ui, response, help, None);
     let weak = theme::colours(ui).weak;
     let mut cell = |rect: Rect, layout: Layout, text: &str, color: Color32| {
@@ -196,7 +197,7 @@ fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
     };
     cell(row, Layout::left_to_right(Align::Center), name, weak);
     for (place, (value, color)) in values.into_iter().enumerate() {
-        let right = row.right() - COLUMN * (2 - place) as f32;
+        let right = row.right() - COLUMN * em * (2 - place) as f32;
         cell(row.with_max_x(right), Layout::right_to_left(Align::Center), &value, color);
     }
 }
@@ -204,7 +205,7 @@ fn cells(ui: &mut Ui, name: &str, help: &str, values: [(String, Color32); 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::{Origin, Source};
+    use crate::app::model::{Origin, Source};
     use crate::job::recipe::Recipe;
     use crate::render_cpu::record_path;
     use egui_kittest::Harness;

@@ -4,8 +4,7 @@
 use super::answers::Answers;
 use super::dock::swatch;
 use super::facts::Facts;
-use super::model::device::Device;
-use super::model::document::Document;
+use super::model::{Device, Document};
 use super::theme;
 use super::widgets::{hint, small};
 use crate::backends::explain::{Activity, Timeline, timeline};
@@ -30,7 +29,7 @@ pub struct Lanes {
     asked: Option<(Document, usize)>,
     /// None until they are recorded; else the timelines, or why there are none.
     traced: Option<Result<[Timeline; 2], String>>,
-    answers: Answers<Result<[Timeline; 2], String>>,
+    answers: Answers<[Timeline; 2]>,
 }
 
 impl Lanes {
@@ -66,13 +65,7 @@ impl Lanes {
             let paths: Vec<_> = (0..lanes).map(paths_of).collect();
             Ok([false, true].map(|refill| timeline(job.scene(), &paths, refill)))
         };
-        self.answers.ask("lanes", context, record, Err);
-    }
-
-    /// The numbers of steps without and with refill, once they are recorded.
-    pub fn steps(&self) -> Option<[usize; 2]> {
-        let [without, with] = self.traced.as_ref()?.as_ref().ok()?;
-        Some([without.len(), with.len()])
+        self.answers.ask("lanes", context, record);
     }
 
     pub fn ui(&self, ui: &mut Ui, facts: &Facts) {
@@ -148,7 +141,7 @@ fn pixel_of(lane: usize, lanes: usize, [width, height]: [u32; 2]) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     #[test]
@@ -160,9 +153,9 @@ mod tests {
         lanes.follow(&context, &document, Some(4), true);
         assert!(lanes.asked.is_none(), "they are not shown, or something is moving");
         lanes.follow(&context, &document, Some(4), false);
-        assert_eq!(lanes.steps(), None);
+        assert!(lanes.traced.is_none());
         lanes.traced = lanes.answers.wait();
-        let [without, with] = lanes.steps().unwrap();
+        let [without, with] = lanes.traced.as_ref().unwrap().as_ref().unwrap().each_ref().map(Timeline::len);
         assert!(without >= with && with >= SAMPLES as usize, "{without} {with}");
         lanes.follow(&context, &document, Some(4), false);
         assert!(lanes.answers.take().is_none(), "nothing has changed");
@@ -170,6 +163,6 @@ mod tests {
         lanes.follow(&context, &document, Some(4), false);
         assert!(lanes.answers.wait().is_some_and(|traced| traced.is_ok()), "another picture");
         lanes.follow(&context, &document, None, false);
-        assert!(lanes.steps().is_none() && lanes.asked.is_none());
+        assert!(lanes.traced.is_none() && lanes.asked.is_none());
     }
 }

@@ -1,7 +1,7 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use super::answers::{Answer, Answers};
-use super::model::document::Document;
+use super::model::Document;
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
@@ -19,8 +19,8 @@ const SAMPLES: u64 = 16;
 /// Largest number of pixels in the coarse layer, which has one sample each.
 const COARSE_PIXELS: u32 = 20_000;
 
-/// The number of an order, and a layer that was traced, nothing more, or why it can't be traced.
-type Traced = (u64, Result<Option<(LayerImage, Vec<u8>, u32)>, String>);
+/// A layer that was traced, or nothing more.
+type Traced = Option<(LayerImage, Vec<u8>, u32)>;
 
 /// What was ordered last.
 struct Ordered {
@@ -46,7 +46,6 @@ pub struct Layers {
     traced: Answers<Traced>,
     /// What traces paths, with the hierarchy of the last scene. Orders wait for it.
     recorder: Arc<Mutex<Option<PathRecorder>>>,
-    number: u64,
     ordered: Option<Ordered>,
     cancel: Arc<AtomicBool>,
     shown: Option<ShownLayer>,
@@ -105,8 +104,8 @@ impl Layers {
     /// Takes what was traced. Returns why the layer cannot be traced, if so.
     fn fetch(&mut self) -> Option<String> {
         let mut fault = None;
-        while let Some((number, outcome)) = self.traced.take() {
-            let Some(ordered) = self.ordered.as_mut().filter(|_| number == self.number) else { continue };
+        while let Some(outcome) = self.traced.take() {
+            let Some(ordered) = self.ordered.as_mut() else { continue };
             // After a failure, the next one need not wait for this one.
             ordered.is_pictured = true;
             match outcome {
@@ -127,17 +126,18 @@ impl Layers {
         let Ok(job) = document.job(1) else { return };
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::default();
-        self.number += 1;
+        // A late answer is lost with its slot.
+        self.traced = Answers::default();
         self.ordered = Some(Ordered { layer, document: document.clone(), is_coarse, is_pictured: false });
-        let (number, cancel, recorder) = (self.number, Arc::clone(&self.cancel), Arc::clone(&self.recorder));
+        let (cancel, recorder) = (Arc::clone(&self.cancel), Arc::clone(&self.recorder));
         let answer = self.traced.answer(context);
         let work = move || {
             let mut recorder = recorder.lock().unwrap_or_else(PoisonError::into_inner);
             let outcome = layer.job(&job).map_err(|error| error.to_string());
-            let order = Order { number, layer, is_coarse, cancel, answer };
-            (number, outcome.and_then(|job| order.trace(&mut recorder, &job)).map(|()| None))
+            let order = Order { layer, is_coarse, cancel, answer };
+            outcome.and_then(|job| order.trace(&mut recorder, &job)).map(|()| None)
         };
-        self.traced.ask("layers", context, work, move |reason| (number, Err(reason)));
+        self.traced.ask("layers", context, work);
     }
 }
 
@@ -149,7 +149,6 @@ impl Drop for Layers {
 
 /// A layer to trace.
 struct Order {
-    number: u64,
     layer: Layer,
     is_coarse: bool,
     cancel: Arc<AtomicBool>,
@@ -191,7 +190,7 @@ impl Order {
             }
             if (index + 1).is_power_of_two() {
                 let rgb8 = coloured(self.layer, &image, job.rules().transfer);
-                self.answer.give_one((self.number, Ok(Some((image.clone(), rgb8, divisor)))));
+                self.answer.give_one(Ok(Some((image.clone(), rgb8, divisor))));
             }
         }
         true
@@ -218,7 +217,7 @@ fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use std::time::{Duration, Instant};
 
     fn small() -> Document {
@@ -251,14 +250,14 @@ mod tests {
     fn a_layer_is_ordered_when_it_or_its_picture_changes() {
         let (mut layers, context, document) = (Layers::default(), Context::default(), small());
         layers.follow(&context, None, &document, false);
-        assert_eq!(layers.number, 0);
+        assert!(layers.ordered.is_none());
         finish(&mut layers, Layer::Normals, &document);
-        assert_eq!(layers.number, 1, "once");
+        let cancel = Arc::clone(&layers.cancel);
         assert!(layers.shown(Layer::Normals).is_some() && layers.shown(Layer::Albedo).is_none());
         layers.follow(&context, Some(Layer::Normals), &document, true);
-        assert_eq!(layers.number, 1, "a finished layer stays while something else moves");
+        assert!(Arc::ptr_eq(&cancel, &layers.cancel), "a finished layer stays while something else moves");
         finish(&mut layers, Layer::Albedo, &document);
-        assert_eq!(layers.number, 2);
+        assert!(!Arc::ptr_eq(&cancel, &layers.cancel));
         layers.follow(&context, None, &document, false);
         assert!(layers.cancel.load(Ordering::Relaxed) && layers.value_at([0, 0]).is_none());
         finish(&mut layers, Layer::Albedo, &document);
@@ -270,16 +269,14 @@ mod tests {
         let recorder = Arc::clone(&layers.recorder);
         // Nothing is traced while this lasts.
         let _guard = recorder.lock().unwrap();
-        let mut follow = |outcome: Option<(u64, &str)>| {
-            if let Some((number, reason)) = outcome {
-                layers.traced.answer(&context).give((number, Err(reason.to_owned())));
+        let mut follow = |outcome: Option<&str>| {
+            if let Some(reason) = outcome {
+                layers.traced.answer(&context).give(Err(reason.to_owned()));
             }
             layers.follow(&context, Some(Layer::Normals), &document, false)
         };
         assert_eq!(follow(None), None);
-        assert_eq!(follow(Some((0, "an earlier one"))), None);
-        assert_eq!(follow(Some((1, "it fell"))).as_deref(), Some("it fell"));
-        assert_eq!(follow(None), None);
-        assert_eq!(layers.number, 1, "it is not tried again and again");
+        assert_eq!(follow(Some("it fell")).as_deref(), Some("it fell"));
+        assert_eq!(follow(None), None, "it is not tried again and again");
     }
 }

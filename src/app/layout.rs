@@ -1,23 +1,17 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
 use super::command::Command;
-use super::dialogs::Purpose;
+use super::display::Display;
 use super::facts::Facts;
-use super::model::Model;
-use super::model::document::Document;
-use super::model::first_steps::Step;
-use super::model::remembered::{Dock, Remembered, Tab};
-use super::model::view::{Mode, ViewState};
+use super::inspector::Inspector;
+use super::model::{Dock, Document, Model, Remembered, Tab, ViewState};
 use super::paths::at_same_place;
-use super::places::Place;
-use super::present::{self, Magnified};
 use super::second::Second;
 use super::spheres::Selected;
-use super::texture::Texture;
 use super::viewport::{Handle, Pictures, SecondPicture, Touch};
 use super::window::Window;
-use super::{bar, controls, dock, first_steps, right, stage_panel, status, theme};
-use eframe::egui::{self, Rect, Ui};
+use super::{bar, controls, dock, first_steps, present, right, stage_panel, status, theme};
+use eframe::egui::{self, Ui};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
 pub const NARROW: f32 = 1000.0;
@@ -29,7 +23,7 @@ impl Window {
         bar::name_window(ui.ctx(), facts.document());
         self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
-            self.shell.presenter.ui(ui, &facts);
+            present::ui(ui, &facts);
         }
         if facts.model.has_panels() {
             self.panels(ui, &facts);
@@ -53,7 +47,6 @@ impl Window {
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
-        Place::Bar.begin(ui);
         bar::ui(ui, facts, commands);
         status::ui(ui, facts, tracing.sizer.offer(), commands);
         let mut edits = Vec::new();
@@ -67,7 +60,6 @@ impl Window {
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
         let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
-            Place::Controls.begin(ui);
             controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
         };
         if has.has_controls && !is_narrow {
@@ -76,7 +68,6 @@ impl Window {
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
-                Place::Info.begin(ui);
                 let (chosen, is_closed) = right::tabs(ui, &tabs, tab);
                 if chosen != tab {
                     remembered.tab = chosen;
@@ -85,13 +76,7 @@ impl Window {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
                             display.tone.ui(ui, view, facts, commands);
-                            let pixel = tools.inspector.pixel();
-                            let layer = view.show().layer();
-                            let value = pixel.and_then(|pixel| display.layers.value_at(pixel.at));
-                            let other = pixel.and_then(|pixel| {
-                                other_pixel(view, &tracing.second, facts.document(), pixel.at)
-                            });
-                            tools.inspector.ui(ui, facts.shown(), value.filter(|_| layer.is_some()), other);
+                            numbers(ui, view, facts, display, &tracing.second, &tools.inspector);
                         });
                         right::scrolling(ui, |ui| stage_panel::ui(ui, facts, commands));
                     }
@@ -109,9 +94,7 @@ impl Window {
     fn middle(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         if facts.model.has_panels() {
             let Window { model, tools, display, commands, .. } = self;
-            if dock::ui(ui, model, tools, &mut display.kept, facts, commands) {
-                self.ask_path(ui.ctx(), Purpose::SavePlot);
-            }
+            dock::ui(ui, model, tools, &mut display.kept, facts, commands);
         }
         if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
             first_steps::ui(ui, facts, &mut self.commands);
@@ -162,8 +145,14 @@ impl Window {
 
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch, facts: &Facts) {
-        if facts.model.presentation.is_some() {
-            self.lens(ui, touch.hovered, touch.room);
+        if facts.model.presentation.is_some()
+            && let (Some(room), Some(at)) = (touch.room, ui.input(|input| input.pointer.hover_pos()))
+            && touch.hovered.is_some()
+        {
+            let Window { model, display, tracing, tools, .. } = self;
+            let numbers =
+                |ui: &mut Ui| numbers(ui, &model.view, facts, display, &tracing.second, &tools.inspector);
+            present::magnify(ui, room, at, numbers);
         }
         self.tools.inspector.hover(touch.hovered);
         if let Some(pixel) = touch.listed {
@@ -172,9 +161,6 @@ impl Window {
         }
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
-        }
-        if touch.is_orbit {
-            self.note_step(Step::Orbit);
         }
         if let Some(reason) = facts.no_rays().filter(|_| touch.is_refused) {
             self.shell.toasts.good(reason);
@@ -190,81 +176,38 @@ impl Window {
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }
-
-    /// The magnifier of a presentation.
-    fn lens(&self, ui: &Ui, hovered: Option<[u32; 2]>, room: Option<Rect>) {
-        let (Some(at), Some(room)) = (hovered, room) else { return };
-        let Some(pointer) = ui.ctx().input(|input| input.pointer.hover_pos()) else { return };
-        let Window { model, tracing, display, tools, .. } = self;
-        let (view, document) = (&model.view, &model.document);
-        let colours = |texture: &Texture, divisor: u32, [x, y]: [u32; 2]| {
-            present::around([x / divisor, y / divisor], |at| texture.colour(at))
-        };
-        let mine = match view.show().layer().and_then(|layer| display.layers.shown(layer)) {
-            Some(layer) => Some(colours(&layer.texture, layer.divisor, at)),
-            None => display.shown(model, tracing).map(|shown| colours(&shown.texture, shown.divisor, at)),
-        };
-        let Some(mine) = mine else { return };
-        let other = view.mode().and_then(|_| tracing.second.shown()).map(|shown| {
-            let size = view.shown_document(document).size();
-            let at = view.wiped().map_or(at, |kept| at_same_place(at, [size, kept.size()]));
-            colours(&shown.texture, shown.divisor, at)
-        });
-        let inspected = tools.inspector.pixel().filter(|pixel| pixel.at == at);
-        let with = match view.mode() {
-            // What is shown is the difference, in false colours.
-            Some(Mode::Difference) => inspected.map(|pixel| pixel.bytes),
-            _ => present::pixel(&mine),
-        };
-        let without = other.as_deref().and_then(present::pixel);
-        let magnified = match (other, without, with) {
-            (Some(other), Some(without), Some(with)) if is_later(document, &tracing.second) => {
-                Magnified::two(vec![other, mine], with, without)
-            }
-            (Some(other), Some(without), Some(with)) => Magnified::two(vec![other, mine], without, with),
-            _ => Magnified::one(mine, inspected.map(|pixel| pixel.mean)),
-        };
-        magnified.paint(ui, room, pointer);
-    }
 }
 
-/// Whether the other picture of a comparison is a later stage than this one.
-fn is_later(document: &Document, second: &Second) -> bool {
-    let other = second.shown().and_then(|shown| shown.document.stage());
-    other.zip(document.stage()).is_some_and(|(other, mine)| other.index() > mine.index())
-}
-
-/// The titles of the two sides of a comparison, the other one first, each from the longest to the shortest.
-fn titles(facts: &Facts, second: &Second) -> [Vec<String>; 2] {
+/// The titles of the two sides of a comparison, the other one first.
+fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
-    let of = |document: &Document, kept: Option<usize>| match (kept, document.stage()) {
-        (Some(place), _) => vec![view.kept.title(place), (place + 1).to_string()],
-        (None, Some(stage)) => vec![document.title(), stage.section.to_owned()],
-        (None, None) => vec![document.title()],
+    let of = |document: &Document, kept: Option<usize>| {
+        kept.map_or_else(|| document.title(), |place| view.kept.title(place))
     };
-    let other = second.shown().map_or_else(Vec::new, |shown| of(&shown.document, view.compared_kept()));
-    let titles = [other, of(facts.shown(), view.kept.looked())];
-    if facts.model.presentation.is_none() {
-        return titles;
-    }
-    let names = if is_later(facts.shown(), second) { ["With", "Without"] } else { ["Without", "With"] };
-    let mut names = names.into_iter();
-    titles.map(|titles| {
-        let name = names.next().unwrap_or_default();
-        titles
-            .last()
-            .map(|title| format!("{name}: {title}"))
-            .into_iter()
-            .chain(titles.last().cloned())
-            .collect()
-    })
+    let other = second.shown().map(|shown| of(&shown.document, view.compared_kept()));
+    [other.unwrap_or_default(), of(facts.shown(), view.kept.looked())]
+}
+
+/// The numbers of the pixel under the pointer.
+fn numbers(
+    ui: &mut Ui,
+    view: &ViewState,
+    facts: &Facts,
+    display: &Display,
+    second: &Second,
+    inspector: &Inspector,
+) {
+    let at = inspector.pixel().map(|pixel| pixel.at);
+    let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
+    let other = at.and_then(|at| other_pixel(view, second, facts.document(), at));
+    inspector.ui(ui, facts.shown(), value, other);
 }
 
 /// What the other picture of a comparison has at a pixel: linear radiance.
 fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
     match view.wiped() {
         Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
-        None => view.subtracted(second.film())?.mean(at),
+        None => second.film()?.mean(at),
     }
 }
 

@@ -20,6 +20,7 @@ mod display;
 mod dock;
 mod facts;
 mod files;
+mod finder;
 mod first_steps;
 mod frame_log;
 mod input;
@@ -34,12 +35,10 @@ mod navigation;
 mod paths;
 mod perform;
 mod pixel_values;
-mod places;
 mod plot;
 mod prediction;
 mod present;
 mod preview;
-mod questions;
 mod receive;
 mod right;
 mod scene_file;
@@ -64,13 +63,7 @@ mod window;
 mod wording;
 
 pub use command::{Command, Menu, ROWS};
-pub use model::device::Device;
-pub use model::document::Document;
-pub use model::origin::{Origin, Source};
-pub use model::remembered::{Dock, Tab, Theme};
-pub use model::show::Show;
-pub use model::sizing::Sizing;
-pub use model::viewpoint::Viewpoint;
+pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab, Theme};
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
@@ -117,7 +110,6 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            bring_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
             // The first frame would have egui's own style otherwise.
@@ -137,24 +129,6 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
-}
-
-/// Moves the window to a monitor if it was last on one that is gone.
-fn bring_to_monitor(context: &eframe::CreationContext) {
-    /// Pixels of the window that must be visible in each direction.
-    const VISIBLE: i32 = 64;
-    let Some(window) = context.winit_window() else { return };
-    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
-    let meets = |from: i32, length: u32, begin: i32, extent: u32| {
-        from + VISIBLE <= begin + extent as i32 && begin + VISIBLE <= from + length as i32
-    };
-    let is_visible = window.available_monitors().any(|monitor| {
-        let (corner, area) = (monitor.position(), monitor.size());
-        meets(at.x, size.width, corner.x, area.width) && meets(at.y, size.height, corner.y, area.height)
-    });
-    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_visible) {
-        window.set_outer_position(monitor.position());
-    }
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu

@@ -80,21 +80,6 @@ pub fn at_depth(camera: &Camera, place: [f64; 2], aspect: f64) -> DVec3 {
     camera.look_from + direction * (ahead.length_squared() / ahead.dot(direction))
 }
 
-/// A camera with `up` as its up direction that shows nearly the same, if it looks along `up`, as a view from the top does;
-/// otherwise the camera itself. About `up`, it can be turned as from anywhere else.
-pub fn upright(camera: &Camera, pivot: DVec3, up: DVec3) -> Camera {
-    /// Below this sine of the angle between view and up, the camera looks along it.
-    const ALONG_SINE: f64 = 1e-6;
-    let basis = camera.basis();
-    let Some(up) = up.try_normalize().filter(|up| up.cross(basis.w).length() < ALONG_SINE) else {
-        return *camera;
-    };
-    // Towards the pole that is in sight, what is up in the picture stays up.
-    let turn = DQuat::from_axis_angle(basis.u, POLE_DEGREES.to_radians() * up.dot(basis.w).signum());
-    let [look_from, look_at] = [camera.look_from, camera.look_at].map(|at| pivot + turn * (at - pivot));
-    kept(camera, Camera { look_from, look_at, vup: up, ..*camera })
-}
-
 /// Moves the camera and `look_at`: `by` is right, up and forward, in scene units.
 pub fn fly(camera: &Camera, by: DVec3) -> Camera {
     let basis = camera.basis();
@@ -125,21 +110,7 @@ fn rotation(camera: &Camera, about_up: f64, up: f64) -> DQuat {
 }
 
 fn kept(old: &Camera, new: Camera) -> Camera {
-    let scale = new.look_from.abs().max_element().max(new.look_at.abs().max_element());
-    let tidy = |point: DVec3| point.map(|n| without_dust(n, scale));
-    let new = Camera {
-        look_from: if new.look_from == old.look_from { old.look_from } else { tidy(new.look_from) },
-        look_at: if new.look_at == old.look_at { old.look_at } else { tidy(new.look_at) },
-        ..new
-    };
     if new.validate().is_ok() { new } else { *old }
-}
-
-/// A coordinate to thirteen digits of the largest one, without what rounding adds.
-fn without_dust(n: f64, scale: f64) -> f64 {
-    let factor = 10.0_f64.powi(12 - scale.log10().floor().clamp(-9.0, 300.0) as i32);
-    // Without the sign of a zero, too.
-    (n * factor).round() / factor + 0.0
 }
 
 #[cfg(test)]

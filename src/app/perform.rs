@@ -5,28 +5,19 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
-use super::model::Presentation;
-use super::model::companion;
-use super::model::device::{self, Device};
-use super::model::document::Document;
-use super::model::edit::Edit;
-use super::model::first_steps::Step;
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Bookmark, Dock, Remembered, Tab};
-use super::model::show::Show;
-use super::model::sizing::Sizing;
-use super::model::view::{Mode, ViewState, With};
-use super::model::viewpoint::Viewpoint;
+use super::model::{
+    Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source, ViewState,
+    With, companion, device,
+};
 use super::navigation;
 use super::sight::Sighted;
-use super::spheres::grip::{new_body, to_copy};
+use super::spheres::grip::new_body;
 use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
-use crate::measure::stress::Case;
-use crate::stages::{BOOK_URL, Stage};
+use crate::stages::Stage;
 use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -37,7 +28,6 @@ impl Window {
     /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &Context, command: Command) {
         self.shell.performed = Some(command);
-        self.shell.dialogs.note_used(command);
         let facts = self.facts();
         if let Some(log) = &mut self.shell.frame_log {
             log.command(&facts.name(command));
@@ -59,7 +49,7 @@ impl Window {
 
     /// Leaves the innermost thing that can be left.
     pub(super) fn escape(&mut self) {
-        let Window { model, tools, display, shell, commands, .. } = self;
+        let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
         } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
@@ -79,7 +69,6 @@ impl Window {
         } else if model.is_full_screen {
             commands.push(Command::FullScreen);
         }
-        shell.panel = None;
     }
 
     // The picture that is shown
@@ -109,12 +98,7 @@ impl Window {
         self.show_origin(Origin::of_stage(stage));
     }
 
-    pub(super) fn show_case(&mut self, case: &'static Case) {
-        self.show_origin(Origin::of_case(case));
-    }
-
     pub(super) fn step_stage(&mut self, is_next: bool) {
-        self.note_step(Step::Leaf);
         if let Some(stage) = self.facts().neighbour(is_next) {
             self.show_stage(stage);
         }
@@ -144,12 +128,8 @@ impl Window {
         self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
     }
 
-    pub(super) fn reset_all(&mut self) {
-        self.keep_selection_after(|window| window.model.document.reset());
-    }
-
     /// Selects the sphere that `change` brings back or alters.
-    fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
+    pub(super) fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
         let (checked, origin) = (Arc::clone(&self.document().checked), Arc::clone(&self.document().origin));
         change(self);
         let after = self.document();
@@ -158,50 +138,24 @@ impl Window {
         }
         let is_same_origin = Arc::ptr_eq(&origin, &after.origin);
         let [old, new] = [&checked, &after.checked].map(|checked| checked.scene().spheres.len());
-        let first = super::model::edit::first_difference(checked.scene(), after.scene());
+        let first = super::model::first_difference(checked.scene(), after.scene());
         self.model.selected = first.filter(|_| is_same_origin && new >= old);
     }
 
     // Camera and spheres
-
-    pub(super) fn home(&mut self) {
-        self.model.document.camera = self.document().origin.recipe.camera;
-        self.shell.toasts.withdraw(Command::Home);
-    }
-
-    /// Lets the focus follow the point looked at, or keeps it where it is now.
-    pub(super) fn toggle_focus_on_look_at(&mut self) {
-        let camera = &mut self.model.document.camera;
-        camera.focus_distance = match camera.focus_distance {
-            Some(_) => None,
-            None => Some(camera.effective_focus_distance()),
-        };
-    }
-
-    pub(super) fn view_from(&mut self, side: Viewpoint) {
-        let up = self.document().origin.recipe.camera.vup;
-        self.model.document.camera = side.camera(&self.document().camera, up);
-    }
 
     pub(super) fn add_bookmark(&mut self) {
         let (document, bookmarks) = (&self.model.document, &mut self.model.remembered.bookmarks);
         let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
         let place = document.place();
         let name = (1..).map(|number| format!("{place} view {number}")).find(is_free).unwrap_or_default();
-        bookmarks.push(Bookmark::new(name, &document.camera));
+        bookmarks.push(Bookmark { name, camera: document.camera });
         self.shell.toasts.good("Bookmarked; View > Bookmarks jumps back to it");
     }
 
-    pub(super) fn jump_to_bookmark(&mut self, place: usize) {
-        if let Some(bookmark) = self.model.remembered.bookmarks.get(place) {
-            self.model.document.camera = bookmark.camera();
-        }
-    }
-
     pub(super) fn edit(&mut self, edit: Edit) {
-        match spheres::edit(&mut self.model, edit) {
-            Ok(()) => self.note_step(Step::Change),
-            Err(reason) => self.shell.toasts.bad(reason),
+        if let Err(reason) = spheres::edit(&mut self.model, edit) {
+            self.shell.toasts.bad(reason);
         }
     }
 
@@ -212,24 +166,11 @@ impl Window {
         self.edit(Edit::Add(body));
     }
 
+    /// Puts a copy to the right of the selected sphere.
     pub(super) fn duplicate_sphere(&mut self) {
-        let document = self.document();
-        if let Some(sphere) = self.model.selected {
-            let by = to_copy(document.scene(), &document.camera, document.aspect(), sphere);
-            self.edit(Edit::Duplicate(sphere, by));
-        }
-    }
-
-    pub(super) fn delete_sphere(&mut self) {
-        if let Some(sphere) = self.model.selected {
-            self.edit(Edit::Delete(sphere));
-        }
-    }
-
-    pub(super) fn look_at_sphere(&mut self) {
-        if let Some(selected) = Selected::of(&self.model) {
-            let camera = navigation::recentre(&self.document().camera, selected.body.center);
-            self.model.document.camera = camera;
+        if let Some(Selected { sphere, body, .. }) = Selected::of(&self.model) {
+            let right = self.document().camera.basis().u;
+            self.edit(Edit::Duplicate(sphere, 2.2 * body.radius * right));
         }
     }
 
@@ -247,14 +188,6 @@ impl Window {
     }
 
     // View
-
-    pub(super) fn show_as(&mut self, context: &Context, show: Show) {
-        if show == Show::Difference && self.model.view.reference.is_none() {
-            self.ask_path(context, Purpose::ReferenceFilm);
-        } else {
-            self.model.view.choose(show);
-        }
-    }
 
     /// Compares with the other stage; a picture that is no stage, with the book's arithmetic.
     pub(super) fn compare(&mut self, mode: Mode) {
@@ -318,11 +251,6 @@ impl Window {
         }
     }
 
-    pub(super) fn clear_paths(&mut self) {
-        self.tools.paths.forget();
-        self.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
-    }
-
     // Panels
 
     /// Shows or hides a panel. If all are hidden, shows them with this one.
@@ -338,13 +266,6 @@ impl Window {
         let is_open = remembered.has_panels && remembered.dock == Some(dock);
         remembered.has_panels = true;
         remembered.dock = if is_open { None } else { Some(dock) };
-    }
-
-    pub(super) fn toggle_code(&mut self) {
-        let is_open = self.model.shows(Tab::Code);
-        let remembered = &mut self.model.remembered;
-        remembered.tab = if is_open { Tab::Stage } else { Tab::Code };
-        (remembered.has_panels, remembered.has_info) = (true, true);
     }
 
     pub(super) fn toggle_panels(&mut self) {
@@ -379,26 +300,8 @@ impl Window {
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
                 self.model.view.look(None);
-                self.shell.presenter.begin(context);
                 self.fill_screen(context, true);
             }
-        }
-    }
-
-    pub(super) fn toggle_first_steps(&mut self) {
-        let has_card = &mut self.model.has_first_steps;
-        *has_card = !*has_card;
-        if *has_card {
-            self.model.remembered.first_steps.forget();
-        } else {
-            self.model.remembered.first_steps.is_over = true;
-        }
-    }
-
-    /// Ticks a step of the first-steps card.
-    pub(super) fn note_step(&mut self, step: Step) {
-        if self.model.has_first_steps {
-            self.model.remembered.first_steps.note(step);
         }
     }
 
@@ -415,25 +318,6 @@ impl Window {
         } else {
             self.tracing.resume();
         }
-    }
-
-    pub(super) fn restart(&mut self) {
-        if std::mem::take(&mut self.model.is_paused) {
-            self.tracing.resume();
-        }
-        self.tracing.restart();
-    }
-
-    /// Traces on this device, or on the CPU again.
-    pub(super) fn switch_device(&mut self, other: Device) {
-        let device = &mut self.model.remembered.device;
-        *device = if *device == other { Device::Cpu } else { other };
-    }
-
-    pub(super) fn take_size(&mut self, sizing: Sizing) {
-        self.model.remembered.sizing = sizing;
-        self.model.document.has_own_size = false;
-        self.tracing.sizer.ask();
     }
 
     // Kept pictures
@@ -457,13 +341,6 @@ impl Window {
         }
     }
 
-    pub(super) fn go_on_from_kept(&mut self, context: &Context) {
-        let kept = &self.model.view.kept;
-        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
-            self.display.kept.reopen(context, &named.kept);
-        }
-    }
-
     /// Tests whether the shown picture and the chosen kept one differ by noise alone.
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
@@ -477,10 +354,7 @@ impl Window {
     // Files
 
     pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
-        let mut from = self.folder();
-        if purpose == Purpose::SavePlot {
-            from.push(format!("{}.csv", file_name(self.document())));
-        }
+        let from = self.folder();
         self.shell.dialogs.system.ask(context, purpose, from);
     }
 
@@ -509,25 +383,9 @@ impl Window {
 
     pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
         match outcome {
-            Outcome::Named(purpose, path) => self.use_path(context, purpose, path),
-            Outcome::Size(size) => {
-                self.tracing.sizer.accepted = Some(size);
-                self.model.document.give_size(size);
-            }
-            Outcome::Stay | Outcome::Close => {}
-        }
-    }
-
-    fn use_path(&mut self, context: &Context, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::Open => self.files.open(context, path),
-            Purpose::Check => self.tools.check.begin(context, &path, None),
-            Purpose::ReferenceFilm => self.files.load_reference(context, path),
-            Purpose::SavePlot => {
-                let csv = super::plot::csv(&self.tracing.main.status().history);
-                self.files.save_text(context, &path, &csv);
-            }
-            Purpose::Save(what, size) => {
+            Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
+            Outcome::Named(_, path) => self.files.open(context, path),
+            Outcome::Save(what, size, path) => {
                 if let Some(folder) =
                     path.parent().filter(|folder| default_folder().as_deref() == Some(folder))
                 {
@@ -536,7 +394,11 @@ impl Window {
                 }
                 self.save_as(context, what, size, path);
             }
-            Purpose::Place(_) => {}
+            Outcome::Size(size) => {
+                self.tracing.sizer.accepted = Some(size);
+                self.model.document.give_size(size);
+            }
+            Outcome::Stay | Outcome::Close => {}
         }
     }
 
@@ -626,21 +488,10 @@ impl Window {
         }
     }
 
-    pub(super) fn view_saved(&mut self, context: &Context) {
-        if let Some(url) = self.model.remembered.recent.first().map(|path| companion::file_url(path)) {
-            self.open_or_tell(context, url);
-        }
-    }
-
-    fn open_or_tell(&mut self, context: &Context, url: String) {
+    pub(super) fn open_or_tell(&mut self, context: &Context, url: String) {
         if !self.open_page(context, url.clone()) {
             self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
-    }
-
-    pub(super) fn open_book(&mut self, context: &Context) {
-        let url = self.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
-        self.open_or_tell(context, url);
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {

@@ -10,15 +10,12 @@ use crate::numbers::statistics::fit::Point;
 use crate::progressive::{HistoryPoint, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, Vec2b};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points,
+    AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
 };
 use std::fmt::Write;
 
-/// The largest number of decades for which an axis has grid lines.
-const MOST_DECADES: f64 = 40.0;
-
-/// Draws the plot. Returns whether the points are to be saved.
-pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
+/// Draws the plot.
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let status = &facts.status;
     if points(status).is_empty() {
         hint(
@@ -28,15 +25,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
                 false => "Switch on \u{201c}Estimate the error\u{201d} under Tracer.",
             },
         );
-        return false;
+        return;
     }
-    let mut is_saved = false;
     Sides::new().shrink_left().wrap().show(
         ui,
         |ui| ui.label("How far the picture still is from the finished one. Four times the samples halve it."),
         |ui| {
-            let save = ui.button("Save CSV");
-            is_saved = tip(ui, save, "Saves the points of the curves as a table", None).clicked();
             let copy = ui.button("Copy");
             if tip(ui, copy, "Copies the points of the curves as a table (CSV)", None).clicked() {
                 ui.ctx().copy_text(csv(&status.history));
@@ -44,7 +38,6 @@ pub fn ui(ui: &mut Ui, facts: &Facts) -> bool {
         },
     );
     plot(ui, facts.document().stop.noise, status);
-    is_saved
 }
 
 fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
@@ -91,8 +84,8 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         .custom_y_axes(vec![
             axis(AxisHints::new_y(), "error, % of white").label_spacing(Rangef { min: 8.0, max: 14.0 }),
         ])
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
+        .x_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .y_grid_spacer(uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
         .grid_color(theme::colours(ui).line)
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position: place, .. }
@@ -127,20 +120,6 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
     });
 }
 
-/// Grid lines at powers of ten, and fainter ones at 2 and 5 times these; none if they would merge into solid grey.
-fn decades(grid: GridInput) -> Vec<GridMark> {
-    let (low, high) = grid.bounds;
-    if !(0.0..=MOST_DECADES).contains(&(high - low)) {
-        return Vec::new();
-    }
-    let powers = low.floor() as i32..=high.floor() as i32;
-    let marks = powers.flat_map(|power| {
-        [(1.0_f64, 1.0), (2.0, 0.3), (5.0, 0.3)]
-            .map(|(digit, step_size)| GridMark { value: f64::from(power) + digit.log10(), step_size })
-    });
-    marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
-}
-
 /// Rounds to two significant digits.
 fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
@@ -172,7 +151,7 @@ fn at(point: &Point) -> [f64; 2] {
 }
 
 /// The points as CSV with a header line.
-pub fn csv(history: &[HistoryPoint]) -> String {
+fn csv(history: &[HistoryPoint]) -> String {
     let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
     for HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate } in history
     {

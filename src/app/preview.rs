@@ -1,6 +1,6 @@
 //! How coarse a preview is: as fine as the time from request to picture allows.
 
-use super::model::document::Document;
+use super::model::Document;
 use crate::progressive::Status;
 use crate::stages::Shading;
 
@@ -152,7 +152,7 @@ fn coarsest(document: &Document) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
 
     use crate::stages::Stage;
 

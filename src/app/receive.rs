@@ -1,18 +1,12 @@
 //! What background threads have answered.
 
 use super::command::Command;
-use super::files::{NotOpened, Resumed};
-use super::kept::Reopened;
-use super::model::document::Document;
-use super::model::kept::{Kept, Named};
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Dock, Tab};
-use super::model::show::Show;
+use super::files::Resumed;
+use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
-use crate::progressive::{ReferenceMeans, Stop};
+use crate::progressive::Stop;
 use eframe::egui::Context;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 impl Window {
@@ -24,23 +18,20 @@ impl Window {
                     self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
-                    let offers = [Command::ViewSaved, Command::ShowInFolder];
-                    self.shell.toasts.good_with(format!("Saved {name}"), &offers);
+                    self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
                 }
                 Err(reason) => {
                     self.shell.toasts.bad(format!("Not saved: {reason}"));
-                    self.shell.toasts.add_offer(Command::Save);
+                    self.shell.toasts.add_offers(&[Command::Save]);
                 }
             }
         }
         while let Some(outcome) = self.files.opened.take() {
             match outcome {
-                Ok(opened) => self.show_opened(opened),
+                Ok(Ok(opened)) => self.show_opened(opened),
                 // A picture of another program is the user's own, to be checked.
-                Err(NotOpened { path, is_picture: true, .. }) => {
-                    self.tools.check.begin(context, &path, None);
-                }
-                Err(NotOpened { reason, .. }) => self.shell.toasts.bad(format!("Not opened: {reason}")),
+                Ok(Err(path)) => self.tools.check.begin(context, &path, None),
+                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
         if let Some(path) = self.tools.check.follow() {
@@ -49,7 +40,7 @@ impl Window {
         if self.tools.check.take_news() {
             (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
         }
-        while let Some((picture, what)) = self.files.copied.take() {
+        while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);
         }
@@ -57,12 +48,6 @@ impl Window {
             match outcome {
                 Ok(kept) => self.add_kept(kept),
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
-            }
-        }
-        while let Some(outcome) = self.display.kept.reopened.take() {
-            match outcome {
-                Ok(reopened) => self.go_on_from(reopened),
-                Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
         self.display.kept.verdict.receive();
@@ -75,12 +60,6 @@ impl Window {
         }
         while let Some(outcome) = self.files.companions.take() {
             self.show_companion(context, outcome);
-        }
-        while let Some(outcome) = self.files.references.take() {
-            match outcome {
-                Ok((path, reference)) => self.take_reference(path, reference),
-                Err(reason) => self.shell.toasts.bad(format!("Not subtracted: {reason}")),
-            }
         }
         if let Some(outcome) = self.shell.dialogs.chosen() {
             self.end_dialog(context, outcome);
@@ -132,19 +111,6 @@ impl Window {
         }
     }
 
-    fn take_reference(&mut self, path: PathBuf, reference: ReferenceMeans) {
-        self.remember_directory(&path);
-        let ([x, y], [a, b]) = (self.document().size(), [reference.width, reference.height]);
-        self.model.view.reference = Some(Arc::new(reference));
-        if [x, y] == [a, b] {
-            self.model.view.choose(Show::Difference);
-        } else {
-            self.model.document.give_size([a, b]);
-            self.model.view.choose(Show::Difference);
-            self.shell.toasts.good(format!("Rendering at {a} × {b}, the size of {}", path.display()));
-        }
-    }
-
     fn add_kept(&mut self, kept: Kept) {
         let name = kept.document.title();
         let place = self.model.view.kept.add(Named { name, kept: Arc::new(kept) });
@@ -152,14 +118,5 @@ impl Window {
             self.model.remembered.dock = Some(Dock::Kept);
         }
         self.shell.toasts.good(format!("Kept as number {}", place + 1));
-    }
-
-    fn go_on_from(&mut self, Reopened { document, film, seconds }: Reopened) {
-        self.model.view.look(None);
-        self.model.view.end_comparison();
-        self.show_document(document);
-        (self.tracing.film, self.tracing.seconds_before) = (Some(film), seconds);
-        self.changes.step_to(&self.model.document);
-        self.shell.toasts.good(format!("Going on from {}; Undo returns", self.document().title()));
     }
 }

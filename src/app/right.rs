@@ -1,6 +1,6 @@
 //! The right panel: its tabs, and the view and the pixel at its foot.
 
-use super::model::remembered::Tab;
+use super::model::Tab;
 use super::theme;
 use super::widgets::{Sign, TABS, panel_line, sign_button, tab, tip};
 use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Sides, Ui};

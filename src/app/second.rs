@@ -3,15 +3,11 @@
 
 use super::answers::Answers;
 use super::kept::KeptPicture;
-use super::model::document::Document;
-use super::model::kept::Kept;
-use super::model::origin::Origin;
-use super::model::view::{Mode, Other, ViewState, differ_in_camera};
+use super::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
 use super::tracer::{Shown, Tracer, Want};
 use crate::progressive::ReferenceMeans;
-use crate::scene::Camera;
 use eframe::egui::Context;
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
 /// The second picture.
 #[derive(Default)]
@@ -23,9 +19,7 @@ pub struct Second {
     picture: KeptPicture,
     /// Its film when it was last read.
     film: Option<Arc<ReferenceMeans>>,
-    films: Answers<(Arc<Origin>, ReferenceMeans)>,
-    /// Can be upgraded as long as a request for the film is open.
-    waiting: Weak<()>,
+    films: Answers<(Arc<Origin>, Arc<ReferenceMeans>)>,
 }
 
 impl Second {
@@ -74,9 +68,9 @@ impl Second {
 
     /// Takes the film if it has been read.
     pub fn receive(&mut self) {
-        while let Some((origin, film)) = self.films.take() {
+        while let Some(Ok((origin, film))) = self.films.take() {
             if self.of.as_ref().is_some_and(|(_, of)| Arc::ptr_eq(of, &origin)) {
-                self.film = Some(Arc::new(film));
+                self.film = Some(film);
             }
         }
     }
@@ -112,18 +106,14 @@ impl Second {
         let is_possible =
             tracer.want(&Want { document: &document, stop, view: view.tone.of_picture(), ..*want }).is_ok();
         let is_full = tracer.is_full(&document);
-        let has_picture = tracer.shown().is_some_and(|shown| shown.document.has_same_film(&document));
-        let is_waiting = self.waiting.strong_count() > 0;
+        let has_picture = tracer.has_picture(&document);
+        let is_waiting = self.films.is_open();
         if view.mode() != Some(Mode::Difference) {
             self.film = None;
         } else if is_full && has_picture && !is_waiting && (is_new || self.film.is_none()) {
-            let question = Arc::new(());
-            self.waiting = Arc::downgrade(&question);
             let (answer, origin) = (self.films.answer(context), Arc::clone(&document.origin));
             tracer.inspect(move |film| {
-                let film = ReferenceMeans::of(film);
-                drop(question);
-                answer.give((origin, film));
+                answer.give(Ok((origin, Arc::new(ReferenceMeans::of(film)))));
             });
         }
         is_possible
@@ -137,14 +127,11 @@ impl Second {
         self.picture.follow(context, &kept, &view.tone.of_picture());
         let is_difference = view.mode() == Some(Mode::Difference);
         self.film = kept.known_means().filter(|_| is_difference).cloned();
-        if is_difference && self.film.is_none() && self.waiting.strong_count() == 0 {
-            let question = Arc::new(());
-            self.waiting = Arc::downgrade(&question);
-            let (kept, context) = (Arc::clone(&kept), context.clone());
+        if is_difference && self.film.is_none() && !self.films.is_open() {
+            let (kept, answer) = (Arc::clone(&kept), self.films.answer(context));
             super::kept::run(move || {
-                kept.means();
-                drop(question);
-                context.request_repaint();
+                let means = Arc::clone(kept.means());
+                answer.give(Ok((Arc::clone(&kept.document.origin), means)));
             });
         }
         let origin = Arc::clone(&kept.document.origin);
@@ -166,38 +153,15 @@ impl Second {
         }
         let usual_stop = origin.usual_stop();
         let stop = if usual_stop == mine.origin.usual_stop() { mine.stop } else { usual_stop };
-        let camera = if differ_in_camera(base, theirs) {
-            camera_of(&mine.camera, &base.camera, &theirs.camera)
-        } else {
-            mine.camera
-        };
+        let camera = if differ_in_camera(base, theirs) { theirs.camera } else { mine.camera };
         Document { camera, settings, stop, ..Document::of(Arc::clone(origin)) }
-    }
-}
-
-/// The main camera, except for the settings in which the stages' cameras differ.
-fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
-    fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
-        if base == theirs { mine } else { theirs }
-    }
-    Camera {
-        look_from: choose(mine.look_from, base.look_from, theirs.look_from),
-        look_at: choose(mine.look_at, base.look_at, theirs.look_at),
-        vup: choose(mine.vup, base.vup, theirs.vup),
-        vfov_degrees: choose(mine.vfov_degrees, base.vfov_degrees, theirs.vfov_degrees),
-        defocus_angle_degrees: choose(
-            mine.defocus_angle_degrees,
-            base.defocus_angle_degrees,
-            theirs.defocus_angle_degrees,
-        ),
-        focus_distance: choose(mine.focus_distance, base.focus_distance, theirs.focus_distance),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::view::{differ_in_camera, partner};
+    use crate::app::model::{differ_in_camera, partner};
     use crate::measure::stress::shown_cases;
     use crate::stages::{Stage, SurfaceRule};
 
@@ -208,7 +172,7 @@ mod tests {
         let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
         let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]] };
         let answer = |second: &mut Second, origin: &Arc<Origin>| {
-            second.films.answer(&context).give((Arc::clone(origin), film()));
+            second.films.answer(&context).give(Ok((Arc::clone(origin), Arc::new(film()))));
             second.receive();
             second.film().is_some()
         };

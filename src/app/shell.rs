@@ -2,8 +2,6 @@
 
 use super::dialogs::Dialogs;
 use super::frame_log::{FrameLog, FrameTimes};
-use super::places::Place;
-use super::present::Presenter;
 use super::toasts::Toasts;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context as _, Result};
@@ -13,15 +11,12 @@ use std::sync::Arc;
 pub struct Shell {
     pub dialogs: Dialogs,
     pub toasts: Toasts,
-    pub presenter: Presenter,
     pub frame_log: Option<FrameLog>,
     pub frame_times: FrameTimes,
     /// The command that was carried out last.
     pub performed: Option<super::command::Command>,
     /// Something had the keyboard's focus, a popup or a dialog was open, in the frame before.
     pub had_focus: bool,
-    /// The part of the window that F6 has chosen.
-    pub panel: Option<Place>,
     pub is_dressed: bool,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
@@ -37,12 +32,10 @@ impl Shell {
         Ok(Shell {
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
-            presenter: Presenter::default(),
             frame_log: frame_log.map(create).transpose()?,
             frame_times: FrameTimes::default(),
             performed: None,
             had_focus: false,
-            panel: None,
             is_dressed: false,
             crashes_at,
             interrupt: None,

@@ -1,9 +1,6 @@
 //! "Show me": what the window showed before a sight, to return to it.
 
-use super::model::document::Document;
-use super::model::origin::Origin;
-use super::model::show::Show;
-use super::model::view::{Mode, ViewState, With};
+use super::model::{Document, Mode, Origin, Show, ViewState, With};
 use super::viewport::Placement;
 use crate::scene::Camera;
 use crate::stages::{Means, Stage};
@@ -74,10 +71,10 @@ impl Sighted {
         {
             document.camera = camera;
         }
-        let (exposure, reference) = (view.tone.exposure, view.reference.take());
+        let exposure = view.tone.exposure;
         let kept = std::mem::take(&mut view.kept);
         *view = self.view;
-        (view.kept, view.reference, view.tone.exposure) = (kept, reference, exposure);
+        (view.kept, view.tone.exposure) = (kept, exposure);
         *placement = self.placement;
     }
 }
@@ -85,9 +82,7 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::kept::Kept;
-    use crate::app::model::kept::Named;
-    use crate::app::model::tone::Tone;
+    use crate::app::model::{Kept, Named, Tone};
     use crate::film::Film;
 
     fn stage(id: &str) -> (&'static Stage, Document) {

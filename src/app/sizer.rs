@@ -1,7 +1,6 @@
 //! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
 
-use super::model::document::Document;
-use super::model::sizing::Sizing;
+use super::model::{Document, Sizing};
 use eframe::egui::Context;
 use std::time::{Duration, Instant};
 
@@ -110,7 +109,7 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool) -> Verdict {
 mod tests {
     use super::*;
 
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
 
     use crate::stages::Stage;
 

@@ -2,13 +2,14 @@
 
 use super::command::Command;
 use super::facts::Facts;
+use super::finder::Finder;
 use super::theme;
-use super::widgets::{caption, hint, tip};
+use super::widgets::{caption, tip};
 use crate::measure::stress::{Case, shown_cases};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, ColorImage, Context, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind,
-    TextStyle, TextureHandle, Ui, WidgetInfo, vec2,
+    self, ColorImage, Context, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextStyle,
+    TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
@@ -17,18 +18,7 @@ pub const WIDTH: f32 = 360.0;
 /// Size of the small pictures, points.
 const PICTURE: egui::Vec2 = vec2(72.0, 40.0);
 
-/// How many rows Page Up and Page Down go on.
-const PAGE: usize = 8;
-
 const LAST_HEADING: &str = "Extreme scenes";
-
-/// What was typed, and the chosen row.
-#[derive(Clone, Default)]
-struct State {
-    text: String,
-    chosen: usize,
-    has_moved: bool,
-}
 
 fn place() -> Id {
     Id::unique("list of stages")
@@ -91,60 +81,34 @@ pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
         false => facts.is_on(row.command()),
     };
     let chosen = Row::all().position(|row| is_first(&row)).unwrap_or(0);
-    context.data_mut(|data| data.insert_temp(place(), State { chosen, has_moved: true, ..State::default() }));
+    context.data_mut(|data| data.insert_temp(place(), Finder::at(chosen)));
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
 pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.set_width(WIDTH);
-    let mut state: State = ui.data(|data| data.get_temp(place())).unwrap_or_default();
-    if !state.text.is_empty() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
-        (state.text, state.chosen) = (String::new(), 0);
+    let mut finder: Finder = ui.data(|data| data.get_temp(place())).unwrap_or_default();
+    if finder.has_text() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+        finder = Finder::at(0);
     }
-    let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-    let down = presses(Key::ArrowDown) + PAGE * presses(Key::PageDown);
-    let up = presses(Key::ArrowUp) + PAGE * presses(Key::PageUp);
-    let is_enter = presses(Key::Enter) > 0;
-    let edit = egui::TextEdit::singleline(&mut state.text)
-        .hint_text("Type a number or a word: 9.5, glass, gamma")
-        .margin(vec2(8.0, 8.0))
-        .desired_width(f32::INFINITY);
-    let response = ui.add(edit).accessible_name("Search for a stage");
-    response.request_focus();
-    if response.changed() {
-        (state.chosen, state.has_moved) = (0, true);
-    }
-    let found = found(&state.text);
-    let last = found.len().saturating_sub(1);
-    state.chosen = (state.chosen + down).min(last).saturating_sub(up);
-    state.has_moved |= up + down > 0;
-    let mut run = is_enter.then(|| found.get(state.chosen)).flatten().copied();
     let height = (ui.ctx().content_rect().height() - 140.0).clamp(160.0, 720.0);
-    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        if found.is_empty() {
-            hint(ui, "No stage is called that. Press Escape to see all.");
+    let words = (
+        "Search for a stage",
+        "Type a number or a word: 9.5, glass, gamma",
+        "No stage is called that. Press Escape to see all.",
+    );
+    let mut heading = String::new();
+    let draw = |ui: &mut Ui, row: &Row, is_chosen| {
+        if row.heading() != heading {
+            heading = row.heading();
+            caption(ui, &format!("  {heading}"));
         }
-        let mut heading = String::new();
-        for (index, row) in found.iter().copied().enumerate() {
-            if row.heading() != heading {
-                heading = row.heading();
-                caption(ui, &format!("  {heading}"));
-            }
-            let response = row_ui(ui, row, index == state.chosen);
-            if index == state.chosen && state.has_moved {
-                response.scroll_to_me(Some(Align::Center));
-            }
-            if response.clicked() {
-                run = Some(row);
-            }
-        }
-    });
-    // The area has its final size only in its second frame.
-    state.has_moved = std::mem::take(&mut state.has_moved) && ui.is_sizing_pass();
-    ui.data_mut(|data| data.insert_temp(place(), state));
-    if let Some(row) = run {
-        commands.push(row.command());
+        row_ui(ui, *row, is_chosen)
+    };
+    let (found, run) = finder.ui(ui, words, height, found, draw);
+    ui.data_mut(|data| data.insert_temp(place(), finder));
+    if let Some(run) = run {
+        commands.push(found[run].command());
         ui.close();
     }
 }

@@ -2,12 +2,11 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::document::Document;
-use super::model::view::{With, partner};
-use super::widgets::{About, choice, hint, primary, small, switch, tip};
+use super::model::{Document, With, partner};
+use super::widgets::{About, add_command, choice, command_button, hint, primary, small, switch, tip};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
-use eframe::egui::{Button, Label, RichText, Ui};
+use eframe::egui::{Button, Label, Link, RichText, Ui};
 
 pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let document = facts.document();
@@ -22,10 +21,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         ui.add_space(8.0);
         let what = if document.stage().is_some() { "stage" } else { "picture" };
         hint(ui, &format!("You changed this {what}."));
-        let reset = ui.button("Reset all");
-        if tip(ui, reset, Command::ResetAll.help(), None).clicked() {
-            commands.push(Command::ResetAll);
-        }
+        command_button(ui, facts, Command::ResetAll, "Reset all", commands);
     }
 }
 
@@ -50,10 +46,7 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
         ui.spacing_mut().item_spacing.x = 16.0;
         let book = format!("{} in the book", stage.section);
         for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
-            let link = ui.link(name);
-            if tip(ui, link, command.help(), None).clicked() {
-                commands.push(command);
-            }
+            add_command(ui, facts, command, Link::new(name), commands);
         }
     });
     for (heading, text) in
@@ -120,12 +113,6 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
     let scene = document.scene();
     let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
     title(ui, &format!("{spheres} spheres, {materials} materials"), &document.origin.recipe.name);
-    if let Some((frames, command)) = document.animation() {
-        let text =
-            format!("{frames} frames along the scene file's keyframes. This command makes an animated PNG:");
-        paragraph(ui, "Animation", &text);
-        ui.add(Label::new(RichText::new(command).monospace()).wrap());
-    }
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
@@ -141,17 +128,14 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     }
     ui.add_space(4.0);
     let command = Command::BookArithmetic;
-    let response = ui.add(choice(ui, facts.is_on(command), command.name()));
-    if tip(ui, response, command.help(), None).clicked() {
-        commands.push(command);
-    }
+    let button = choice(ui, facts.is_on(command), command.name());
+    add_command(ui, facts, command, button, commands);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
-    use crate::app::model::origin::{Origin, Source};
+    use crate::app::model::{CheckedScene, Origin, Source};
     use crate::scene::animation::Keyframe;
 
     use crate::app::tests::{dressed, facts_of};

@@ -3,11 +3,11 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::kept::FilmId;
-use super::model::sizing::Sizing;
+use super::model::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
-use super::widgets::{compact, small, tip};
+use super::widgets::{command_button, compact, small, tip};
 use super::wording::grouped;
 use crate::denoise::DenoisedError;
 use crate::film::Film;
@@ -54,17 +54,11 @@ pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut 
                             true => "The camera is inside a sphere.",
                             false => "Nothing but sky or ground is in sight.",
                         });
-                        let home = ui.button("Home");
-                        if tip(ui, home, Command::Home.help(), None).clicked() {
-                            commands.push(Command::Home);
-                        }
+                        command_button(ui, facts, Command::Home, "Home", commands);
                     } else if let Some([width, height]) = offered {
                         ui.label("This picture is scaled.");
-                        let command = Command::Size(Sizing::Viewport);
-                        let response = ui.button(format!("Render at {width} × {height}"));
-                        if tip(ui, response, command.help(), None).clicked() {
-                            commands.push(command);
-                        }
+                        let name = format!("Render at {width} × {height}");
+                        command_button(ui, facts, Command::Size(Sizing::Viewport), &name, commands);
                     }
                 });
             });
@@ -136,6 +130,7 @@ pub fn sentence(facts: &Facts) -> String {
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
         _ if facts.is_coarse && facts.is_moving => "A coarse picture while you move".to_owned(),
+        _ if (facts.is_coarse || count == 0) && facts.has_picture => "Refining".to_owned(),
         _ if facts.is_coarse || count == 0 => "Starting".to_owned(),
         _ if facts.model.is_paused && facts.is_held => {
             format!("Paused; the picture has moved, and {count} samples show it")

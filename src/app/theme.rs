@@ -1,6 +1,6 @@
 //! Colours, fonts and distances: subdued greys, and one accent colour, the blue of the book's sky.
 
-use super::model::remembered::Theme;
+use super::model::Theme;
 use eframe::egui::style::{HandleShape, ScrollStyle, Spacing};
 use eframe::egui::{
     self, Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui,

@@ -66,20 +66,18 @@ impl Toasts {
     /// Reports a success, and offers commands that follow from it.
     pub fn good_with(&mut self, text: impl Into<String>, offers: &[Command]) {
         self.good(text);
-        offers.iter().for_each(|offer| self.add_offer(*offer));
+        self.add_offers(offers);
     }
 
-    /// Adds a command to the newest message.
-    pub fn add_offer(&mut self, command: Command) {
-        self.0.last_mut().into_iter().for_each(|toast| toast.offers.push(command));
+    /// Adds commands to the newest message.
+    pub fn add_offers(&mut self, offers: &[Command]) {
+        self.0.last_mut().into_iter().for_each(|toast| toast.offers.extend_from_slice(offers));
     }
 
-    /// The same, until it is closed or withdrawn.
+    /// Offers commands until one is chosen or all are withdrawn.
     pub fn offer(&mut self, text: impl Into<String>, offers: &[Command]) {
         self.good_with(text, offers);
-        if let Some(toast) = self.0.last_mut() {
-            toast.stays = true;
-        }
+        self.0.last_mut().into_iter().for_each(|toast| toast.stays = true);
     }
 
     /// Removes the messages that offer this command.

@@ -3,9 +3,7 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::kept::{FilmId, Query, Subject};
-use super::model::show::Show;
-use super::model::tone::{Channel, Tone};
-use super::model::view::ViewState;
+use super::model::{Channel, Show, Tone, ViewState};
 use super::theme;
 use super::widgets::{
     About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
@@ -78,12 +76,8 @@ impl ToneUi {
             if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
                 commands.push(Command::Denoise);
             }
-            if show == Show::Luminance {
-                range_ui(ui, &mut view.tone);
-            } else {
-                let reason = facts.no_exposure();
-                brightness_ui(ui, &mut view.tone, reason.as_deref());
-            }
+            let reason = facts.no_exposure();
+            brightness_ui(ui, &mut view.tone, reason.as_deref());
             match &self.histogram {
                 Some(histogram) => paint(ui, histogram, view.tone.exposure),
                 None => _ = hint(ui, if facts.is_working() { "Counting…" } else { "No samples yet" }),
@@ -102,17 +96,8 @@ fn brightness_ui(ui: &mut Ui, tone: &mut Tone, reason: Option<&str>) {
     });
     let help = "Brightens what you see by powers of two; saved files stay as they are (+, −, 0)";
     let about = About::new("Exposure", help).disabled_if(reason);
-    let number = Number::new(about, Tone::EXPOSURES).unit(" stops", "stops").speed(0.02);
+    let number = Number::new(about, Tone::EXPOSURES).unit(" stops").speed(0.02);
     number.slider(ui, &mut tone.exposure, Tone::EXPOSURES, false);
-}
-
-fn range_ui(ui: &mut Ui, tone: &mut Tone) {
-    let help = "How bright the two ends of the colours are, as powers of two: 0 is white, −1 half of that";
-    let before = tone.range;
-    let [low, high] = &mut tone.range;
-    Number::new(About::new("Darkest", help), Tone::RANGES).speed(0.1).row(ui, low);
-    Number::new(About::new("Brightest", help), Tone::RANGES).speed(0.1).row(ui, high);
-    tone.mend_range(before);
 }
 
 /// What the reader should know about a histogram.

@@ -5,8 +5,7 @@ use super::code::Code;
 use super::inspector::Inspector;
 use super::kept::Subject;
 use super::lanes::Lanes;
-use super::model::Model;
-use super::model::remembered::Dock;
+use super::model::{Dock, Model};
 use super::paths::Paths;
 use eframe::egui::Context;
 

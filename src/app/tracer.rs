@@ -1,6 +1,6 @@
 //! The window's side of a progressive render: what is wanted, what is running, and the newest picture as a texture.
 
-use super::model::document::Document;
+use super::model::Document;
 use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
@@ -136,6 +136,11 @@ impl Tracer {
     /// Whether the current film is the document's, at any size.
     pub fn is_of(&self, document: &Document) -> bool {
         self.started.as_ref().is_some_and(|run| run.document.has_same_film(document))
+    }
+
+    /// Whether there is a picture of the document, at any size.
+    pub fn has_picture(&self, document: &Document) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.document.has_same_film(document))
     }
 
     /// Whether the render is a preview.
@@ -335,7 +340,7 @@ impl Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::render_cpu::CpuOptions;
     use crate::stages::Stage;
 

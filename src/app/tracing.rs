@@ -2,15 +2,11 @@
 
 use super::changes::Changes;
 use super::kept::FilmId;
-use super::model::Model;
-use super::model::device::Device;
-use super::model::show::Show;
-use super::model::sizing::Sizing;
+use super::model::{Device, Model, Sizing};
 use super::second::Second;
 use super::sizer::{Present, Sizer};
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
-use super::wording::in_window_words;
 use crate::film::Film;
 use crate::job::saved::SavedFilm;
 use crate::progressive::Status;
@@ -97,7 +93,7 @@ impl Tracing {
             is_documents: self.main.is_of(&model.document),
             // A presentation begins with a picture of its own size, whatever that costs.
             seconds: if is_presented { 0.0 } else { self.seconds() },
-            is_needed: is_needed || model.view.show() == Show::Difference,
+            is_needed,
         };
         let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
         self.sizer.follow(context, &mut model.document, (sizing, room), &present);
@@ -118,7 +114,7 @@ impl Tracing {
             Some(film) => self.main.go_on_with(film, &want),
             None => self.main.want(&want),
         };
-        self.invalid = outcome.err().map(|reason| in_window_words(&reason));
+        self.invalid = outcome.err();
         self.second.follow(context, view, &want)
     }
 
@@ -126,7 +122,6 @@ impl Tracing {
     pub fn report(&mut self, device: &mut Device, toasts: &mut Toasts) {
         let status = self.main.status();
         for message in unseen(self.seen_messages, status) {
-            let message = in_window_words(message);
             if status.given_up.is_empty() {
                 toasts.warn(message, status.run);
             } else {

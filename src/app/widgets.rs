@@ -1,14 +1,15 @@
 //! Controls of the window: numbers, switches, lists, headers, signs and tooltips.
 
+use super::command::Command;
+use super::facts::Facts;
 use super::theme;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
     self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Key, Label, Layout, Painter, Pos2,
-    Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, StrokeKind,
-    Tooltip, Ui, UiBuilder, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, Tooltip, Ui,
+    UiBuilder, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
-use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
 /// Width of a field for a number, points.
@@ -16,9 +17,6 @@ pub const FIELD: f32 = 64.0;
 
 /// Height of a row of tabs, points.
 pub const TABS: f32 = 40.0;
-
-/// Seconds for which a refused number is explained.
-const REFUSAL_SECONDS: f64 = 4.0;
 
 /// A control's name, its tooltip, and the reason if it is disabled.
 #[derive(Clone, Copy)]
@@ -73,12 +71,12 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
     let text = text.collect::<Vec<_>>().join("\n\n");
     let is_held = response.ctx.input(|input| input.pointer.any_down());
     if !text.is_empty() && !is_held && Tooltip::should_show_tooltip(&response, true) {
-        show_tip(ui, &response, text);
+        show_tip(ui, &response, &text);
     }
     response
 }
 
-fn show_tip(ui: &Ui, response: &Response, text: impl Into<WidgetText>) {
+fn show_tip(ui: &Ui, response: &Response, text: &str) {
     const BESIDE: &[RectAlign] =
         &[RectAlign::RIGHT_START, RectAlign::LEFT_START, RectAlign::RIGHT_END, RectAlign::LEFT_END];
     const BELOW: &[RectAlign] =
@@ -93,6 +91,12 @@ fn show_tip(ui: &Ui, response: &Response, text: impl Into<WidgetText>) {
     let aligns = if is_panel || is_menu { BESIDE } else { BELOW };
     let mut tooltip = Tooltip::for_widget(response);
     tooltip.popup = tooltip.popup.anchor(around).align(aligns[0]).align_alternatives(aligns).gap(8.0);
+    if is_panel || is_menu {
+        // As wide as there is room beside it.
+        let screen = ui.ctx().content_rect();
+        let room = (screen.right() - around.right()).max(around.left() - screen.left()) - 32.0;
+        tooltip.popup = tooltip.popup.width(room.clamp(120.0, ui.spacing().tooltip_width));
+    }
     tooltip.show(|ui| ui.label(text));
 }
 
@@ -152,6 +156,36 @@ pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
         ui.add(Button::new(text.into()))
     })
     .inner
+}
+
+/// A button for a command, under this name.
+pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str, commands: &mut Vec<Command>) {
+    add_command(ui, facts, command, Button::new(name), commands);
+}
+
+/// A control for a command, with its help and keys as tooltip.
+pub fn add_command(
+    ui: &mut Ui,
+    facts: &Facts,
+    command: Command,
+    control: impl Widget,
+    commands: &mut Vec<Command>,
+) -> Response {
+    let reason = facts.disabled_reason(command);
+    let response = ui.add_enabled(reason.is_none(), control);
+    let response = tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref());
+    if response.clicked() {
+        commands.push(command);
+    }
+    response
+}
+
+/// A help with the keys of a command.
+pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
+    match command.keys(ui.ctx()) {
+        Some(keys) => format!("{help} ({keys})"),
+        None => help.to_owned(),
+    }
 }
 
 /// A button that is tinted while it is on.
@@ -223,21 +257,19 @@ pub struct Number<'a> {
     about: About<'a>,
     limits: RangeInclusive<f64>,
     suffix: &'a str,
-    unit: &'a str,
     speed: Option<f64>,
     scale: Option<f64>,
     is_whole: bool,
-    check: Option<&'a dyn Fn(f64) -> Option<String>>,
 }
 
 impl<'a> Number<'a> {
     pub fn new(about: About<'a>, limits: RangeInclusive<f64>) -> Self {
-        Number { about, limits, suffix: "", unit: "", speed: None, scale: None, is_whole: false, check: None }
+        Number { about, limits, suffix: "", speed: None, scale: None, is_whole: false }
     }
 
-    /// What stands after the number, and the unit in words.
-    pub fn unit(self, suffix: &'a str, unit: &'a str) -> Self {
-        Number { suffix, unit, ..self }
+    /// What stands after the number.
+    pub fn unit(self, suffix: &'a str) -> Self {
+        Number { suffix, ..self }
     }
 
     /// Change for each point that the pointer is dragged; else it depends on the number.
@@ -249,19 +281,14 @@ impl<'a> Number<'a> {
         Number { is_whole: true, ..self }
     }
 
-    /// Says why a number within the limits can't be taken, if so.
-    pub fn refused_if(self, check: &'a dyn Fn(f64) -> Option<String>) -> Self {
-        Number { check: Some(check), ..self }
-    }
-
-    /// The field alone. A number that can't be taken changes nothing: the field gets a red frame, and the reason stands
-    /// beside it.
+    /// The field alone. A number beyond a limit becomes the limit.
     pub fn field(&self, ui: &mut Ui, width: f32, value: &mut f64) -> Response {
-        let (before, mut shown, refused) = (*value, *value, RefCell::new(None));
+        let (before, mut shown) = (*value, *value);
+        // What is shown of the number is the number, although it has fewer digits.
         let parse = |text: &str| {
-            let parsed = self.parsed(text, before);
-            refused.replace(parsed.clone().err());
-            parsed.ok()
+            let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+            let number = || text.replace('\u{2212}', "-").trim_end_matches(self.suffix.trim()).parse().ok();
+            if text == self.text(before) { Some(before) } else { number() }
         };
         let speed = self.speed.unwrap_or(0.01 * before.abs().max(0.1));
         let drag = DragValue::new(&mut shown)
@@ -277,20 +304,17 @@ impl<'a> Number<'a> {
             ui.spacing_mut().button_padding.x = 4.0;
             ui.add_sized([width, ui.spacing().interact_size.y], drag)
         });
-        let (mut response, mut refused) = (added.inner, refused.into_inner());
+        let mut response = added.inner;
         named(&response, self.about.name);
         // The field takes the text of an edit that Escape ended for one in the frame after that.
         let is_cancelled = ui.input(|input| input.key_pressed(Key::Escape)) && response.lost_focus();
         let place = response.id.with("cancelled");
         let was_cancelled = ui.data_mut(|data| data.get_temp(place).unwrap_or(false));
         ui.data_mut(|data| data.insert_temp(place, is_cancelled));
-        match self.checked(shown) {
-            _ if shown == before || was_cancelled => {}
-            Ok(number) => *value = number,
-            Err(reason) => refused = Some(reason),
+        if shown.is_finite() && !was_cancelled {
+            *value = if self.is_whole { shown.round() } else { shown };
         }
         response.flags.set(Flags::CHANGED, *value != before);
-        explain_refusal(ui, &response, refused, *value != before);
         tip(ui, response, self.about.help, self.about.disabled_reason)
     }
 
@@ -341,78 +365,13 @@ impl<'a> Number<'a> {
             None => compact(n),
         }
     }
-
-    /// The number of a text; `before` if the text is what is shown of that.
-    fn parsed(&self, text: &str, before: f64) -> Result<f64, String> {
-        let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
-        if text == self.text(before) {
-            return Ok(before);
-        }
-        let number = text.replace('\u{2212}', "-");
-        match number.trim_end_matches(self.suffix.trim()).parse() {
-            Ok(number) => self.checked(number),
-            Err(_) if text.contains(',') => {
-                Err(format!("\u{201c}{text}\u{201d} is no number; decimals need a point"))
-            }
-            Err(_) => Err(format!("\u{201c}{text}\u{201d} is no number")),
-        }
-    }
-
-    /// The number as it is taken, or why it can't be.
-    fn checked(&self, number: f64) -> Result<f64, String> {
-        /// A limit below this only keeps out 0: nobody means the limit itself.
-        const TINY: f64 = 1e-8;
-        /// Nobody wants to read a limit above this.
-        const HUGE: f64 = 1e15;
-        let number = if self.is_whole { number.round() } else { number };
-        let (least, most) = (*self.limits.start(), *self.limits.end());
-        let is_above_zero = 0.0 < least && least < TINY;
-        if self.limits.contains(&number) && !(is_above_zero && number == least) {
-            return match self.check.and_then(|check| check(number)) {
-                Some(reason) => Err(reason),
-                None => Ok(number),
-            };
-        }
-        let [from, to] = [least, most].map(compact);
-        let words = match (is_above_zero, most < HUGE) {
-            (true, true) => format!("Above 0, up to {to} {}", self.unit),
-            (true, false) => format!("Above 0 {}", self.unit),
-            (false, false) if least > -HUGE => format!("At least {from} {}", self.unit),
-            _ => format!("From {from} to {to} {}", self.unit),
-        };
-        Err(words.trim_end().to_owned())
-    }
 }
 
-/// Draws a red frame around a field whose text was refused, and the reason beside it, for a while.
-fn explain_refusal(ui: &Ui, response: &Response, reason: Option<String>, is_changed: bool) {
-    let (place, now) = (response.id.with("refused"), ui.input(|input| input.time));
-    if let Some(reason) = reason {
-        ui.data_mut(|data| data.insert_temp(place, (reason, now + REFUSAL_SECONDS)));
-    }
-    let refused: Option<(String, f64)> = ui.data(|data| data.get_temp(place));
-    let Some((reason, until)) = refused else { return };
-    if until <= now || is_changed {
-        return ui.data_mut(|data| data.remove::<(String, f64)>(place));
-    }
-    let bad = theme::colours(ui).bad;
-    ui.painter().rect_stroke(response.rect, 4, Stroke::new(1.0, bad), StrokeKind::Inside);
-    show_tip(ui, response, RichText::new(reason).color(bad));
-    ui.ctx().request_repaint_after_secs((until - now) as f32);
-}
-
-/// Three coordinates under their name, each within `limits`. `check` says why a vector can't be taken, if so.
-pub fn vector(
-    ui: &mut Ui,
-    about: About<'_>,
-    value: &mut DVec3,
-    limits: RangeInclusive<f64>,
-    speed: f64,
-    check: &dyn Fn(DVec3) -> Option<String>,
-) {
+/// Three coordinates under their name, each within `limits`.
+pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, limits: RangeInclusive<f64>, speed: f64) {
     ui.scope(|ui| {
         above(ui, about);
-        fields(ui, about, ["x", "y", "z"], value, (limits, speed), check);
+        fields(ui, about, ["x", "y", "z"], value, (limits, speed));
     });
 }
 
@@ -423,22 +382,14 @@ fn fields(
     names: [&str; 3],
     value: &mut DVec3,
     (limits, speed): (RangeInclusive<f64>, f64),
-    check: &dyn Fn(DVec3) -> Option<String>,
 ) {
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 16.0) / 3.0).floor();
-        let before = *value;
+        let scale = Some(value.abs().max_element());
         for (component, name) in names.into_iter().enumerate() {
             let name = format!("{}, {name}", about.name);
             let about = About { name: &name, ..about };
-            let check = |number: f64| {
-                let mut changed = before;
-                changed[component] = number;
-                check(changed)
-            };
-            let scale = Some(before.abs().max_element());
-            let number =
-                Number { scale, ..Number::new(about, limits.clone()).speed(speed).refused_if(&check) };
+            let number = Number { scale, ..Number::new(about, limits.clone()).speed(speed) };
             number.field(ui, width, &mut value[component]);
         }
     });
@@ -458,7 +409,7 @@ pub fn colour(ui: &mut Ui, about: About<'_>, albedo: &mut DVec3) {
             albedo[component] = (light * 1e4).round() / 1e4;
         }
     });
-    fields(ui, about, ["red", "green", "blue"], albedo, (0.0..=1.0, 0.005), &|_| None);
+    fields(ui, about, ["red", "green", "blue"], albedo, (0.0..=1.0, 0.005));
 }
 
 /// Formats a number in few characters.

@@ -9,12 +9,7 @@ use super::facts::Facts;
 use super::files::Files;
 use super::input;
 use super::kept::Subject;
-use super::model::Model;
-use super::model::device::{Device, DeviceOptions};
-use super::model::document::Document;
-use super::model::origin::{Origin, Source};
-use super::model::remembered::{Stored, Tab};
-use super::model::view::ViewState;
+use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use super::shell::Shell;
 use super::theme;
 use super::tools::Tools;
@@ -26,18 +21,19 @@ use eframe::egui;
 use std::time::{Duration, Instant};
 
 /// The window of the program.
+#[doc(hidden)]
 pub struct Window {
     /// What the user has chosen.
-    pub(super) model: Model,
+    pub model: Model,
     /// What can be undone.
-    pub(super) changes: Changes,
-    pub(super) tracing: Tracing,
-    pub(super) display: Display,
-    pub(super) tools: Tools,
-    pub(super) files: Files,
-    pub(super) shell: Shell,
+    pub changes: Changes,
+    pub tracing: Tracing,
+    pub display: Display,
+    pub tools: Tools,
+    pub files: Files,
+    pub shell: Shell,
     /// What is to be done in this frame.
-    pub(super) commands: Vec<Command>,
+    pub commands: Vec<Command>,
 }
 
 impl Window {
@@ -58,7 +54,7 @@ impl Window {
         if options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
-        let has_first_steps = !options.is_picture_given && !remembered.first_steps.is_over;
+        let has_first_steps = !options.is_picture_given && !remembered.is_greeted;
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
@@ -111,13 +107,14 @@ impl Window {
     }
 
     /// What panels show.
-    pub(super) fn facts(&self) -> Facts {
+    pub fn facts(&self) -> Facts {
         Facts {
             status: self.tracing.main.status().clone(),
             seconds_before: self.tracing.seconds_before,
             undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
             redo: self.changes.later().map(|other| self.document().difference(other)),
             is_coarse: self.tracing.main.is_coarse(),
+            has_picture: self.tracing.main.has_picture(self.document()),
             is_moving: self.changes.is_in_gesture(),
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost,
@@ -220,6 +217,10 @@ impl Window {
         // The selection may be of another scene.
         let count = self.document().scene().spheres.len();
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
+        if let Err(error) = self.document().camera.validate() {
+            self.shell.toasts.bad(error.to_string());
+            self.model.document.camera = self.changes.last().camera;
+        }
         self.ask_about_size();
         let document = &self.model.document;
         // A picture without noise ends at its own number of samples, whatever the user prefers.

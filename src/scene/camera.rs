@@ -3,6 +3,7 @@
 use super::SceneError;
 use super::error::{allowed, finite_vector, position};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Limits on the vertical field of view, degrees.
@@ -15,7 +16,7 @@ pub const DEFOCUS_LIMIT_DEGREES: f64 = 179.0;
 pub const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
 
 /// A thin-lens camera in the user's parameters.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// Scene units.
     pub look_from: DVec3,

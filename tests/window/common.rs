@@ -1,5 +1,6 @@
 //! A window without a display, and helpers to use it.
 
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};

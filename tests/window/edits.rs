@@ -2,6 +2,7 @@
 
 use crate::common::{control, drag_from, has_samples, send, until};
 use crate::objects::{material, metal_sphere, middle_sphere, on_screen, opened, select, spheres};
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
 use weekender::app::Command;
 use weekender::stages::Stage;

@@ -1,6 +1,7 @@
 //! Faults in the tracer while the window shows its picture.
 
 use crate::common::{has_samples, open, save, until};
+use crate::questions::Ask as _;
 use weekender::app::Command;
 use weekender::film::{Film, checkpoint};
 use weekender::job::output::OutputFormat;

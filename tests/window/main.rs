@@ -19,6 +19,7 @@ mod pictures;
 mod plot;
 mod present;
 mod preview;
+mod questions;
 mod recent;
 mod recovered;
 mod resuming;

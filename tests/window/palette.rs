@@ -1,6 +1,7 @@
 //! The palette: an empty box does nothing, and what is found is carried out.
 
-use crate::common::{SMALL, open, send};
+use crate::common::{SMALL, open};
+use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -24,11 +25,10 @@ fn enter(harness: &mut Harness<'_, Window>, text: &str, downs: usize) {
 #[test]
 fn what_is_typed_is_done() {
     let mut harness = open(SMALL);
-    send(&mut harness, Command::Axes);
     enter(&mut harness, "", 0);
     assert_eq!(harness.state().performed(), Some(Command::Palette), "Enter in an empty box does nothing");
     enter(&mut harness, "", 1);
-    assert_eq!(harness.state().performed(), Some(Command::Axes), "what was used last is the first");
+    assert_eq!(harness.state().performed(), Some(Command::ShowMe));
     enter(&mut harness, "dark", 0);
     assert_eq!(harness.state().performed(), Some(Command::Theme(Theme::Dark)));
     enter(&mut harness, "11.2 ", 0);

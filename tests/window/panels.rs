@@ -1,6 +1,7 @@
 //! The panels in the whole window.
 
 use crate::common::{SMALL, control, has_samples, open, send, until};
+use crate::questions::Ask as _;
 use eframe::egui::{Key, accesskit::Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};

@@ -1,6 +1,7 @@
 //! While something moves, coarse previews are shown; afterwards the picture gets finer.
 
 use crate::common::{has_samples, hold, open, until};
+use crate::questions::Ask as _;
 use std::time::{Duration, Instant};
 
 /// Large enough for previews to be coarser.

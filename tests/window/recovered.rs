@@ -1,6 +1,7 @@
 //! What the next window takes over: settings, and the film that the last one saved by itself.
 
 use crate::common::{has_samples, opened, send, until};
+use crate::questions::Ask as _;
 use eframe::{App, Storage};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;

@@ -1,6 +1,7 @@
 //! Films that the window resumes.
 
 use crate::common::{has_samples, open, save, until};
+use crate::questions::Ask as _;
 use std::path::Path;
 use weekender::app::Command;
 use weekender::film::checkpoint;

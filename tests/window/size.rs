@@ -1,12 +1,12 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use crate::common::{has_samples, name_file, save, until, until_seen, window_of_new_user};
+use crate::common::{has_samples, until, window_of_new_user};
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::Queryable;
 use std::time::{Duration, Instant};
-use weekender::app::{Command, Show, Window};
-use weekender::job::output::OutputFormat;
+use weekender::app::{Command, Window};
 
 /// A cheap picture that follows the viewport.
 const FOLLOWING: &str = "--stage normals --samples 2";
@@ -61,33 +61,6 @@ fn the_picture_fills_the_viewport_at_its_own_resolution() {
         fills_the_viewport(&harness, scale);
         assert!(harness.state().disabled_reason(Command::Undo).is_some(), "nobody changed anything");
     }
-}
-
-#[test]
-fn what_would_be_lost_is_kept_until_the_user_asks() {
-    let directory = tempfile::tempdir().unwrap();
-    let film = directory.path().join("reference.exr");
-    let mut harness = following(FOLLOWING, [1000.0, 600.0]);
-    until(&mut harness, "the end", has_samples(2));
-    save(&mut harness, Command::SaveAs(OutputFormat::Exr), &film);
-    // Another size would have no difference from the reference film.
-    name_file(&mut harness, Command::Show(Show::Difference), &film);
-    until(&mut harness, "the difference", |window| window.show() == Show::Difference);
-    let (before, run) = (size(&harness), harness.state().status().run);
-    harness.set_size(egui::vec2(1500.0, 900.0));
-    until_seen(&mut harness, "Render at ");
-    settle(&mut harness);
-    assert_eq!((size(&harness), harness.state().status().run), (before, run), "it was kept");
-    assert!(harness.state().picture_rect().width() > before[0] as f32 + 200.0, "it is shown larger");
-    let offer = harness.get_by_label_contains("Render at ");
-    let label = offer.accesskit_node().label().unwrap();
-    offer.click();
-    harness.run_steps(3);
-    let [width, height] = size(&harness);
-    assert_eq!(label, format!("Render at {width} × {height}"));
-    assert!(width > before[0]);
-    assert!(harness.query_by_label_contains("Render at ").is_none());
-    until(&mut harness, "the new picture", has_samples(2));
 }
 
 #[test]

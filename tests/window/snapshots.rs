@@ -2,6 +2,7 @@
 
 use crate::common::{has_samples, middle, send, until, window};
 use crate::objects::{click, middle_sphere, on_screen, spheres};
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use weekender::app::{Command, Theme, Window};

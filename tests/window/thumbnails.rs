@@ -1,6 +1,7 @@
 //! The list of stages with small pictures.
 
 use crate::common::open_sized;
+use crate::questions::Ask as _;
 use eframe::egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};

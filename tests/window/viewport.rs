@@ -1,7 +1,8 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::common::{SMALL, choose_from_menu, drag, has_samples, middle, open, send, until, until_drawn};
+use crate::common::{SMALL, choose_from_menu, drag, has_samples, open, send, until, until_drawn};
 use crate::objects::{on_screen, spheres};
+use crate::questions::Ask as _;
 use eframe::egui::{self, Key, Modifiers, PointerButton, vec2};
 use weekender::app::{Command, Show, Window};
 use weekender::stages::Stage;
@@ -162,23 +163,4 @@ fn the_menu_of_a_right_click_means_what_is_there() {
     let at = on_screen(&harness, glam::DVec3::new(0.0, 0.0, -1.2));
     choose_from_menu(&mut harness, at, "Delete the sphere");
     assert_eq!(spheres(&harness).len(), count - 1);
-}
-
-#[test]
-fn axes_are_shown_while_the_camera_turns() {
-    let mut harness = open("--stage view-distant --size 64x36");
-    until(&mut harness, "a picture", has_samples(1));
-    let has_axes = |harness: &egui_kittest::Harness<'_, Window>| {
-        let is_axis = |text: &egui::epaint::TextShape| text.galley.text() == "z";
-        let shapes = &harness.output().shapes;
-        shapes.iter().any(|clipped| matches!(&clipped.shape, egui::Shape::Text(text) if is_axis(text)))
-    };
-    assert!(!has_axes(&harness));
-    let at = middle(&harness);
-    crate::common::hold(&mut harness, at, true);
-    for step in 1..5 {
-        harness.event(egui::Event::PointerMoved(at + vec2(12.0, 0.0) * step as f32));
-        harness.step();
-    }
-    assert!(has_axes(&harness));
 }

@@ -47,7 +47,7 @@ fn set(harness: &mut Harness<'_, Panel>, name: &str, text: &str) {
 }
 
 #[test]
-fn a_typed_number_is_applied_once_and_one_out_of_range_not_at_all() {
+fn a_typed_number_is_applied_once_and_within_its_limits() {
     let mut harness = panel("--stage book");
     let vfov = |harness: &Harness<'_, Panel>| harness.state().facts.document().camera.vfov_degrees;
     field(&harness, "Field of view").click();
@@ -58,14 +58,9 @@ fn a_typed_number_is_applied_once_and_one_out_of_range_not_at_all() {
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert_eq!(vfov(&harness), 45.0);
-    for (text, reason) in [
-        ("200", "From 0.01 to 179 degrees"),
-        ("NaN", "From 0.01 to 179 degrees"),
-        ("4,5", "“4,5” is no number; decimals need a point"),
-    ] {
+    for (text, expected) in [("200", 179.0), ("NaN", 179.0), ("45", 45.0)] {
         set(&mut harness, "Field of view", text);
-        assert_eq!(vfov(&harness), 45.0);
-        assert!(harness.query_by_label(reason).is_some(), "{text}");
+        assert_eq!(vfov(&harness), expected, "{text}");
     }
     // Escape takes back what was typed.
     field(&harness, "Field of view").click();
@@ -74,19 +69,6 @@ fn a_typed_number_is_applied_once_and_one_out_of_range_not_at_all() {
     harness.key_press(Key::Escape);
     harness.run_steps(4);
     assert_eq!(vfov(&harness), 45.0);
-}
-
-#[test]
-fn a_camera_that_cannot_be_is_refused_at_its_field() {
-    let mut harness = panel("--stage book");
-    harness.get_by_label("Position, folded").click();
-    harness.run_steps(20);
-    set(&mut harness, "Up, y", "0");
-    assert!(harness.query_by_label("Up must not point along the view").is_some());
-    assert_eq!(harness.state().facts.document().camera.vup, DVec3::Y);
-    set(&mut harness, "Up, z", "1");
-    set(&mut harness, "Up, y", "0");
-    assert_eq!(harness.state().facts.document().camera.vup, DVec3::Z);
 }
 
 #[test]

@@ -2,8 +2,7 @@
 
 use super::Outcome;
 use crate::app::facts::Facts;
-use crate::app::model::companion::file_url;
-use crate::app::model::device::adapter;
+use crate::app::model::{adapter, file_url};
 use crate::app::widgets::{Header, fold, hint, tip};
 use crate::system::files::state_directory;
 use crate::system::journal::kept_text;

@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::app::answers::Answers;
 use crate::app::facts::Facts;
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::status::time;
 use crate::app::theme;
 use crate::app::widgets::{About, Number, hint, named, primary, small};
@@ -12,12 +12,11 @@ use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
 use crate::job::render::SIZE_LIMIT;
 use crate::progressive::{Phase, Status};
-use crate::system::files::{home_directory, pictures_directory};
+use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
 use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
-use std::path::{Path, PathBuf, is_separator};
-use std::sync::{Arc, Weak};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// What is saved.
@@ -48,12 +47,6 @@ pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
-    /// To load a film to compare with.
-    ReferenceFilm,
-    /// To save the points of the error over time.
-    SavePlot,
-    /// To save it, the picture with this size.
-    Save(What, [u32; 2]),
     /// To change name and folder in the dialog of saving.
     Place(What),
 }
@@ -63,23 +56,19 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
-            Purpose::ReferenceFilm => "Film to compare with",
-            Purpose::SavePlot => "Save the error over time",
-            Purpose::Save(..) | Purpose::Place(_) => "Save",
+            Purpose::Place(_) => "Save",
         }
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(..) | Purpose::Place(_) | Purpose::SavePlot)
+        matches!(self, Purpose::Place(_))
     }
 
     fn endings(self) -> Vec<&'static str> {
         match self {
             Purpose::Open => vec!["png", "ppm", "exr", "toml"],
             Purpose::Check => vec!["png", "ppm"],
-            Purpose::ReferenceFilm => vec!["exr"],
-            Purpose::SavePlot => vec!["csv"],
-            Purpose::Save(what, _) | Purpose::Place(what) => vec![what.ending()],
+            Purpose::Place(what) => vec![what.ending()],
         }
     }
 }
@@ -94,23 +83,11 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     name.into()
 }
 
-/// A path as it was typed, from `folder`; the home directory can be written as `~`.
-fn typed_path(text: &str, folder: &Path) -> PathBuf {
-    let text = text.trim();
-    let rest = text.strip_prefix('~').filter(|rest| rest.is_empty() || rest.starts_with(is_separator));
-    match (rest, home_directory()) {
-        (Some(rest), Some(home)) => home.join(rest.trim_start_matches(is_separator)),
-        _ => folder.join(text),
-    }
-}
-
 /// The system's file dialog.
 #[derive(Default)]
 pub struct System {
     /// There is one; else the field for a path is shown at once.
     pub is_there: bool,
-    /// Can be upgraded as long as the dialog is open.
-    open: Weak<()>,
     /// What the dialog was for, where it began, and the path that was chosen, if there was a dialog to choose in.
     chosen: Answers<(Purpose, PathBuf, Option<PathBuf>)>,
 }
@@ -119,22 +96,19 @@ impl System {
     /// A dialog that closes sooner than this was never visible.
     const SEEN: Duration = Duration::from_millis(300);
 
-    pub fn chosen(&self) -> Option<(Purpose, PathBuf, Option<PathBuf>)> {
-        self.chosen.take()
+    pub fn chosen(&mut self) -> Option<(Purpose, PathBuf, Option<PathBuf>)> {
+        self.chosen.take()?.ok()
     }
 
     /// Opens the dialog at a folder or a file, on a thread of its own, because it can block for any time.
     pub fn ask(&mut self, context: &egui::Context, purpose: Purpose, from: PathBuf) {
-        let start = from.clone();
-        let answer = self.chosen.answer_or(context, move |_| (purpose, start, None));
+        if self.chosen.is_open() {
+            return;
+        }
+        let answer = self.chosen.answer(context);
         if !self.is_there {
-            return answer.give((purpose, from, None));
+            return answer.give(Ok((purpose, from, None)));
         }
-        if self.open.strong_count() > 0 {
-            return answer.wake();
-        }
-        let token = Arc::new(());
-        self.open = Arc::downgrade(&token);
         let choose = move || {
             let begin = Instant::now();
             let (folder, name) = match from.file_name().filter(|_| !from.is_dir()) {
@@ -150,10 +124,9 @@ impl System {
                 .set_directory(folder);
             let path =
                 if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
-            drop(token);
             match path {
-                None if begin.elapsed() >= System::SEEN => answer.wake(),
-                path => answer.give((purpose, from, path)),
+                None if begin.elapsed() >= System::SEEN => answer.end(),
+                path => answer.give(Ok((purpose, from, path))),
             }
         };
         // Without a thread the answer is that there is no dialog.
@@ -169,9 +142,8 @@ pub struct PathField {
 }
 
 impl PathField {
-    pub fn new(purpose: Purpose, from: PathBuf) -> Self {
-        let text = if purpose.is_saving() { from.display().to_string() } else { String::new() };
-        PathField { purpose, folder: if from.is_dir() { from } else { PathBuf::new() }, text }
+    pub fn new(purpose: Purpose, folder: PathBuf) -> Self {
+        PathField { purpose, folder, text: String::new() }
     }
 
     pub(super) fn ui(&mut self, ui: &mut Ui) -> Outcome {
@@ -180,15 +152,8 @@ impl PathField {
         let field = ui.add(field.hint_text("File name; or drop the file on the window"));
         named(&field, "File name");
         focus(ui, &field, &self.text);
-        let is_saving = self.purpose.is_saving();
-        let path = typed_path(&self.text, &self.folder);
-        let path = if is_saving { with_ending(path, self.purpose.endings()[0]) } else { path };
-        let reason = if is_saving { missing_folder(&path) } else { None };
-        note(ui, reason.as_deref(), is_saving && path.exists());
-        let label = if is_saving { "Save" } else { "Open" };
-        let is_usable = !self.text.trim().is_empty() && reason.is_none();
-        match buttons(ui, &field, label, is_usable) {
-            Some(true) => Outcome::Named(self.purpose, path),
+        match buttons(ui, &field, "Open", !self.text.trim().is_empty()) {
+            Some(true) => Outcome::Named(self.purpose, self.folder.join(self.text.trim())),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
@@ -266,7 +231,7 @@ impl SaveBox {
     }
 
     fn path(&self) -> PathBuf {
-        with_ending(typed_path(&self.name, &self.folder), self.what.ending())
+        with_ending(self.folder.join(self.name.trim()), self.what.ending())
     }
 
     fn pixels(&self, size: Size, shown: &Document) -> [u32; 2] {
@@ -325,7 +290,7 @@ impl SaveBox {
             buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable)
         });
         match pressed.inner {
-            Some(true) => Outcome::Named(Purpose::Save(self.what, size), path),
+            Some(true) => Outcome::Save(self.what, size, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
         }
@@ -380,17 +345,11 @@ fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
 fn option<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, label: &str, help: &str) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        let (colours, is_on) = (theme::colours(ui), *chosen == value);
-        let widgets = &mut ui.visuals_mut().widgets;
-        for widget in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
-            widget.bg_stroke = Stroke::new(1.0, if is_on { colours.accent } else { colours.edge });
-        }
+        let edge = if *chosen == value { theme::colours(ui).accent } else { theme::colours(ui).edge };
+        ui.visuals_mut().widgets.inactive.bg_stroke = Stroke::new(1.0, edge);
         ui.radio_value(chosen, value, label);
         ui.spacing_mut().interact_size.y = 16.0;
-        ui.horizontal(|ui| {
-            ui.add_space(24.0);
-            small(ui, help);
-        });
+        ui.indent(label, |ui| small(ui, help));
     });
 }
 
@@ -434,10 +393,10 @@ fn seconds_at(facts: &Facts, [width, height]: [u32; 2]) -> Option<f64> {
 
 /// A size that needs much memory or time, and asks before it is rendered.
 pub struct LargeSize {
-    /// The one that is asked for, or the largest of its shape that fits into the free memory.
     size: [u32; 2],
     words: String,
-    label: &'static str,
+    /// There is memory for it.
+    fits: bool,
 }
 
 impl LargeSize {
@@ -458,21 +417,16 @@ impl LargeSize {
         }
         let [width, height] = size;
         let needs = format!("{width} × {height} needs {}", memory::words(bytes));
-        let Err(refused) = memory::check(|| needs.clone(), bytes, "choose a smaller size") else {
-            let words = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
-            return Some(LargeSize { size, words: format!("{needs}{words}."), label: "Render" });
-        };
-        let share = (0.9 * refused.free_bytes as f64 / refused.needed_bytes as f64).sqrt();
-        let [x, y] = size.map(|side| ((f64::from(side) * share) as u32).max(1));
-        let free = memory::words(refused.free_bytes);
-        let words = format!("{needs}; {free} are free. The largest that fits is {x} × {y}.");
-        Some(LargeSize { size: [x, y], words, label: "Use that" })
+        let time = seconds.map_or_else(String::new, |seconds| format!(" and about {}", time(seconds)));
+        let fits = memory::check(|| needs.clone(), bytes, "choose a smaller size");
+        let words = fits.as_ref().map_or_else(ToString::to_string, |()| format!("{needs}{time}."));
+        Some(LargeSize { size, words, fits: fits.is_ok() })
     }
 
     pub(super) fn ui(&self, ui: &mut Ui) -> Outcome {
         let words = ui.label(&self.words);
         ui.add_space(12.0);
-        match buttons(ui, &words, self.label, true) {
+        match buttons(ui, &words, "Render", self.fits) {
             Some(true) => Outcome::Size(self.size),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,

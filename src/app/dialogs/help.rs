@@ -1,13 +1,12 @@
 //! The dialog that lists keys and mouse actions.
 
 use super::Outcome;
-use crate::app::command::{Command, Menu, ROWS, Row};
-use crate::app::model::remembered::Dock;
+use crate::app::command::{Menu, ROWS, Row};
 use crate::app::theme;
 use crate::app::widgets::{caption, hint};
 use eframe::egui::{self, Context, Frame, Margin, RichText, Sides, Ui, vec2};
 
-const GROUPS: [&str; 5] = ["The picture", "Camera", "Stages", "Compare", "Window"];
+const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Render", "Stage", "Other"];
 
 /// What the mouse does, and keys that no single command has: group, words and keys.
 const MOUSE: [(&str, &str, &str); 18] = [
@@ -24,26 +23,19 @@ const MOUSE: [(&str, &str, &str); 18] = [
     ("Camera", "Focus on what is there", "Ctrl and click"),
     ("Camera", "Look at what is there", "Double click"),
     ("Camera", "Fly; with Shift fast", "W A S D, Q E"),
-    ("Camera", "Look from that side; drag the axes to orbit", "Click an end"),
-    ("Compare", "Look at a kept picture", "Alt+1 … 9"),
-    ("Compare", "Move the divider of a wipe", "Drag it"),
-    ("Window", "Open a picture, film or scene", "Drop a file"),
-    ("Window", "Leave the innermost: menu, field, path, wipe, view, kept picture", "Escape"),
+    ("The picture", "Look at a kept picture", "Alt+1 … 9"),
+    ("The picture", "Move the divider of a wipe", "Drag it"),
+    ("Other", "Larger or smaller text", "Ctrl+Plus, Ctrl+−"),
+    ("Other", "Open a picture, film or scene", "Drop a file"),
+    ("Other", "Leave the innermost: menu, field, path, wipe, view, kept picture", "Escape"),
 ];
 
+/// The group of a command: its menu in the bar.
 fn group(row: &Row) -> &'static str {
-    use Command as C;
-    match (row.command, row.menu) {
-        (C::Home | C::FocusOnLookAt | C::AddBookmark, _) => "Camera",
-        (C::Wipe | C::Difference | C::Keep | C::KeptWipe | C::KeptDifference | C::OnlyNoise, _)
-        | (C::Flip | C::LookLive | C::Dock(Dock::Kept), _) => "Compare",
-        (C::Undo | C::Redo | C::NextPanel | C::Palette, _) => "Window",
-        (C::CopyPicture | C::Fit | C::ActualSize, _) | (_, Some(Menu::Edit | Menu::Show | Menu::Render)) => {
-            "The picture"
-        }
-        (_, Some(Menu::Stage)) => "Stages",
-        (_, Some(_)) => "Window",
-        (_, None) => "The picture",
+    match row.menu {
+        Some(Menu::Show | Menu::Bookmarks | Menu::Theme) => Menu::View.name(),
+        Some(menu) if menu != Menu::Help => menu.name(),
+        _ => "Other",
     }
 }
 

@@ -8,11 +8,11 @@ mod sky;
 
 pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
 pub use help::Keys;
-pub use palette::Palette;
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::edit::Edit;
+use super::finder::Finder;
+use super::model::Edit;
 use eframe::egui::{self, Context, Id, Modal, PointerState, Ui};
 use std::path::PathBuf;
 
@@ -22,6 +22,8 @@ pub enum Outcome {
     Close,
     /// It closes: the user chose a file.
     Named(Purpose, PathBuf),
+    /// It closes: this is saved, the picture with this size.
+    Save(What, [u32; 2], PathBuf),
     /// It closes: the picture gets this size.
     Size([u32; 2]),
 }
@@ -29,7 +31,7 @@ pub enum Outcome {
 /// The dialog that is open.
 pub enum Dialog {
     /// All commands by name.
-    Palette(Palette),
+    Palette(Finder),
     /// Keys and mouse.
     Help(Keys),
     /// The colours of the sky.
@@ -51,22 +53,12 @@ pub struct Dialogs {
     /// The pointer, while what is behind a dialog is drawn.
     pointer: Option<PointerState>,
     pub system: files::System,
-    /// The commands that were used, the last one first.
-    used: Vec<Command>,
 }
 
 impl Dialogs {
     /// Whether a dialog is open.
     pub fn is_open(&self) -> bool {
         self.open.is_some()
-    }
-
-    /// Notes that a command was used, to offer it again.
-    pub fn note_used(&mut self, command: Command) {
-        if command.row().is_some_and(|row| row.is_listed) && command != Command::Palette {
-            self.used.retain(|other| *other != command);
-            self.used.insert(0, command);
-        }
     }
 
     /// Opens a dialog. It replaces an open one.
@@ -99,8 +91,8 @@ impl Dialogs {
         let modal = Modal::new(id).frame(egui::Frame::window(ui.style())).show(ui.ctx(), |ui| {
             ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
-                Dialog::Palette(palette) => {
-                    palette.ui(ui, (room.y - 180.0).clamp(100.0, 360.0), (facts, &self.used), commands)
+                Dialog::Palette(finder) => {
+                    palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts, commands)
                 }
                 Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
                 Dialog::Sky => sky::ui(ui, facts, edits),

@@ -3,14 +3,15 @@
 use super::Outcome;
 use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
+use crate::app::finder::Finder;
 use crate::app::menu::line;
 use crate::app::widgets::{caption, hint};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{self, Key, Modifiers, Response, RichText, Ui, vec2};
+use eframe::egui::{Response, RichText, Ui, vec2};
 
-/// What an empty box offers a user who has not used five commands yet.
+/// What an empty box offers.
 const USUAL: [Command; 5] =
     [Command::ShowMe, Command::Save, Command::Present, Command::Stages, Command::Help];
 
@@ -21,13 +22,6 @@ const FIELDS: [(&str, &str); 4] = [
     ("Focus distance", "focus sharp"),
     ("Size and samples", "noise grain quality spp resolution pixels stop"),
 ];
-
-/// The search text and the selected line; none is selected in an empty box, so that Enter does nothing.
-#[derive(Default)]
-pub struct Palette {
-    text: String,
-    chosen: usize,
-}
 
 /// How well a text finds a command; less is better. `None` if it does not.
 fn rank(text: &str, name: &str, synonyms: &str, help: &str) -> Option<usize> {
@@ -63,9 +57,8 @@ struct Found {
     is_place: bool,
 }
 
-/// What a text finds: commands, then places, the best first and what is off last. `used` are the commands that were used, the
-/// last one first.
-fn found(text: &str, facts: &Facts, used: &[Command]) -> Vec<Found> {
+/// What a text finds: commands, then places, the best first and what is off last.
+fn found(text: &str, facts: &Facts) -> Vec<Found> {
     let is_on = |command: &Command| facts.disabled_reason(*command).is_none();
     let name = |command| match command {
         Command::Theme(_) => format!("Theme: {}", facts.name(command)),
@@ -73,8 +66,7 @@ fn found(text: &str, facts: &Facts, used: &[Command]) -> Vec<Found> {
     };
     let of = |command, is_place| Found { name: name(command), command, is_place };
     if text.trim().is_empty() {
-        let usual = USUAL.iter().filter(|command| is_on(command) && !used.contains(command));
-        return used.iter().chain(usual).take(5).map(|command| of(*command, false)).collect();
+        return USUAL.into_iter().filter(is_on).map(|command| of(command, false)).collect();
     }
     let has_rays = facts.no_rays().is_none();
     let fields = FIELDS.into_iter().filter(|_| has_rays);
@@ -93,86 +85,47 @@ fn found(text: &str, facts: &Facts, used: &[Command]) -> Vec<Found> {
         .filter_map(|(command, synonyms, is_place)| {
             let found = of(command, is_place);
             let rank = rank(text, &found.name, synonyms, command.help())?;
-            let age = used.iter().position(|other| *other == command).unwrap_or(usize::MAX);
             let length = if is_place { 0 } else { found.name.len() };
-            Some(((is_place, !is_on(&command), rank, age, length), found))
+            Some(((is_place, !is_on(&command), rank, length), found))
         })
         .collect();
     ranked.sort_by_key(|(key, _)| *key);
     ranked.into_iter().map(|(_, found)| found).collect()
 }
 
-impl Palette {
-    /// Opens with the text that was typed in the opening frame.
-    pub fn typed(context: &egui::Context) -> Self {
-        let typed = |event: &egui::Event| match event {
-            egui::Event::Text(text) => Some(text.clone()),
-            _ => None,
-        };
-        let text = context.input(|input| input.events.iter().filter_map(typed).collect());
-        Palette { text, chosen: 0 }
-    }
-
-    /// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
-    pub(super) fn ui(
-        &mut self,
-        ui: &mut Ui,
-        height: f32,
-        (facts, used): (&Facts, &[Command]),
-        commands: &mut Vec<Command>,
-    ) -> Outcome {
-        ui.set_width(ui.available_width());
-        let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-        let (up, down) = (presses(Key::ArrowUp), presses(Key::ArrowDown));
-        let is_enter = ui.input(|input| input.key_pressed(Key::Enter));
-        let edit = egui::TextEdit::singleline(&mut self.text)
-            .hint_text("What do you want to do?")
-            .margin(vec2(8.0, 8.0))
-            .desired_width(f32::INFINITY);
-        let response = ui.add(edit).accessible_name("Command");
-        response.request_focus();
-        if response.changed() {
-            self.chosen = 0;
+/// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
+pub(super) fn ui(
+    finder: &mut Finder,
+    ui: &mut Ui,
+    height: f32,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) -> Outcome {
+    ui.set_width(ui.available_width());
+    let words = (
+        "Command",
+        "What do you want to do?",
+        "No command is called that. Keys and mouse (F1) lists them all.",
+    );
+    let (mut was_place, mut hovered) = (false, None);
+    let draw = |ui: &mut Ui, Found { command, name, is_place }: &Found, is_chosen| {
+        if *is_place && !std::mem::replace(&mut was_place, true) {
+            caption(ui, "Stages, scenes, files and bookmarks");
         }
-        let found = found(&self.text, facts, used);
-        // Counted from 1; 0 is none.
-        let first = usize::from(!self.text.trim().is_empty() && !found.is_empty());
-        self.chosen = (self.chosen.max(first) + down).min(found.len()).saturating_sub(up).max(first);
-        let chosen = found.get(self.chosen.wrapping_sub(1)).map(|found| found.command);
-        let (mut run, mut described) = (chosen.filter(|_| is_enter), chosen);
-        let list =
-            egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
-        list.show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            if found.is_empty() {
-                hint(ui, "No command is called that. Keys and mouse (F1) lists them all.");
-            }
-            let mut was_place = false;
-            for Found { command, name, is_place } in &found {
-                if *is_place && !std::mem::replace(&mut was_place, true) {
-                    caption(ui, "Stages, scenes, files and bookmarks");
-                }
-                let is_chosen = chosen == Some(*command);
-                let response = row(ui, facts, *command, name, is_chosen);
-                if is_chosen && up + down > 0 {
-                    response.scroll_to_me(None);
-                }
-                if response.hovered() {
-                    described = Some(*command);
-                }
-                if response.clicked() {
-                    run = Some(*command);
-                }
-            }
-        });
-        about(ui, facts, described);
-        match run {
-            Some(command) => {
-                commands.push(command);
-                Outcome::Close
-            }
-            None => Outcome::Stay,
+        let response = row(ui, facts, *command, name, is_chosen);
+        if response.hovered() {
+            hovered = Some(*command);
         }
+        response
+    };
+    let (found, run) = finder.ui(ui, words, height, |text| found(text, facts), draw);
+    about(ui, facts, hovered.or(finder.chosen(&found).map(|found| found.command)));
+    match run {
+        Some(run) => {
+            commands.push(found[run].command);
+            Outcome::Close
+        }
+        None => Outcome::Stay,
     }
 }
 
@@ -208,13 +161,13 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::remembered::Theme;
+    use crate::app::model::Theme;
     use crate::app::tests::facts_of;
 
     #[test]
     fn what_is_meant_comes_first() {
         let facts = facts_of("--stage glass-schlick --size 32x18");
-        let first = |text: &str| found(text, &facts, &[]).first().map(|found| found.command);
+        let first = |text: &str| found(text, &facts).first().map(|found| found.command);
         for (text, expected) in [
             ("dark", Command::Theme(Theme::Dark)),
             ("night", Command::Theme(Theme::Dark)),
@@ -232,13 +185,11 @@ mod tests {
         }
         assert_eq!(first("xyzzy"), None);
         for row in ROWS.iter().filter(|row| row.is_listed && row.command != Command::Palette) {
-            let found = found(row.name, &facts, &[]);
+            let found = found(row.name, &facts);
             let is_off = facts.disabled_reason(row.command).is_some();
             let place = found.iter().position(|found| found.command == row.command);
             assert!(place.is_some_and(|place| is_off || place == 0), "{}: {place:?}", row.name);
         }
-        let used = [Command::Undo, Command::Keep];
-        assert_eq!(found("", &facts, &used).len(), 5);
-        assert!(found(" ", &facts, &used)[1].command == Command::Keep);
+        assert!(!found("", &facts).is_empty());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Outcome;
 use crate::app::facts::Facts;
-use crate::app::model::edit::Edit;
+use crate::app::model::Edit;
 use crate::app::widgets::{About, Header, colour, group, hint};
 use eframe::egui::Ui;
 

@@ -8,7 +8,7 @@ mod subject;
 pub mod tests;
 mod verdict;
 
-pub use actions::{KeptActions, Reopened};
+pub use actions::KeptActions;
 pub use picture::KeptPicture;
 pub use subject::{FilmId, Query, Subject};
 pub use verdict::Verdict;

@@ -2,7 +2,7 @@
 
 use super::run;
 use crate::app::answers::Answers;
-use crate::app::model::kept::Kept;
+use crate::app::model::Kept;
 use crate::app::texture::Texture;
 use crate::app::tracer::Shown;
 use crate::progressive::View;
@@ -22,9 +22,7 @@ type Resolved = (Arc<Kept>, View, Vec<u8>);
 #[derive(Default)]
 pub struct KeptPicture {
     held: Vec<Held>,
-    is_waiting: bool,
-    /// None if that failed.
-    answers: Answers<Option<Resolved>>,
+    answers: Answers<Resolved>,
 }
 
 impl KeptPicture {
@@ -41,23 +39,19 @@ impl KeptPicture {
 
     /// Takes the picture that was resolved, and has the film resolved in `view` if that is another one.
     pub fn follow(&mut self, context: &Context, kept: &Arc<Kept>, view: &View) {
-        while let Some(resolved) = self.answers.take() {
-            self.is_waiting = false;
-            if let Some((of, view, rgb8)) = resolved {
-                self.hold(&of, view, &rgb8);
-            }
+        while let Some(Ok((of, view, rgb8))) = self.answers.take() {
+            self.hold(&of, view, &rgb8);
         }
         self.held.retain(|held| held.of.strong_count() > 0);
         let is_known = |held: &Held| held.of.as_ptr() == Arc::as_ptr(kept) && held.view.is_same(view);
-        if self.is_waiting || self.held.iter().any(is_known) {
+        if self.answers.is_open() || self.held.iter().any(is_known) {
             return;
         }
-        self.is_waiting = true;
-        let answer = self.answers.answer_or(context, |_| None);
+        let answer = self.answers.answer(context);
         let (kept, view) = (Arc::clone(kept), view.clone());
         run(move || {
             let rgb8 = view.resolve(&kept.film, kept.document.rules().transfer, None);
-            answer.give(Some((kept, view, rgb8)));
+            answer.give(Ok((kept, view, rgb8)));
         });
     }
 

@@ -1,15 +1,13 @@
 //! The film on the screen: the live one, or one that was kept.
 
 use crate::app::answers::Answers;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
-use crate::app::model::view::ViewState;
+use crate::app::model::{Document, Kept, ViewState};
 use crate::app::tracer::Tracer;
 use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::progressive::Status;
 use eframe::egui::Context;
-use std::sync::{Arc, Weak};
+use std::sync::Arc;
 
 /// Tells films apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,14 +122,12 @@ impl<'a> Subject<'a> {
 /// A question about the film on the screen, which is asked again when `K` has changed, one at a time.
 pub struct Query<K, T> {
     asked: Option<K>,
-    /// Can be upgraded as long as the question waits for the film.
-    waiting: Weak<()>,
     answers: Answers<T>,
 }
 
 impl<K, T> Default for Query<K, T> {
     fn default() -> Self {
-        Query { asked: None, waiting: Weak::new(), answers: Answers::default() }
+        Query { asked: None, answers: Answers::default() }
     }
 }
 
@@ -142,8 +138,8 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
     }
 
     /// Takes the newest answer.
-    pub fn take(&self) -> Option<T> {
-        std::iter::from_fn(|| self.answers.take()).last()
+    pub fn take(&mut self) -> Option<T> {
+        std::iter::from_fn(|| self.answers.take()).last().and_then(Result::ok)
     }
 
     /// Asks about `key`, unless that was asked last, or the question before is open. `look` finds the answer, if any, in the
@@ -155,18 +151,13 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
         key: K,
         look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
     ) -> bool {
-        if self.waiting.strong_count() > 0 || self.asked.as_ref() == Some(&key) {
+        if self.answers.is_open() || self.asked.as_ref() == Some(&key) {
             return false;
         }
-        let question = Arc::new(());
-        (self.waiting, self.asked) = (Arc::downgrade(&question), Some(key));
+        self.asked = Some(key);
         let answer = self.answers.answer(context);
-        subject.inspect_shown(move |film| {
-            let found = look(film);
-            // Dropped first: the answer wakes a frame, which may ask the next question.
-            drop(question);
-            found.into_iter().for_each(|found| answer.give_one(found));
-        });
+        subject
+            .inspect_shown(move |film| look(film).into_iter().for_each(|found| answer.give_one(Ok(found))));
         true
     }
 }
@@ -174,8 +165,7 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::kept::Named;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::{Named, Origin};
     use crate::stages::Stage;
     use std::sync::mpsc::channel;
 

@@ -1,10 +1,7 @@
 //! A kept film on the screen, for tests of what asks films.
 
 use super::{Subject, run};
-use crate::app::model::document::Document;
-use crate::app::model::kept::{Kept, Named};
-use crate::app::model::origin::Origin;
-use crate::app::model::view::ViewState;
+use crate::app::model::{Document, Kept, Named, Origin, ViewState};
 use crate::app::tracer::Tracer;
 use crate::film::{Film, PixelSum};
 use crate::stages::Stage;

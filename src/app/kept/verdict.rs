@@ -1,13 +1,11 @@
 //! Whether a kept picture and the traced one differ only by noise: the statistics of `weekender compare`, on a thread.
 
 use crate::app::answers::Answers;
-use crate::app::model::document::Document;
-use crate::app::model::kept::Kept;
+use crate::app::model::{Document, Kept};
 use crate::app::theme;
 use crate::app::tracer::Tracer;
 use crate::film::Film;
 use crate::job::recipe::Recipe;
-use crate::numbers::statistics::blocks::BlockTest;
 use crate::pictures::{Picture, compare};
 use eframe::egui::{self, RichText, Ui};
 use std::sync::Arc;
@@ -27,7 +25,7 @@ pub struct Verdict {
     /// The kept picture and the run of the render that it is compared with.
     of: Option<(u64, u64)>,
     answer: Option<Result<Answer, String>>,
-    answers: Answers<Result<Answer, String>>,
+    answers: Answers<Answer>,
 }
 
 impl Verdict {
@@ -36,7 +34,7 @@ impl Verdict {
         let of = Some((kept.number(), main.status().run));
         *self = Verdict { of, ..Verdict::default() };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
-        let answer = self.answers.answer_or(context, Err);
+        let answer = self.answers.promise(context);
         main.inspect(move |film| match film.try_copy() {
             Ok(film) => answer.give_from("compare", move || compared(&kept, recipe, film)),
             Err(error) => answer.give(Err(error.to_string())),
@@ -90,33 +88,21 @@ fn compared(kept: &Kept, recipe: Recipe, film: Film) -> Result<Answer, String> {
         _ if is_equal && comparison.is_same => ("Identical to the bit.", String::new()),
         _ if is_equal => ("Only noise.", "Nothing differs by more than chance.".to_owned()),
         Some(_) => ("Too early to tell.", "Both need more samples.".to_owned()),
-        None => ("More than noise.", place_of(&comparison.test, kept.size())),
+        None => {
+            let blocks = &comparison.test.blocks;
+            let clear = blocks.iter().filter(|block| block.largest() > CLEAR).count();
+            let share = (100 * clear).div_ceil(blocks.len().max(1));
+            ("More than noise.", format!("{share} % of the blocks differ clearly."))
+        }
     };
     Ok(Answer { is_equal, headline, words })
-}
-
-/// How many blocks differ, and where most.
-fn place_of(test: &BlockTest, size: [u32; 2]) -> String {
-    let count = test.blocks.iter().filter(|block| block.largest() > CLEAR).count();
-    let Some(worst) = test.worst(1).first().filter(|_| count > 0).copied() else {
-        return "They differ a little in many places.".to_owned();
-    };
-    let third = |range: &std::ops::Range<u32>, length: u32| (3 * range.start / length.max(1)).min(2) as usize;
-    let [x, y] = [third(&worst.x, size[0]), third(&worst.y, size[1])];
-    let place = match (["upper", "", "lower"][y], ["left", "middle", "right"][x]) {
-        ("", across) => format!("in the {across}"),
-        (down, "middle") => format!("in the {down} middle"),
-        (down, across) => format!("at the {down} {across}"),
-    };
-    let share = (100 * count).div_ceil(test.blocks.len());
-    format!("They differ in {share} % of the blocks, most {place}.")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::kept::tests::small_film;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     #[test]

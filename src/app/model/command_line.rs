@@ -1,7 +1,6 @@
 //! The command line that renders a document.
 
-use super::document::Document;
-use super::origin::Source;
+use super::{Document, Source};
 use crate::job::recipe::plain_name;
 use crate::job::render::RenderSettings;
 use crate::system::shell::Shell;
@@ -71,32 +70,17 @@ impl Document {
         add("--out", &format!("{}.png", plain_name(&name)));
         line
     }
-
-    /// The number of frames of the animation, if the scene file has keyframes, and the command line that renders them.
-    pub fn animation(&self) -> Option<(u32, String)> {
-        let recipe = &self.origin.recipe;
-        let (frames, name) = (recipe.keyframes.last()?.frame + 1, plain_name(&recipe.name));
-        let Source::File(path) = &self.origin.source else { return None };
-        let flags = [
-            format!("--scene={}", path.display()),
-            format!("--frames=0..{frames}"),
-            format!("--out={name}-frames"),
-        ];
-        let words = ["weekender", "--batch"].map(str::to_owned).into_iter().chain(flags);
-        Some((frames, Shell::HERE.line(words)))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::checked::CheckedScene;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::{CheckedScene, Origin};
     use crate::cli::{Request, parse};
     use crate::job::recipe::{Recipe, file};
     use crate::job::render::{RenderJob, SamplerKind};
     use crate::scene::Camera;
-    use crate::scene::animation::Keyframe;
+
     use crate::stages::Stage;
     use glam::DVec3;
     use std::sync::Arc;
@@ -138,28 +122,6 @@ mod tests {
                 assert_eq!(same_focus(theirs.camera()), same_focus(mine.camera()), "{line}");
                 assert_eq!((theirs.settings(), theirs.rules()), (mine.settings(), mine.rules()), "{line}");
             }
-        }
-    }
-
-    #[test]
-    fn the_frames_of_a_scene_file_have_a_command_line() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("mine.toml");
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        let document =
-            |recipe: &Recipe| Document::new(Origin::new(recipe.clone(), Source::File(path.clone())));
-        assert_eq!(document(&recipe).animation(), None);
-        for frame in [0, 20] {
-            recipe.keyframes.push(Keyframe { frame, camera: recipe.camera });
-        }
-        std::fs::write(&path, file::to_toml(&recipe)).unwrap();
-        let (frames, line) = document(&recipe).animation().unwrap();
-        match parse(line.replace('"', "").split_whitespace().map(Into::into)).unwrap() {
-            Request::Frames(options) => {
-                assert_eq!(options.frames, 0..frames, "{line}");
-                assert_eq!((frames, &options.recipe.keyframes), (21, &recipe.keyframes), "{line}");
-            }
-            other => panic!("{line}: {other:?}"),
         }
     }
 

@@ -1,7 +1,6 @@
 //! The document, which the user edits and undo restores: the origin of a picture and the changes to it.
 
-use super::checked::CheckedScene;
-use super::origin::{Origin, Source};
+use super::{CheckedScene, Origin, Source};
 use crate::job::recipe::Recipe;
 use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::measure::stress::Case;
@@ -205,22 +204,6 @@ impl Document {
             && self.settings == other.settings
     }
 
-    /// Takes origin and scene of `other` where they are equal, so that they are in memory once and it shows that both
-    /// documents have the same samples.
-    pub fn share_with(&mut self, other: &Document) {
-        let (mine, theirs) = (&self.origin, &other.origin);
-        let is_same = mine.source == theirs.source && mine.recipe == theirs.recipe;
-        let is_own = !self.has_changed_scene();
-        if is_same && is_own {
-            self.checked = Arc::clone(&theirs.scene);
-        } else if self.rules() == other.rules() && self.scene() == other.scene() && !is_own {
-            self.checked = Arc::clone(&other.checked);
-        }
-        if is_same {
-            self.origin = Arc::clone(theirs);
-        }
-    }
-
     /// The recipe of the picture.
     pub fn recipe(&self) -> Recipe {
         let origin = &self.origin.recipe;
@@ -353,7 +336,11 @@ mod tests {
             (
                 |document| {
                     let recipe = document.origin.recipe.clone();
-                    document.origin = Arc::new(document.origin.with_recipe(recipe));
+                    document.origin = Arc::new(Origin {
+                        recipe,
+                        source: Source::Builtin,
+                        scene: Arc::clone(&document.origin.scene),
+                    });
                 },
                 false,
                 false,

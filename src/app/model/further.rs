@@ -1,6 +1,6 @@
 //! How a render that has ended can go on.
 
-use super::document::Document;
+use super::Document;
 use crate::job::render::SAMPLE_LIMIT;
 use crate::progressive::{EndReason, Phase, Status, Stop};
 use crate::stages::Shading;
@@ -22,7 +22,9 @@ impl Document {
         match reason {
             EndReason::NoiseTarget => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
-                Some(Stop { noise: Some(next_round(reached)?), ..stop })
+                let halves = std::iter::successors(stop.noise, |noise| Some(noise / 2.0));
+                let next = halves.take_while(|noise| *noise > 1e-7).find(|noise| *noise < 0.55 * reached);
+                next.map(|noise| Stop { noise: Some(noise), ..stop })
             }
             EndReason::Samples => {
                 let samples = stop.samples?.max(status.samples_per_pixel).saturating_mul(2).min(SAMPLE_LIMIT);
@@ -37,18 +39,10 @@ impl Document {
     }
 }
 
-/// The next number below `error` of the form 1, 2 or 5 times a power of ten, at most about half of it; none below 1e-6.
-fn next_round(error: f64) -> Option<f64> {
-    let rounds = (-6..=0).rev().flat_map(|power| ["5", "2", "1"].map(|digit| format!("{digit}e{power}")));
-    // Read from text, so that .002 is the same number as when it is typed.
-    let mut rounds = rounds.filter_map(|text| text.parse::<f64>().ok());
-    rounds.find(|round| *round < 0.55 * error)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::film::ErrorEstimate;
     use crate::stages::Stage;
 

@@ -1,6 +1,6 @@
 //! The pictures that the user has kept to compare with. They live in memory until the window closes.
 
-use super::document::Document;
+use super::Document;
 use crate::film::Film;
 use crate::progressive::{ReferenceMeans, Status};
 use crate::system::memory::words;
@@ -114,10 +114,6 @@ impl KeptList {
         self.pictures.get(place)
     }
 
-    pub fn name_mut(&mut self, place: usize) -> Option<&mut String> {
-        self.pictures.get_mut(place).map(|named| &mut named.name)
-    }
-
     /// As it is called in sentences.
     pub fn title(&self, place: usize) -> String {
         self.get(place).map_or_else(String::new, |named| format!("{}: {}", place + 1, named.name))
@@ -195,7 +191,7 @@ impl KeptList {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::film::PixelSum;
     use crate::stages::Stage;
 

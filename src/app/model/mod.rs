@@ -1,30 +1,37 @@
 //! The model of the window: the document, the view, the device, and the remembered settings. It does not depend on
 //! widgets or drawing.
 
-pub mod checked;
-pub mod command_line;
+mod checked;
+mod command_line;
 pub mod companion;
 pub mod device;
-pub mod document;
-pub mod edit;
-pub mod first_steps;
-pub mod further;
-pub mod kept;
-pub mod origin;
-pub mod reload;
-pub mod remembered;
-pub mod show;
-pub mod sizing;
-pub mod tone;
-pub mod view;
-pub mod viewpoint;
+mod document;
+mod edit;
+mod further;
+mod kept;
+mod origin;
+mod reload;
+mod remembered;
+mod show;
+mod sizing;
+mod tone;
+mod view;
+
+pub use checked::{CheckedScene, stamp_of};
+pub use companion::file_url;
+pub use device::{Device, DeviceOptions, adapter, core_count, lane_counts};
+pub use document::Document;
+pub use edit::{Body, Edit, first_difference};
+pub use kept::{Kept, KeptList, Named};
+pub use origin::{Origin, Source};
+pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab, Theme};
+pub use show::Show;
+pub use sizing::Sizing;
+pub use tone::{Channel, Tone};
+pub use view::{Mode, Other, ViewState, With, differ_in_camera, partner};
 
 use crate::backends::BackendChoice;
 use crate::progressive::Stop;
-use device::DeviceOptions;
-use document::Document;
-use remembered::{Remembered, Tab};
-use view::ViewState;
 
 /// A presentation: full screen, the picture with large captions, no panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

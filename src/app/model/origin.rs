@@ -1,6 +1,6 @@
 //! The origin of a picture.
 
-use super::checked::CheckedScene;
+use super::CheckedScene;
 use crate::job::recipe::Recipe;
 use crate::measure::stress::{Case, by_the_book};
 use crate::progressive::Stop;
@@ -41,11 +41,6 @@ impl Origin {
     pub fn new(recipe: Recipe, source: Source) -> Self {
         let scene = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
         Origin { recipe, source, scene }
-    }
-
-    /// The same with another recipe of the same scene.
-    pub fn with_recipe(&self, recipe: Recipe) -> Self {
-        Origin { recipe, source: self.source.clone(), scene: Arc::clone(&self.scene) }
     }
 
     /// The origin of a stage.

@@ -1,14 +1,10 @@
 //! Settings that the window keeps from one run to the next.
 
 use super::Model;
-use super::device::{self, Device};
-use super::first_steps::FirstSteps;
-use super::sizing::Sizing;
-use super::view::ViewState;
+use super::{Device, Sizing, ViewState, device};
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;
-use glam::DVec3;
 use serde::{Deserialize, Serialize, Serializer};
 use std::path::{Path, PathBuf};
 
@@ -65,27 +61,7 @@ pub enum Tab {
 pub struct Bookmark {
     /// The bookmark's name.
     pub name: String,
-    look_from: DVec3,
-    look_at: DVec3,
-    vup: DVec3,
-    vfov_degrees: f64,
-    defocus_angle_degrees: f64,
-    focus_distance: Option<f64>,
-}
-
-impl Bookmark {
-    /// Makes a bookmark of `camera`.
-    pub fn new(name: String, camera: &Camera) -> Self {
-        let Camera { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance } = *camera;
-        Bookmark { name, look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance }
-    }
-
-    /// The saved camera.
-    pub fn camera(&self) -> Camera {
-        let Bookmark { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance, .. } =
-            *self;
-        Camera { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance }
-    }
+    pub camera: Camera,
 }
 
 /// Settings of the window, as opposed to those of the picture.
@@ -106,8 +82,6 @@ pub struct Remembered {
     pub tab: Tab,
     /// The size of pictures that have no size of their own.
     pub sizing: Sizing,
-    /// Whether the axes are always shown in a corner of the picture.
-    pub has_axes: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -121,8 +95,8 @@ pub struct Remembered {
     pub directory: Option<PathBuf>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
-    /// What the user has tried of the first steps.
-    pub first_steps: FirstSteps,
+    /// The card with the first steps was closed: it does not come back by itself.
+    pub is_greeted: bool,
 }
 
 /// A path that is not Unicode has no place in a text. An error would keep all settings from being stored.
@@ -140,14 +114,13 @@ impl Default for Remembered {
             dock: None,
             tab: Tab::Stage,
             sizing: Sizing::Viewport,
-            has_axes: false,
             device: Device::Cpu,
             lanes: None,
             threads: None,
             bookmarks: Vec::new(),
             directory: None,
             recent: Vec::new(),
-            first_steps: FirstSteps::default(),
+            is_greeted: false,
         }
     }
 }
@@ -161,7 +134,7 @@ pub struct Stored {
 }
 
 impl Stored {
-    const VERSION: u32 = 2;
+    const VERSION: u32 = 3;
     const KEY: &str = "settings";
 
     /// Settings and view of the last window, or the usual ones.
@@ -205,7 +178,7 @@ impl Remembered {
         // A window that opens without any panel would confuse the user.
         self.has_panels = true;
         self.recent.truncate(RECENT_LIMIT);
-        self.bookmarks.retain(|bookmark| bookmark.camera().validate().is_ok());
+        self.bookmarks.retain(|bookmark| bookmark.camera.validate().is_ok());
         self
     }
 }
@@ -221,12 +194,15 @@ mod tests {
         let strange = Remembered {
             lanes: Some(7),
             threads: Some(1_000_000),
-            bookmarks: vec![Bookmark::new("a".into(), &Camera::BOOK), Bookmark::new("b".into(), &broken)],
+            bookmarks: vec![
+                Bookmark { name: "a".into(), camera: Camera::BOOK },
+                Bookmark { name: "b".into(), camera: broken },
+            ],
             ..Remembered::default()
         };
         let mended = strange.mended();
         assert_eq!((mended.lanes, mended.threads, mended.bookmarks.len()), (None, None, 1));
-        assert_eq!(mended.bookmarks[0].camera(), Camera::BOOK);
+        assert_eq!(mended.bookmarks[0].camera, Camera::BOOK);
     }
 
     #[test]

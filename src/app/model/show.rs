@@ -1,12 +1,11 @@
 //! The views of a film.
 
-use super::tone::Tone;
+use super::Tone;
 use crate::backends::layers::Layer;
 use crate::numbers::heat::HeatScale;
-use crate::progressive::{ReferenceMeans, View};
+use crate::progressive::View;
 use crate::stages::Means;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 
 /// A view of the film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -24,22 +23,19 @@ pub enum Show {
     Error,
     /// Share of lanes in use.
     Occupancy,
-    /// Difference from a loaded film.
-    Difference,
     /// Luminance in false colours.
     Luminance,
 }
 
 impl Show {
     /// All views.
-    pub const ALL: [Show; 8] = [
+    pub const ALL: [Show; 7] = [
         Show::Picture,
         Show::Normals,
         Show::Albedo,
         Show::Bounces,
         Show::Error,
         Show::Occupancy,
-        Show::Difference,
         Show::Luminance,
     ];
 
@@ -59,33 +55,26 @@ impl Show {
         match self {
             Show::Picture => ["Picture", "The picture as it will be saved", "view"],
             Show::Normals => {
-                ["Normals", "Which way each surface faces: x is red, y green, z blue", "view direction"]
+                ["Normals", "Which way surfaces face: x is red, y green, z blue", "view direction"]
             }
             Show::Albedo => {
-                ["Surface colours", "What surfaces reflect (albedo), without light and shadow", "view albedo"]
+                ["Surface colours", "What surfaces reflect (albedo), without light", "view albedo"]
             }
             Show::Bounces => {
-                ["Rays per path", "How many rays a path has: where the time goes", "view heat depth bounces"]
+                ["Rays per path", "How many rays a path has: where the time goes", "view depth bounces"]
             }
             Show::Error => [
                 "Noise",
                 "How uncertain each pixel still is (standard error)",
-                "view grain quality standard error spp samples",
+                "view grain quality spp samples",
             ],
-            Show::Occupancy => [
-                "Lanes at work",
-                "How full the lanes of the processor were",
-                "view simd avx packet occupancy",
-            ],
-            Show::Difference => [
-                "Difference from a film…",
-                "Subtracts a film that you choose; asks for it the first time",
-                "view reference subtract",
-            ],
+            Show::Occupancy => {
+                ["Lanes at work", "How full the lanes of the processor were", "view simd avx packet"]
+            }
             Show::Luminance => [
                 "Brightness",
                 "How bright each pixel is, in false colours with a scale",
-                "view heat false colour luminance",
+                "view heat luminance",
             ],
         }
     }
@@ -100,20 +89,17 @@ impl Show {
             Show::Normals => Some(Layer::Normals),
             Show::Albedo => Some(Layer::Albedo),
             Show::Bounces => Some(Layer::RaysPerPath),
-            Show::Picture | Show::Error | Show::Occupancy | Show::Difference | Show::Luminance => None,
+            Show::Picture | Show::Error | Show::Occupancy | Show::Luminance => None,
         }
     }
 
-    /// The view for resolving the film; `reference` is the loaded film, if any.
-    pub fn of_film(self, reference: Option<&Arc<ReferenceMeans>>, tone: &Tone) -> View {
-        match (self, reference) {
-            (Show::Error, _) => View::StandardError,
-            (Show::Occupancy, _) => View::Occupancy,
-            (Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
-            (Show::Luminance, _) => tone.of_luminance(),
-            (Show::Difference, None) | (Show::Picture | Show::Normals | Show::Albedo | Show::Bounces, _) => {
-                tone.of_picture()
-            }
+    /// The view for resolving the film.
+    pub fn of_film(self, tone: &Tone) -> View {
+        match self {
+            Show::Error => View::StandardError,
+            Show::Occupancy => View::Occupancy,
+            Show::Luminance => tone.of_luminance(),
+            Show::Picture | Show::Normals | Show::Albedo | Show::Bounces => tone.of_picture(),
         }
     }
 
@@ -123,7 +109,6 @@ impl Show {
             Show::Luminance => Some(tone.scale()),
             Show::Bounces => Some(HeatScale::RAYS),
             Show::Error => Some(HeatScale::ERROR),
-            Show::Difference => Some(HeatScale::DIFFERENCE),
             Show::Occupancy => Some(HeatScale::OCCUPANCY),
             Show::Picture | Show::Normals | Show::Albedo => None,
         }

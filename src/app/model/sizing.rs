@@ -1,7 +1,6 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
-use super::document::Document;
-use super::origin::{Origin, Source};
+use super::{Document, Origin, Source};
 use crate::job::render::{RenderSettings, SIZE_LIMIT};
 use crate::stages::Shading;
 use serde::{Deserialize, Serialize};

@@ -57,9 +57,6 @@ impl Tone {
     /// The largest exposure and the smallest, in stops.
     pub const EXPOSURES: std::ops::RangeInclusive<f64> = -12.0..=12.0;
 
-    /// The range of luminances that the luminance view can show, as powers of two.
-    pub const RANGES: std::ops::RangeInclusive<f64> = -20.0..=7.0;
-
     /// Makes the picture brighter by this many stops, as far as the limits allow.
     pub fn expose(&mut self, stops: f64) {
         self.exposure = (self.exposure + stops).clamp(*Self::EXPOSURES.start(), *Self::EXPOSURES.end());
@@ -92,22 +89,6 @@ impl Tone {
     pub fn scale(&self) -> HeatScale {
         HeatScale::luminance(self.range)
     }
-
-    /// Keeps the range at least one stop wide, by moving the end that was not changed.
-    pub fn mend_range(&mut self, before: [f64; 2]) {
-        let [low, high] = self.range;
-        let [lowest, highest] = [*Self::RANGES.start(), *Self::RANGES.end()];
-        if high - low >= 1.0 {
-            return;
-        }
-        self.range = if low == before[0] {
-            let low = (high - 1.0).max(lowest);
-            [low, low + 1.0]
-        } else {
-            let high = (low + 1.0).min(highest);
-            [high - 1.0, high]
-        };
-    }
 }
 
 #[cfg(test)]
@@ -124,19 +105,5 @@ mod tests {
         assert_eq!(tone.white(), 4.0);
         tone.expose(-1e3);
         assert_eq!(tone.exposure, -12.0);
-    }
-
-    #[test]
-    fn a_range_has_two_ends() {
-        let mended = |before: [f64; 2], range: [f64; 2]| {
-            let mut tone = Tone { range, ..Tone::default() };
-            tone.mend_range(before);
-            tone.range
-        };
-        assert_eq!(mended([-8.0, 4.0], [-7.0, 4.0]), [-7.0, 4.0]);
-        assert_eq!(mended([-8.0, 4.0], [5.0, 4.0]), [5.0, 6.0], "the upper end gives way");
-        assert_eq!(mended([-8.0, 4.0], [-8.0, -9.0]), [-10.0, -9.0], "the lower end gives way");
-        assert_eq!(mended([-8.0, 4.0], [7.0, 4.0]), [6.0, 7.0]);
-        assert_eq!(mended([-8.0, 4.0], [-8.0, -20.0]), [-20.0, -19.0]);
     }
 }

@@ -1,11 +1,6 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
-use super::checked::CheckedScene;
-use super::document::Document;
-use super::kept::{Kept, KeptList};
-use super::origin::Origin;
-use super::show::Show;
-use super::tone::Tone;
+use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::app::denoising::Found;
 use crate::app::kept::FilmId;
 use crate::denoise::Denoised;
@@ -81,9 +76,6 @@ pub struct ViewState {
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
-    /// A loaded film to compare with.
-    #[serde(skip)]
-    pub reference: Option<Arc<ReferenceMeans>>,
     /// Whether the picture is denoised.
     pub is_denoised: bool,
     /// The latest denoised picture.
@@ -102,7 +94,6 @@ impl Default for ViewState {
             with: With::Stage,
             divider: 0.5,
             tone: Tone::default(),
-            reference: None,
             is_denoised: false,
             denoised: None,
             kept: KeptList::default(),
@@ -115,9 +106,6 @@ impl ViewState {
     pub fn mended(mut self) -> Self {
         if matches!(self.with, With::Kept(_)) {
             self.end_comparison();
-        }
-        if self.show == Show::Difference {
-            self.show = Show::Picture;
         }
         self
     }
@@ -207,7 +195,7 @@ impl ViewState {
     pub fn of_film(&self, other: Option<&Arc<ReferenceMeans>>) -> View {
         match (self.mode, other) {
             (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
-            _ => self.show.of_film(self.reference.as_ref(), &self.tone),
+            _ => self.show.of_film(&self.tone),
         }
     }
 
@@ -256,18 +244,6 @@ impl ViewState {
     pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
         self.kept.get(place).map(|named| &named.kept)
-    }
-
-    /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.
-    pub fn subtracted<'a>(
-        &'a self,
-        other: Option<&'a Arc<ReferenceMeans>>,
-    ) -> Option<&'a Arc<ReferenceMeans>> {
-        match (self.mode, self.show) {
-            (Some(Mode::Difference), _) => other,
-            (None, Show::Difference) => self.reference.as_ref(),
-            _ => None,
-        }
     }
 }
 

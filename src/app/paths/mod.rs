@@ -5,7 +5,7 @@ mod side;
 mod tab;
 
 use super::answers::Answers;
-use super::model::document::Document;
+use super::model::Document;
 use crate::backends::explain::{Step, steps};
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::scene::Sphere;
@@ -33,14 +33,13 @@ struct Listed {
 #[derive(Default)]
 pub struct Paths {
     listed: Option<Listed>,
-    is_waiting: bool,
     /// Why the paths that were asked for last could not be recorded, if so.
     fault: Option<String>,
     /// The path that is shown.
     selected: usize,
     /// The point of it that is explained: 0 at the camera, then the ends of its rays.
     point: usize,
-    answers: Answers<Result<Listed, String>>,
+    answers: Answers<Listed>,
 }
 
 impl Paths {
@@ -61,12 +60,11 @@ impl Paths {
         };
         // A late answer is lost with its slot.
         self.answers = Answers::default();
-        self.answers.ask("paths", context, record, Err);
-        (self.is_waiting, self.fault) = (true, None);
+        self.answers.ask("paths", context, record);
+        self.fault = None;
     }
 
     fn learn(&mut self, outcome: Result<Listed, String>) {
-        self.is_waiting = false;
         match outcome {
             Ok(listed) => {
                 if self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel) {
@@ -98,7 +96,7 @@ impl Paths {
         let is_same = std::sync::Arc::ptr_eq(&listed.document.checked, &document.checked)
             && listed.paths.len() as u64 == count_in(document)
             && listed.document.settings == document.settings;
-        if !self.is_waiting && !is_same {
+        if !self.answers.is_open() && !is_same {
             let (pixel, sizes) = (listed.pixel, [listed.document.size(), document.size()]);
             let before = Document { camera: listed.document.camera, ..document.clone() };
             self.list(&before, at_same_place(pixel, sizes), context);
@@ -153,7 +151,7 @@ pub fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Origin;
+    use crate::app::model::Origin;
     use crate::stages::Stage;
 
     /// A small picture of a stage with the paths of one of its pixels.
@@ -179,7 +177,10 @@ mod tests {
         paths.list(&document, [3, 2], &context);
         paths.learn(Err("on purpose".to_owned()));
         paths.follow(&document, &context);
-        assert_eq!((paths.is_waiting, paths.len(), paths.fault.as_deref()), (false, 0, Some("on purpose")));
+        assert_eq!(
+            (paths.answers.is_open(), paths.len(), paths.fault.as_deref()),
+            (false, 0, Some("on purpose"))
+        );
         paths.list(&document, [3, 2], &context);
         take(&mut paths);
         assert!(paths.len() > 0 && paths.fault.is_none());
@@ -204,10 +205,10 @@ mod tests {
         let context = egui::Context::default();
         document.camera.vfov_degrees += 1.0;
         paths.follow(&document, &context);
-        assert!(!paths.is_waiting, "the camera has moved, but the paths are still those of the pixel");
+        assert!(!paths.answers.is_open(), "the camera has moved, but the paths are still those of the pixel");
         document.settings.seed += 1;
         paths.follow(&document, &context);
-        assert!(paths.is_waiting);
+        assert!(paths.answers.is_open());
         take(&mut paths);
         let listed = paths.listed.as_ref().unwrap();
         assert_eq!(listed.document.settings.seed, document.settings.seed);
@@ -217,9 +218,9 @@ mod tests {
         take(&mut paths);
         assert_eq!(paths.listed.as_ref().map(|listed| listed.pixel), Some([33, 19]));
         paths.follow(&document, &context);
-        assert!(!paths.is_waiting, "nothing has changed");
+        assert!(!paths.answers.is_open(), "nothing has changed");
         let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-gradient").unwrap()));
         paths.follow(&no_rays, &context);
-        assert_eq!((paths.len(), paths.is_waiting), (0, false), "this picture has none");
+        assert_eq!((paths.len(), paths.answers.is_open()), (0, false), "this picture has none");
     }
 }

@@ -1,9 +1,9 @@
 //! Paths drawn as lines over the picture.
 
 use super::{Path, Paths};
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::theme;
-use crate::backends::explain::{Event, Lobe, Step};
+use crate::backends::explain::Step;
 use crate::scene::Camera;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
 use glam::DVec3;
@@ -13,15 +13,6 @@ const SKY_LENGTH: f64 = 2.0;
 
 /// Parts closer to the camera than this share of the view distance are not drawn.
 const NEAR_SHARE: f64 = 1e-4;
-
-/// The length of a unit vector that is drawn at a hit, as a share of the distance to the camera.
-const UNIT_SHARE: f64 = 0.1;
-
-/// The normal at a hit.
-const NORMAL: Color32 = Color32::from_rgb(90, 200, 250);
-
-/// The directions around which the next ray was chosen.
-const LOBE: Color32 = Color32::from_rgb(255, 214, 10);
 
 /// So many of the other paths are drawn, faintly.
 const FAINT: usize = 16;
@@ -47,9 +38,6 @@ impl Paths {
         lines(shown, [150.0, 4.5], Stroke::new(2.0, accent));
         if let Some((ray, _)) = shown.get(self.point) {
             view.paint_ray(ray, Stroke::new(3.0, Color32::WHITE), painter);
-        }
-        if let Some((ray, _)) = self.point.checked_sub(1).and_then(|before| shown.get(before)) {
-            view.paint_choice(ray, painter);
         }
         let font = TextStyle::Small.resolve(ui.style());
         for (number, (ray, _)) in shown.iter().enumerate() {
@@ -99,25 +87,6 @@ impl View<'_> {
     fn paint_ray(&self, ray: &Step, stroke: Stroke, painter: &Painter) {
         if let Some(line) = self.line(ray.origin, end_of(ray)) {
             painter.line_segment(line, stroke);
-        }
-    }
-
-    /// The normal where a ray ends, and the directions around which the next one was chosen.
-    fn paint_choice(&self, ray: &Step, painter: &Painter) {
-        let Some(hit) = ray.hit else { return };
-        let unit = UNIT_SHARE * hit.point.distance(self.camera.look_from);
-        let directions = match ray.event {
-            Event::Scattered(Lobe::Metal { mirrored, .. })
-            | Event::Absorbed(Lobe::Metal { mirrored, .. }) => [Some(mirrored), None],
-            Event::Scattered(Lobe::Glass { mirrored, refracted, .. }) => [Some(mirrored), refracted],
-            _ => [None; 2],
-        };
-        let arrows = directions.into_iter().flatten().map(|direction| (direction, LOBE));
-        for (direction, colour) in std::iter::once((hit.normal, NORMAL)).chain(arrows) {
-            let Some([start, end]) = self.line(hit.point, hit.point + direction * unit) else { continue };
-            for stroke in [Stroke::new(4.0, Color32::from_black_alpha(150)), Stroke::new(2.0, colour)] {
-                painter.arrow(start, end - start, stroke);
-            }
         }
     }
 }

@@ -1,9 +1,8 @@
 //! A path seen from the side: from the eye, its first ray is only a point.
 
 use super::{Path, is_ground};
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::theme;
-use crate::backends::explain::{Event, Lobe};
 use crate::scene::{Look, Sphere};
 use eframe::egui::{
     Align2, Color32, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, TextStyle, Ui, Vec2, pos2, vec2,
@@ -126,16 +125,8 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
         }
     }
 
-    // The rays, and the other way that glass could have gone.
+    // The rays.
     let places: Vec<Pos2> = points.iter().map(|point| view.place(*point)).collect();
-    if let Some((step, hit)) =
-        at.checked_sub(1).and_then(|ray| path.get(ray)).and_then(|(step, _)| Some((step, step.hit?)))
-        && let Event::Scattered(Lobe::Glass { mirrored, refracted, refracts, .. }) = step.event
-        && let Some(other) = if refracts { Some(mirrored) } else { refracted }
-    {
-        let ends = [view.place(hit.point), view.place(hit.point + other * (30.0 / view.scale))];
-        painter.extend(Shape::dashed_line(&ends, Stroke::new(1.0, colours.text), 4.0, 3.0));
-    }
     for (ray, ends) in places.windows(2).enumerate() {
         let stroke = match ray == at {
             true => Stroke::new(2.5, colours.accent),

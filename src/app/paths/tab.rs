@@ -20,7 +20,7 @@ impl Paths {
                 ui,
                 match &fault {
                     Some(fault) => fault,
-                    None if self.is_waiting => "Recording paths\u{2026}",
+                    None if self.answers.is_open() => "Recording paths\u{2026}",
                     None => "Point at the picture and press T.",
                 },
             );

@@ -1,7 +1,7 @@
 //! What a drag does to a sphere, and where a new sphere goes.
 
-use crate::app::model::edit::Body;
-use crate::scene::{Camera, Material, Pick, Scene, Sphere};
+use crate::app::model::Body;
+use crate::scene::{Camera, Material, Pick};
 use glam::DVec3;
 
 /// A sphere never becomes larger than this share of the distance from the eye to its centre, so that the eye stays
@@ -16,12 +16,6 @@ const FAR: f64 = 8.0;
 
 /// The radius of a new sphere as a share of the picture's height at its distance.
 const NEW_SHARE: f64 = 0.09;
-
-/// How far from its original a copy of a sphere is, in radii.
-const COPY_RADII: f64 = 2.2;
-
-/// Spheres that overlap by no more than this share of the radius merely touch.
-const OVERLAP: f64 = 0.05;
 
 /// What a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,30 +98,6 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
     }
 }
 
-/// From a sphere to a place for its copy: beside it, where it is seen and touches no other sphere; above it if there is no
-/// such place.
-pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
-    let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
-    let (radius, basis) = (original.radius, camera.basis());
-    let overlaps = |center: DVec3, other: &Sphere| {
-        center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
-    };
-    // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
-    let is_free = |center: DVec3| {
-        let is_obstacle = |other: &Sphere| overlaps(center, other) && !overlaps(original.center, other);
-        !scene.spheres.iter().any(is_obstacle)
-    };
-    let (right, up, back) = (basis.u, basis.v, basis.w);
-    let directions = [right, -right, up, right + up, up - right, right - back, -right - back, back];
-    let places = directions.map(|direction| COPY_RADII * radius * direction.normalize());
-    let is_seen = |center: DVec3| {
-        let place = camera.place_of(center, aspect);
-        place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)))
-    };
-    let is_good = |by: &&DVec3| is_free(original.center + **by) && is_seen(original.center + **by);
-    *places.iter().find(is_good).unwrap_or(&places[2])
-}
-
 /// Rounds a positive number to two digits.
 fn two_digits(value: f64) -> f64 {
     let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
@@ -175,22 +145,5 @@ mod tests {
             assert_eq!(to(along) != BODY, is_moved, "{along}");
         }
         assert!((to(28.2).center.y + 0.2).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_new_sphere_and_a_copy_touch_nothing_else() {
-        let mut scene = Scene::default();
-        scene.add_sphere(DVec3::new(0.0, -100.5, -3.0), 100.0, 0);
-        let hit = scene.pick(DVec3::ZERO, Camera::BOOK.direction_through([0.5, 0.8], 1.5));
-        let lying = new_body(hit, &Camera::BOOK, 1.5, [0.5, 0.8]);
-        let gap = lying.center.distance(scene.spheres[0].center) - 100.0 - lying.radius;
-        assert!(gap.abs() < 1e-9 && lying.radius > 0.01, "{lying:?}");
-        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
-        for direction in [DVec3::X, DVec3::NEG_X, DVec3::Y] {
-            let by = to_copy(&scene, &Camera::BOOK, 1.5, 1);
-            assert!((by / (0.5 * COPY_RADII)).distance(direction) < 1e-12, "{direction}: {by}");
-            scene.add_sphere(scene.spheres[1].center + direction, 0.5, 0);
-        }
-        assert_eq!(to_copy(&scene, &Camera::BOOK, 1.5, 99), DVec3::ZERO);
     }
 }

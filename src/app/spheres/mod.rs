@@ -3,10 +3,7 @@
 pub mod grip;
 pub mod silhouette;
 
-use super::model::Model;
-use super::model::checked::CheckedScene;
-use super::model::document::Document;
-use super::model::edit::{Body, Edit};
+use super::model::{Body, CheckedScene, Document, Edit, Model};
 use crate::job::render::TRACING_BYTES_PER_SPHERE;
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::system::memory;

@@ -1,6 +1,5 @@
 //! The viewport: the picture, and mouse input on it.
 
-mod axes;
 mod moving;
 pub mod paint;
 mod placement;
@@ -10,11 +9,10 @@ pub use paint::{Pictures, SecondPicture};
 pub use placement::Placement;
 
 use super::command::Command;
+use super::dock::MENU;
 use super::facts::Facts;
 use super::menu;
-use super::model::document::Document;
-use super::model::edit::Edit;
-use super::model::view::Mode;
+use super::model::{Document, Edit, Mode};
 use super::navigation;
 use super::spheres::Selected;
 use super::widgets::compact;
@@ -23,16 +21,12 @@ use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense,
 use moving::Moving;
 use placement::{Zoom, whole_pixels};
 use selection::Selection;
-use std::time::{Duration, Instant};
 
 /// How close the pointer must be to the wipe's divider to grab it, in points.
 const GRIP: f32 = 12.0;
 
 /// Space around the picture, in points.
 const MARGIN: f32 = 8.0;
-
-/// How long the axes stay after the camera has turned.
-const AXES_STAY: Duration = Duration::from_millis(500);
 
 /// The state of the viewport.
 #[derive(Default)]
@@ -50,8 +44,6 @@ pub struct Viewport {
     selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
-    /// When the camera was turned last.
-    turned: Option<Instant>,
 }
 
 /// The state that the viewport may change.
@@ -70,8 +62,6 @@ pub struct Touch {
     pub is_move: bool,
     /// The camera would have moved, but the stage traces no rays.
     pub is_refused: bool,
-    /// The camera was dragged around a point.
-    pub is_orbit: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
@@ -121,7 +111,6 @@ impl Viewport {
         let rect = self.place(ui, room, facts);
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = view.mode() == Some(Mode::Wipe);
-        let before = *camera;
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
         if is_kept && !is_held {
             moving::move_picture(ui, &response, &mut self.placement);
@@ -135,9 +124,6 @@ impl Viewport {
         } else {
             self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
             self.handle_click(ui, &response, live, camera, &mut touch);
-        }
-        if touch.is_move && camera.basis().w != before.basis().w {
-            self.turned = Some(Instant::now());
         }
         let document = match is_kept {
             true => facts.shown().clone(),
@@ -165,9 +151,6 @@ impl Viewport {
             // The entries mean the pixel where the menu was opened.
             touch.hovered = self.menu_at;
         }
-        if has_rays && !is_kept && facts.model.presentation.is_none() && self.has_axes(ui, facts) {
-            axes::ui(ui, room, (camera, live), commands, &mut touch);
-        }
         paint::paint_drop(ui, room);
         touch
     }
@@ -191,15 +174,6 @@ impl Viewport {
         (self.room, self.room_pixels) = (Some(room), whole_pixels(inner, scale));
         let [width, height] = facts.shown().size().map(|along| along as f32);
         self.placement.place(inner, vec2(width, height), scale)
-    }
-
-    /// Whether the axes are shown: always if the user wants that, otherwise while the camera turns and a little longer.
-    fn has_axes(&self, ui: &Ui, facts: &Facts) -> bool {
-        let left = self.turned.and_then(|at| AXES_STAY.checked_sub(at.elapsed()));
-        if let Some(left) = left {
-            ui.ctx().request_repaint_after(left);
-        }
-        facts.model.remembered.has_axes || left.is_some()
     }
 
     fn handle_divider(&mut self, ui: &Ui, response: &Response, is_wipe: bool, divider: &mut f32) -> bool {
@@ -275,19 +249,11 @@ fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     ui.set_width(menu::MENU_WIDTH);
     let is_kept = facts.model.view.kept.looked().is_some();
     let of_sphere: &[Command] = match facts.model.selected {
-        Some(_) if !is_kept => &[C::LookAtSphere, C::FocusSphere, C::DuplicateSphere, C::DeleteSphere],
+        Some(_) if !is_kept => &[C::FocusSphere, C::DuplicateSphere, C::DeleteSphere],
         _ => &[],
     };
     let of_picture: &[Command] = match is_kept {
-        true => &[
-            C::LookLive,
-            C::KeptWipe,
-            C::KeptDifference,
-            C::OnlyNoise,
-            C::GoOnFromKept,
-            C::Save,
-            C::DeleteKept,
-        ],
+        true => &MENU,
         false => &[C::ListPaths, C::CopyPicture, C::Keep],
     };
     for command in of_sphere {

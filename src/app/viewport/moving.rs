@@ -2,7 +2,7 @@
 
 use super::placement::Placement;
 use super::{Touch, place_at, point_at};
-use crate::app::model::document::Document;
+use crate::app::model::Document;
 use crate::app::navigation;
 use crate::scene::Camera;
 use eframe::egui::{Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, Ui, Vec2};
@@ -38,7 +38,7 @@ impl Moving {
             let scroll = input.smooth_scroll_delta().y;
             (input.modifiers, scroll, input.zoom_delta(), input.pointer.press_origin())
         });
-        let (rect, delta, up) = (placement.rect(), response.drag_delta(), scene_up(document));
+        let (rect, delta) = (placement.rect(), response.drag_delta());
         let point = |camera: &Camera, at: Pos2| {
             let pick = rect.contains(at).then(|| document.pick(camera, place_at(rect, at)));
             Some(pick??.point)
@@ -62,7 +62,7 @@ impl Moving {
             moved = orbited(camera, pivot, delta, document);
         } else if response.dragged_by(PointerButton::Secondary) && delta != Vec2::ZERO {
             let [right, down] = [delta.x, delta.y].map(|points| f64::from(points) * TURN_PER_POINT);
-            moved = navigation::look(&navigation::upright(&moved, moved.look_from, up), right, -down);
+            moved = navigation::look(&moved, right, -down);
         }
         if let Some(pointer) = response.hover_pos() {
             if zoom != 1.0 {
@@ -80,7 +80,7 @@ impl Moving {
             touch.is_refused |= moved != *camera;
         } else if moved != *camera {
             *camera = moved;
-            (touch.is_move, touch.is_orbit) = (true, is_primary);
+            touch.is_move = true;
         }
     }
 
@@ -95,19 +95,13 @@ impl Moving {
     }
 }
 
-/// What is up in the scene: the camera's own up direction may be that of a view from above.
-fn scene_up(document: &Document) -> DVec3 {
-    document.origin.recipe.camera.vup
-}
-
 /// The camera after a drag by so many points about `pivot`.
 pub(super) fn orbited(camera: &Camera, pivot: DVec3, drag: Vec2, document: &Document) -> Camera {
     if drag == Vec2::ZERO {
         return *camera;
     }
     let [right, down] = [drag.x, drag.y].map(|points| f64::from(points) * TURN_PER_POINT);
-    let upright = navigation::upright(camera, pivot, scene_up(document));
-    navigation::orbit_above_ground(&upright, pivot, right, UP_SHARE * down, document.scene())
+    navigation::orbit_above_ground(camera, pivot, right, UP_SHARE * down, document.scene())
 }
 
 /// Moves and zooms the picture where its camera stays, because it was kept.

@@ -2,9 +2,7 @@
 
 use super::placement::Placement;
 use crate::app::facts::Facts;
-use crate::app::model::document::Document;
-use crate::app::model::show::Show;
-use crate::app::model::view::Mode;
+use crate::app::model::{Document, Mode, Show};
 use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
@@ -12,6 +10,7 @@ use crate::app::theme;
 use crate::app::widgets::{Sign, paint_sign};
 use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
+use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
     vec2,
@@ -40,8 +39,8 @@ pub struct Pictures<'a> {
     pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
-    /// The titles of the two pictures of a comparison, the other one first, each from the longest to the shortest.
-    pub titles: [Vec<String>; 2],
+    /// The titles of the two pictures of a comparison, the other one first.
+    pub titles: [String; 2],
 }
 
 /// The picture at the other side of a wipe.
@@ -84,7 +83,7 @@ pub(super) fn paint(
         values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
-    let [theirs, mine] = titles.each_ref().map(Vec::as_slice);
+    let [theirs, mine] = &titles;
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some(second)) => {
             let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
@@ -96,8 +95,8 @@ pub(super) fn paint(
             title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
         }
         (Some(Mode::Difference), _) => {
-            let whole: Vec<_> = theirs.iter().map(|title| format!("Difference from {title}")).collect();
-            title(ui, &painter, corners, Align2::LEFT_TOP, &whole);
+            let text = format!("Difference from {theirs}");
+            title(ui, &painter, corners, Align2::LEFT_TOP, &text);
         }
         _ => {}
     }
@@ -107,7 +106,7 @@ pub(super) fn paint(
         paint_scale(ui, &painter, corners, &scale);
     } else if view.tone.exposure != 0.0 && view.show() == Show::Picture {
         let text = format!("Exposure {:+.1}", view.tone.exposure).replace('-', "\u{2212}");
-        title(ui, &painter, corners, Align2::LEFT_BOTTOM, &[text]);
+        title(ui, &painter, corners, Align2::LEFT_BOTTOM, &text);
     }
     if !has_film {
         let text = match (&facts.invalid, &facts.status.phase) {
@@ -169,35 +168,24 @@ fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
     }
 }
 
-/// The longest of these titles that has room in a corner of the area; none if none has.
-pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, titles: &[String]) {
+/// A title in a corner of the area, cut if it has no room.
+pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str) {
     let area = area.shrink(CORNER);
-    let at = corner.pos_in_rect(&area);
-    if let Some(text) =
-        titles.iter().find(|text| plate(ui, painter, at, corner, text).0.width() <= area.width())
-    {
-        label(ui, painter, at, corner, text);
-    }
-}
-
-/// The place of words on a plate, and the words.
-fn plate(
-    ui: &Ui,
-    painter: &Painter,
-    at: Pos2,
-    anchor: Align2,
-    text: &str,
-) -> (Rect, std::sync::Arc<egui::Galley>) {
-    let font = TextStyle::Small.resolve(ui.style());
-    let pad = vec2(0.65, 0.35) * font.size;
-    let galley = painter.layout_no_wrap(text.to_owned(), font, ui.visuals().strong_text_color());
-    (anchor.anchor_size(at, galley.size() + 2.0 * pad), galley)
+    plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
 }
 
 /// Words on a plate, readable on any picture and within the painter's area.
 pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
-    let (rect, galley) = plate(ui, painter, at, anchor, text);
-    let clip = painter.clip_rect();
+    plate(ui, painter, at, anchor, text, f32::INFINITY);
+}
+
+fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let pad = vec2(0.65, 0.35) * font.size;
+    let mut job = LayoutJob::simple_singleline(text.to_owned(), font, ui.visuals().strong_text_color());
+    job.wrap = TextWrapping::truncate_at_width((width - 2.0 * pad.x).max(0.0));
+    let galley = painter.layout_job(job);
+    let (rect, clip) = (anchor.anchor_size(at, galley.size() + 2.0 * pad), painter.clip_rect());
     let inwards = (clip.min - rect.min).max(egui::Vec2::ZERO) - (rect.max - clip.max).max(egui::Vec2::ZERO);
     let rect = rect.translate(inwards);
     let fill = match ui.visuals().dark_mode {

@@ -2,8 +2,7 @@
 
 use super::paint::label;
 use super::{place_at, point_at};
-use crate::app::model::document::Document;
-use crate::app::model::edit::{Body, Edit};
+use crate::app::model::{Body, Document, Edit};
 use crate::app::spheres::Selected;
 use crate::app::spheres::grip::{Grip, Held};
 use crate::app::spheres::silhouette::Outline;

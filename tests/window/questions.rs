@@ -1,0 +1,195 @@
+//! What the tests ask of a window.
+
+use eframe::egui;
+use weekender::app::{Command, Document, Remembered, Show, Window};
+use weekender::progressive::Status;
+
+pub trait Ask {
+    fn shown_document(&self) -> &Document;
+
+    fn document_mut(&mut self) -> &mut Document;
+
+    fn status(&self) -> &Status;
+
+    fn remembered_mut(&mut self) -> &mut Remembered;
+
+    /// Writes the companion to this folder.
+    fn write_companion_to(&mut self, folder: &std::path::Path);
+
+    /// The messages on the screen, oldest first.
+    fn messages(&self) -> Vec<String>;
+
+    fn show(&self) -> Show;
+
+    /// Samples per pixel of the picture on the screen, and its divisor.
+    fn shown(&self) -> Option<(u64, u32)>;
+
+    /// A pixel as it is on the screen.
+    fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]>;
+
+    /// The picture on the screen shows the document.
+    fn is_up_to_date(&self) -> bool;
+
+    /// The kept pictures by name, with their samples per pixel.
+    fn kept(&self) -> Vec<(&str, u64)>;
+
+    /// The place of the kept picture that is shown.
+    fn looked(&self) -> Option<usize>;
+
+    /// The two sentences of the answer to "Only noise?".
+    fn only_noise(&self) -> Option<Result<(&str, &str), &str>>;
+
+    fn disabled_reason(&self, command: Command) -> Option<String>;
+
+    fn performed(&self) -> Option<Command>;
+
+    fn has_dialog(&self) -> bool;
+
+    fn is_comparing(&self) -> bool;
+
+    fn has_other_picture(&self) -> bool;
+
+    fn divider(&self) -> f32;
+
+    fn selected(&self) -> Option<usize>;
+
+    /// Samples per pixel of the layer that is shown.
+    fn layer_samples(&self) -> u64;
+
+    fn picture_rect(&self) -> egui::Rect;
+
+    /// The pixel that the panel describes, and its linear radiance.
+    fn inspected(&self) -> Option<([u32; 2], [f64; 3])>;
+
+    fn is_presenting(&self) -> bool;
+
+    fn has_sight(&self) -> bool;
+
+    /// The path and the point of it that are explained, counted from 1, and how many points it has.
+    fn explained_point(&self) -> Option<[usize; 3]>;
+
+    fn listed_paths(&self) -> usize;
+
+    /// The verdict about the picture that was checked.
+    fn checked(&self) -> Option<&str>;
+
+    fn is_paused(&self) -> bool;
+}
+
+impl Ask for Window {
+    fn shown_document(&self) -> &Document {
+        &self.model.document
+    }
+
+    fn document_mut(&mut self) -> &mut Document {
+        &mut self.model.document
+    }
+
+    fn status(&self) -> &Status {
+        self.tracing.main.status()
+    }
+
+    fn remembered_mut(&mut self) -> &mut Remembered {
+        &mut self.model.remembered
+    }
+
+    fn write_companion_to(&mut self, folder: &std::path::Path) {
+        self.files.companion = Some(folder.to_owned());
+    }
+
+    fn messages(&self) -> Vec<String> {
+        self.shell.toasts.texts().map(str::to_owned).collect()
+    }
+
+    fn show(&self) -> Show {
+        self.model.view.show()
+    }
+
+    fn shown(&self) -> Option<(u64, u32)> {
+        self.tracing.main.shown().map(|shown| (shown.samples, shown.divisor))
+    }
+
+    fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
+        self.display.shown(&self.model, &self.tracing).and_then(|shown| shown.texture.colour(at))
+    }
+
+    fn is_up_to_date(&self) -> bool {
+        self.tracing.main.shown().is_some_and(|shown| shown.document.has_same_film(self.shown_document()))
+    }
+
+    fn kept(&self) -> Vec<(&str, u64)> {
+        self.model.view.kept.iter().map(|named| (named.name.as_str(), named.kept.samples())).collect()
+    }
+
+    fn looked(&self) -> Option<usize> {
+        self.model.view.kept.looked()
+    }
+
+    fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
+        self.display.kept.verdict.words()
+    }
+
+    fn disabled_reason(&self, command: Command) -> Option<String> {
+        self.facts().disabled_reason(command)
+    }
+
+    fn performed(&self) -> Option<Command> {
+        self.shell.performed
+    }
+
+    fn has_dialog(&self) -> bool {
+        self.shell.dialogs.is_open()
+    }
+
+    fn is_comparing(&self) -> bool {
+        self.model.view.mode().is_some()
+    }
+
+    fn has_other_picture(&self) -> bool {
+        self.tracing.second.has_picture(self.shown_document(), &self.model.view)
+    }
+
+    fn divider(&self) -> f32 {
+        self.model.view.divider
+    }
+
+    fn selected(&self) -> Option<usize> {
+        self.model.selected
+    }
+
+    fn layer_samples(&self) -> u64 {
+        self.show().layer().map_or(0, |layer| self.display.layers.samples(layer))
+    }
+
+    fn picture_rect(&self) -> egui::Rect {
+        self.display.viewport.placement.rect()
+    }
+
+    fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
+        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
+    }
+
+    fn is_presenting(&self) -> bool {
+        self.model.presentation.is_some()
+    }
+
+    fn has_sight(&self) -> bool {
+        self.display.sight.is_some()
+    }
+
+    fn explained_point(&self) -> Option<[usize; 3]> {
+        self.tools.paths.position()
+    }
+
+    fn listed_paths(&self) -> usize {
+        self.tools.paths.len()
+    }
+
+    fn checked(&self) -> Option<&str> {
+        self.tools.check.answer().map(|answer| answer.title.as_str())
+    }
+
+    fn is_paused(&self) -> bool {
+        self.model.is_paused
+    }
+}
