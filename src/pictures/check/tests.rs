@@ -285,7 +285,7 @@ fn answer_covers_damage_shape_and_mistake() {
     let answer = |size, damages: &[Damage], finding: &Finding| {
         finding.answer(&Mine { damages: damages.to_vec(), ..picture_of(Vec::new(), size) })
     };
-    let finding = Finding { stage, right: right(true), mistake: None };
+    let finding = Finding { stage, right: right(true), mistake: None, alike: None };
     let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
     let torn = answer([40, 20], &[damage.clone(), damage.clone()], &finding);
     assert_eq!((torn.kind, torn.title.as_str(), torn.damages.len()), (AnswerKind::Mistake, "It is torn", 1));
@@ -296,13 +296,15 @@ fn answer_covers_damage_shape_and_mistake() {
     assert!(square.evidence[0].contains("square"));
     let hypothesis = mistake("swapped-channels").pictures(&stage.recipe()).remove(0);
     let found = Compared { hypothesis, differing: 0.001, ..right(false) };
-    let likely = answer([40, 20], &[], &Finding { stage, right: right(false), mistake: Some(found) });
+    let likely =
+        answer([40, 20], &[], &Finding { stage, right: right(false), mistake: Some(found), alike: None });
     assert_eq!(likely.kind, AnswerKind::LikelyMistake);
     assert!(likely.title.ends_with("swapped, most likely"), "{}", likely.title);
     let [seen, ours, with] = likely.evidence.as_slice() else { panic!("{:?}", likely.evidence) };
     assert!(seen.contains("blue, green, red") && ours.contains("25 %") && ours.contains("column 3, row 4"));
     assert!(with.contains("less than 1 %"), "{with}");
-    let unknown = answer([40, 20], &[damage], &Finding { stage, right: right(false), mistake: None });
+    let unknown =
+        answer([40, 20], &[damage], &Finding { stage, right: right(false), mistake: None, alike: None });
     assert_eq!(
         (unknown.kind, unknown.verdict(), unknown.damages.len()),
         (AnswerKind::Unknown, Verdict::Different, 1)
@@ -317,7 +319,7 @@ fn rough_difference_is_rms_of_channels() {
     let of = |x: u32, y: u32| bytes[(2 * y + x) as usize];
     let (mine, right) = compared([2, 2], Transfer::LinearAboveGamma2, of, |_, _| [0.25; 3]);
     let stage = Stage::find("sky").unwrap();
-    let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None });
+    let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None, alike: None });
     // The upper row is linear, the lower the square root.
     assert_eq!((shown, ours), (bytes.to_vec(), vec![[64; 3], [64; 3], [128; 3], [128; 3]]));
     let colour = |squares: f64| HeatScale::ERROR.colour((squares / 3.0).sqrt() / 255.0);
