@@ -135,12 +135,8 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{CheckedScene, Origin, Source};
-    use crate::scene::animation::Keyframe;
-
+    use crate::app::model::CheckedScene;
     use crate::app::tests::{dressed, facts_of};
-    use crate::job::recipe::Recipe;
-
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
@@ -174,22 +170,5 @@ mod tests {
         document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
         harness.run_steps(3);
         assert_ne!(shown(&harness), before);
-    }
-
-    #[test]
-    fn a_scene_with_keyframes_tells_how_its_animation_is_made() {
-        let mut recipe = Recipe::builtin("three-spheres").unwrap();
-        let source = Source::File("/of/mine.toml".into());
-        let mut harness = panel("--stage sky --size 32x18");
-        for (frames, is_shown) in [(Vec::new(), false), (vec![0, 20], true)] {
-            recipe.keyframes =
-                frames.iter().map(|frame| Keyframe { frame: *frame, camera: recipe.camera }).collect();
-            let document = Document::new(Origin::new(recipe.clone(), source.clone()));
-            harness.state_mut().facts.model.document = document;
-            harness.run_steps(3);
-            for words in ["Animation", "21 frames along", "--frames=0..21"] {
-                assert_eq!(harness.query_by_label_contains(words).is_some(), is_shown, "{words}");
-            }
-        }
     }
 }

@@ -23,7 +23,7 @@ impl Document {
             EndReason::NoiseTarget => {
                 let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
                 let halves = std::iter::successors(stop.noise, |noise| Some(noise / 2.0));
-                let next = halves.take_while(|noise| *noise > 1e-7).find(|noise| *noise < 0.55 * reached);
+                let next = halves.take_while(|noise| *noise > 1e-6).find(|noise| *noise < 0.55 * reached);
                 next.map(|noise| Stop { noise: Some(noise), ..stop })
             }
             EndReason::Samples => {
