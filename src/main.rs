@@ -4,8 +4,7 @@
 
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
-use weekender::cli::about::Build;
-use weekender::cli::{self, Request};
+use weekender::cli::{self, Request, terminal};
 use weekender::measure::{bench, report, stress};
 use weekender::page::{companion, gallery};
 use weekender::pictures::{check, compare, diff};
@@ -13,24 +12,28 @@ use weekender::system::failure::Failure;
 use weekender::system::{interrupt, journal};
 
 /// Here, and not in the library, so that a commit does not compile the library again.
-const BUILD: Build = Build {
-    commit: git_version::git_version!(
-        args = ["--always", "--dirty=+", "--abbrev=12", "--exclude=*"],
-        fallback = ""
-    ),
-};
+const COMMIT: &str = git_version::git_version!(
+    args = ["--always", "--dirty=+", "--abbrev=12", "--exclude=*"],
+    fallback = "commit unknown"
+);
+
+/// Version, commit (with a `+` if files were changed) and target.
+fn build() -> String {
+    let target = current_platform::CURRENT_PLATFORM;
+    format!("weekender {} ({COMMIT}, {target})", env!("CARGO_PKG_VERSION"))
+}
 
 fn main() -> ExitCode {
     interrupt::survive_file_size_limit();
-    journal::watched(BUILD.line(), || run().unwrap_or_else(|failure| failure.report()))
+    journal::watched(build(), || run().unwrap_or_else(|failure| failure.report()))
 }
 
 fn run() -> Result<ExitCode, Failure> {
     journal::start(cli::log_file(wild::args_os()).as_deref()).map_err(Failure::input)?;
-    log::info!("{}", BUILD.line());
+    log::info!("{}", build());
     match cli::parse(wild::args_os())? {
-        Request::Version { is_verbose } => {
-            BUILD.print(is_verbose).map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
+        Request::Version => {
+            terminal::print(&(build() + "\n")).map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
         }
         #[cfg(feature = "window")]
         Request::Window(options) => weekender::app::run(*options).map_err(Failure::Input),

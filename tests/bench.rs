@@ -100,23 +100,6 @@ fn baseline_is_skipped_without_compiler() {
     assert!(table.contains("C89, cc -O2"), "{table}");
 }
 
-#[test]
-fn fields_are_measured_and_drawn() {
-    let directory = tempfile::tempdir().unwrap();
-    tiny(directory.path(), &["--scale", "100..1000", "--json", "s.json", "--plot", "s.svg"]);
-    let read = |name: &str| std::fs::read_to_string(directory.path().join(name)).unwrap();
-    let report: Value = serde_json::from_str(&read("s.json")).unwrap();
-    let rows = report["scale"].as_array().unwrap();
-    assert_eq!(rows.iter().map(|row| number(row, "spheres")).collect::<Vec<_>>(), [100.0, 300.0, 1000.0]);
-    for row in rows {
-        check_spread(&row["paths_per_second"]);
-        // A shading record of 64 bytes, a centre with a radius of 16, a number of 4, and a share of the hierarchy.
-        assert!((84.0..200.0).contains(&number(row, "table_bytes_per_sphere")), "{row}");
-        assert!(number(row, "build_seconds") >= number(row, "hierarchy_seconds"));
-    }
-    assert!(read("s.svg").contains("million paths per second"));
-}
-
 fn features(directory: &Path, arguments: &[&str]) -> Value {
     let flags = ["--features", "--runs", "2", "--size", "32x18", "--run-limit", "0.002", "--json", "-"];
     let output = bench(directory, &[&flags, arguments].concat());
@@ -159,13 +142,9 @@ fn measures_everything_by_default() {
     let directory = tempfile::tempdir().unwrap();
     let report = features(directory.path(), &["--samples", "2"]);
     let rows = report["features"][0]["rows"].as_array().unwrap();
-    let names = |is_stage: bool| -> Vec<&str> {
-        let group = rows.iter().filter(|row| row["is_stage"] == is_stage);
-        group.map(|row| row["name"].as_str().unwrap()).collect()
-    };
-    assert_eq!(names(true), Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>());
     // Every other built-in scene is a stage's picture.
-    assert_eq!(names(false), ["field"]);
+    let expected = Stage::ALL.iter().map(|stage| stage.id).chain(["field"]);
+    assert!(rows.iter().map(|row| row["name"].as_str().unwrap()).eq(expected));
     for row in rows {
         assert_eq!(row["same_bits"], true, "{row}");
     }
@@ -173,17 +152,11 @@ fn measures_everything_by_default() {
 
 #[test]
 fn bad_flags_fail_early() {
-    let cases: [(&[&str], &str); 10] = [
-        (&["--features", "--scale", "10..20"], "--scale"),
-        (&["--features", "--plot", "chart.svg"], "--plot"),
+    let cases: [(&[&str], &str); 4] = [
         (&["--scene", "no-such"], "no-such"),
-        (&["--scale", "5..1"], "A at most B"),
-        (&["--scale", "10..20", "--scene", "book"], "--scene"),
         (&["--isa", "mmx"], "sse4.2"),
-        (&["--plot", "chart.jpg"], ".png or .svg"),
         (&["--runs", "0"], "from 1 to 1000"),
         (&["--json", "no/such/place.json"], "no/such"),
-        (&["--json", "x.svg", "--plot", "x.svg"], "another name"),
     ];
     for (arguments, part) in cases {
         let directory = tempfile::tempdir().unwrap();

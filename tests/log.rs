@@ -106,23 +106,14 @@ fn every_subcommand_can_write_a_log() {
 }
 
 #[test]
-fn the_version_tells_what_a_report_of_a_fault_needs() {
+fn the_version_names_the_build() {
     let directory = tempfile::tempdir().unwrap();
-    let version = format!("weekender {}\n", env!("CARGO_PKG_VERSION"));
     for flag in ["--version", "-V"] {
         let output = program(directory.path(), &[flag]).output().unwrap();
-        assert_eq!((output.status.code(), said(&output)), (Some(0), [version.clone(), String::new()]));
+        let [text, _] = said(&output);
+        let start = concat!("weekender ", env!("CARGO_PKG_VERSION"), " (");
+        assert!(output.status.success() && text.starts_with(start) && text.ends_with(")\n"), "{text}");
     }
-    let output = program(directory.path(), &["--version", "--verbose"]).output().unwrap();
-    let [text, _] = said(&output);
-    assert!(output.status.success() && text.starts_with(&version), "{text}");
-    for line in ["commit", "target", "window", "allocator", "instructions", "film files", "adapters"] {
-        assert!(text.lines().any(|found| found.starts_with(line)), "{line} is not in {text}");
-    }
-    let window = if cfg!(feature = "window") { "window        yes" } else { "window        no" };
-    assert!(text.contains(window), "{text}");
-    let output = program(directory.path(), &["--verbose"]).output().unwrap();
-    assert!(output.status.code() == Some(2) && said(&output)[1].contains("--version"), "{output:?}");
 }
 
 #[test]

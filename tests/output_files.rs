@@ -106,8 +106,7 @@ fn descriptions_are_read_back() {
     for (case, description) in
         [description(), foreign, latin, mixed, large, Description::new("")].iter().enumerate()
     {
-        // A PFM has no place for a description.
-        for format in OutputFormat::ALL.into_iter().filter(|format| *format != OutputFormat::Pfm) {
+        for format in [OutputFormat::Png, OutputFormat::Exr] {
             let path = directory.path().join(format!("a{}", format.ending()));
             write_image(&path, &film(), Transfer::Gamma2, description).unwrap();
             let read = read_description(&path).unwrap();
@@ -128,15 +127,13 @@ fn descriptions_are_read_back() {
 fn a_picture_holds_a_long_recipe() {
     let directory = tempfile::tempdir().unwrap();
     let recipe = format!("{}\n", "x".repeat(63)).repeat(1 << 14);
-    for name in ["a.png", "a.ppm"] {
-        let path = directory.path().join(name);
-        let mut description = Description::new(&recipe);
-        description.set(key::SAMPLES, 2);
-        write_image(&path, &film(), Transfer::Gamma2, &description).unwrap();
-        let read = read_description(&path).unwrap();
-        assert!(read.recipe() == recipe, "{name}");
-        assert_eq!(read.get(key::SAMPLES), Some("2"));
-    }
+    let path = directory.path().join("a.png");
+    let mut description = Description::new(&recipe);
+    description.set(key::SAMPLES, 2);
+    write_image(&path, &film(), Transfer::Gamma2, &description).unwrap();
+    let read = read_description(&path).unwrap();
+    assert!(read.recipe() == recipe);
+    assert_eq!(read.get(key::SAMPLES), Some("2"));
 }
 
 #[test]

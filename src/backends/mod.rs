@@ -219,7 +219,6 @@ mod tests {
             is_software,
             storage_binding_limit: 1 << 27,
             buffer_limit: 1 << 28,
-            has_timestamps: false,
             subgroup_size: 32,
             lacks: lacks.map(str::to_owned),
         }

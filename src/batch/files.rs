@@ -3,7 +3,7 @@
 use crate::cli::RenderOptions;
 use crate::denoise::{self, DenoisedError};
 use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
-use crate::job::output::{Forms, OutputFormat, write_image_as};
+use crate::job::output::{OutputFormat, write_image_as};
 use crate::job::recipe::file;
 use crate::job::render::panic_text;
 use crate::job::saved::{Replaced, SavedFilm, rescue};
@@ -145,15 +145,16 @@ impl Files {
                 description.set(key::DENOISED, error.words());
             }
             say(&render.out);
-            let forms = Forms { ppm: render.ppm, format: Some(render.format), ..Forms::default() };
             let transfer = render.job.rules().transfer;
             let write = || match render.format {
                 OutputFormat::Exr => {
                     checkpoint::save_with(&render.out, film, picture, &self.described(film, status))
                         .map_err(|error| error.to_string())
                 }
-                _ => write_image_as(&render.out, picture.unwrap_or(film), transfer, &description, forms)
-                    .map_err(|error| error.to_string()),
+                format => {
+                    write_image_as(&render.out, format, picture.unwrap_or(film), transfer, &description)
+                        .map_err(|error| error.to_string())
+                }
             };
             match caught(&render.out, write) {
                 Ok(()) => written.files.push(render.out.clone()),

@@ -3,19 +3,18 @@
 
 use super::progress::display;
 use super::studio::{Event, Studio};
-use super::summary::Envelope;
-use super::{create_directory, ended};
-use crate::cli::terminal::{Display, print_beside, write_json};
+use super::{ended, write_figures};
+use crate::cli::terminal::{Display, print_beside};
 use crate::cli::{FramesOptions, JsonTarget};
 use crate::film::{Film, key};
-use crate::job::output::{write_animation, write_image};
+use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
-use crate::job::saved::FrameState;
-use crate::progressive::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
+use crate::job::saved::is_whole_frame;
+use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
 use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
-use crate::system::files::{JsonPath, ShownPath, check_writable};
+use crate::system::files::{JsonPath, ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::anyhow;
@@ -24,17 +23,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Renders the missing frames, and makes an animated PNG of all if requested. A signal drops the frame in progress.
+/// Renders the missing frames. A signal drops the frame in progress.
 ///
 /// # Errors
 /// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
 /// [`Failure::Run`] otherwise.
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
-    create_directory(&options.names.directory)?;
-    let animation = options.animation.as_ref().map(|(path, _)| path.as_path());
+    make_directory(&options.names.directory).map_err(Failure::Input)?;
     let first = options.names.path(options.frames.start);
     let json = options.json.as_ref().and_then(JsonTarget::file);
-    for path in [Some(first.as_path()), animation, json].into_iter().flatten() {
+    for path in [Some(first.as_path()), json].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
     options.job.check_memory(1).map_err(Failure::input)?;
@@ -47,7 +45,6 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
         rendered: 0,
         kept: 0,
         rendering: Duration::ZERO,
-        animation: None,
         warnings: Vec::new(),
     };
     let failure = match run.render_all() {
@@ -56,9 +53,8 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     };
     run.display.clear();
     let printed = print_beside(options.json.as_ref(), &format!("{}\n", run.text()));
-    let write = |target| write_json(&Envelope::of(run.json()), target);
-    let figures = options.json.as_ref().map_or(Ok(()), write);
-    ended(failure, printed.and(figures), &interrupt)
+    let figures = printed.and(write_figures(&run.json(), options.json.as_ref()));
+    ended(failure, figures, &interrupt)
 }
 
 /// An animation in progress.
@@ -70,7 +66,6 @@ struct Run<'a> {
     rendered: u32,
     kept: u32,
     rendering: Duration,
-    animation: Option<PathBuf>,
     warnings: Vec<String>,
 }
 
@@ -87,7 +82,7 @@ impl Run<'_> {
             }
             let recipe = self.options.recipe.at_frame(&self.options.path, frame);
             let path = self.options.names.path(frame);
-            if FrameState::of(&path, &recipe, SOFTWARE) == FrameState::Whole {
+            if is_whole_frame(&path, &recipe, SOFTWARE) {
                 log::debug!("kept {}", path.display());
                 self.kept += 1;
                 continue;
@@ -104,7 +99,7 @@ impl Run<'_> {
             self.rendered += 1;
             self.rendering += begin.elapsed();
         }
-        self.assemble().map_err(Failure::Run)
+        Ok(())
     }
 
     /// Renders and writes a frame; `false` after a signal.
@@ -161,19 +156,6 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn assemble(&mut self) -> anyhow::Result<()> {
-        let FramesOptions { recipe, frames, names, command, .. } = self.options;
-        let Some((path, rate)) = &self.options.animation else { return Ok(()) };
-        self.display.announce(frames.len() as u64, || format!("writing {}", path.shown()));
-        let _writing = self.interrupt.while_writing(path.shown());
-        let size = [recipe.settings.width, recipe.settings.height];
-        let files = frames.clone().map(|frame| names.path(frame));
-        write_animation(path, size, *rate, files, &describe_animation(recipe, command))?;
-        log::info!("wrote {}", path.display());
-        self.animation = Some(path.clone());
-        Ok(())
-    }
-
     /// The first and the last finished file. Frames finish in order.
     fn files(&self) -> Option<[PathBuf; 2]> {
         let FramesOptions { frames, names, .. } = self.options;
@@ -200,7 +182,6 @@ impl Run<'_> {
             "directory": JsonPath(names.directory.clone()),
             "first_file": first.map(JsonPath),
             "last_file": last.map(JsonPath),
-            "animation": self.animation.clone().map(JsonPath),
             "warnings": self.warnings,
         })
     }
@@ -216,9 +197,7 @@ impl Run<'_> {
         };
         let files = match self.files() {
             Some([first, last]) if self.done() == frames.len() as u32 => {
-                let animation =
-                    self.animation.as_ref().map_or_else(String::new, |path| format!(", {}", path.shown()));
-                format!("{} to {}{animation}", first.shown(), last.shown())
+                format!("{} to {}", first.shown(), last.shown())
             }
             _ => format!("in {}; run the same command again to continue", names.directory.shown()),
         };

@@ -3,8 +3,7 @@
 use crate::cli::terminal::{print, write_json};
 use crate::cli::{InfoOptions, JsonTarget};
 use crate::film::{CheckpointError, checkpoint, key};
-use crate::job::output::{FrameRate, animation_in};
-use crate::job::plan::{Plan, Work};
+use crate::job::plan::Plan;
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved::Saved;
 use crate::progressive::describe::{counted, seconds};
@@ -18,27 +17,6 @@ use std::process::ExitCode;
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
-
-/// Keys that some kinds of files leave empty.
-const OPTIONAL: [&str; 17] = [
-    "stage",
-    "samples_per_pixel",
-    "sample_ranges",
-    "halves",
-    "rejected_samples",
-    "rmse_estimate",
-    "rmse_deviation",
-    "trace_seconds",
-    "denoised",
-    "backend",
-    "program",
-    "film_version",
-    "sample_version",
-    "frames",
-    "frames_per_second",
-    "parts",
-    "command",
-];
 
 /// Prints what the file says about itself.
 ///
@@ -85,20 +63,12 @@ impl Info {
             "program": text(key::SOFTWARE),
             "command": text(key::COMMAND),
         }));
-        match animation_in(path) {
-            Some((count, rate)) => Ok(info.with(json!({
-                "kind": "animation",
-                "frames": format!("0..{count}"),
-                "frames_per_second": rate.map(FrameRate::per_second),
-            }))),
-            None => info.with_film(path),
-        }
+        info.with_film(path)
     }
 
     fn new(kind: &str, path: &Path, recipe: &Recipe) -> Info {
         let settings = &recipe.settings;
-        let empty = OPTIONAL.into_iter().map(|key| (key.to_owned(), Value::Null)).collect();
-        Info { json: Value::Object(empty), error: None, note: None }.with(json!({
+        let json = json!({
             "schema": SCHEMA,
             "kind": kind,
             "file": path.to_string_lossy(),
@@ -109,7 +79,8 @@ impl Info {
             "max_depth": settings.max_depth,
             "sampler": settings.sampler.name(),
             "seed": settings.seed,
-        }))
+        });
+        Info { json, error: None, note: None }
     }
 
     /// Replaces values by those of `more`.
@@ -122,24 +93,17 @@ impl Info {
 
     fn of_plan(plan: &Plan) -> Info {
         let manifest = &plan.manifest;
-        let info = Info::new("plan", &plan.path, &plan.recipe).with(json!({
+        let [start, end] = manifest.samples;
+        Info::new("plan", &plan.path, &plan.recipe).with(json!({
             "stage": manifest.stage,
             "program": manifest.program,
             "sample_version": manifest.sample_version,
-            "parts": manifest.work.count(),
+            "parts": manifest.parts.len(),
             "command": manifest.command,
-        }));
-        info.with(match &manifest.work {
-            Work::Samples(work) => json!({
-                "samples_per_pixel": work.samples[1] - work.samples[0],
-                "sample_ranges": format!("{}..{}", work.samples[0], work.samples[1]),
-                "halves": plan.job.settings().half_count(),
-            }),
-            Work::Frames(work) => json!({
-                "samples_per_pixel": plan.recipe.samples_per_pixel,
-                "frames": format!("{}..{}", work.frames[0], work.frames[1]),
-            }),
-        })
+            "samples_per_pixel": end - start,
+            "sample_ranges": format!("{start}..{end}"),
+            "halves": plan.job.settings().half_count(),
+        }))
     }
 
     /// Adds what a film says and, if there is memory for its sums, its error.
@@ -185,13 +149,10 @@ impl Info {
             ["scene", "width", "height", "max_depth", "sampler", "seed"]
                 .map(|key| text(key).unwrap_or_default());
         let size = memory::words(number("bytes").unwrap_or_default());
-        let rate = self.json["frames_per_second"].as_f64().map(|rate| (rate * 1e5).round() / 1e5);
         let samples = [
             text("samples_per_pixel").map(|samples| format!("{samples} per pixel")),
             text("sample_ranges").map(|ranges| format!("samples {ranges}")),
-            text("frames").map(|frames| format!("frames {frames}")),
             number("parts").map(|parts| counted(parts, "part")),
-            rate.map(|rate| format!("{rate} frames per second")),
             text("sample_version").map(|version| format!("version {version}")),
             number("rejected_samples").map(|count| counted(count, "rejected sample")),
         ];
@@ -213,39 +174,5 @@ impl Info {
         ];
         let lines = lines.into_iter().filter_map(|(name, value)| Some((name, value?)));
         lines.map(|(name, value)| format!("{name:<8} {}\n", printable(&value))).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::film::{Description, Film};
-    use crate::job::output::{write_animation, write_image};
-
-    #[test]
-    fn animated_png_has_frames_and_a_rate() {
-        let directory = tempfile::tempdir().unwrap();
-        let mut recipe = Recipe::find("three-spheres").unwrap();
-        (recipe.settings.width, recipe.settings.height) = (4, 3);
-        let mut description = Description::new(&file::to_picture_toml(&recipe));
-        description.set(key::SAMPLES, 6);
-        let [still, turn] = ["still.png", "turn.png"].map(|name| directory.path().join(name));
-        let mut film = Film::new(4, 3, 1);
-        film.record(0..1, 0).unwrap();
-        write_image(&still, &film, recipe.rules.transfer, &description).unwrap();
-        let info = Info::of(&still).unwrap();
-        assert_eq!((&info.json["kind"], &info.json["frames"]), (&json!("picture"), &Value::Null));
-        for (rate, words) in [
-            (FrameRate { frames: 30, seconds: 1 }, "30 frames per second"),
-            (FrameRate { frames: 30_000, seconds: 1001 }, "29.97003 frames per second"),
-        ] {
-            write_animation(&turn, [4, 3], rate, vec![still.clone(); 5].into_iter(), &description).unwrap();
-            let info = Info::of(&turn).unwrap();
-            assert_eq!((&info.json["kind"], &info.json["frames"]), (&json!("animation"), &json!("0..5")));
-            assert_eq!(info.json["frames_per_second"], json!(rate.per_second()));
-            let text = info.text(&turn);
-            assert!(text.starts_with("animation ") && text.contains("frames 0..5"), "{text}");
-            assert!(text.contains(words), "{text}");
-        }
     }
 }

@@ -19,7 +19,7 @@ pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
-use crate::cli::terminal::{print, print_beside, write_json};
+use crate::cli::terminal::{self, print, print_beside};
 use crate::cli::{BatchOptions, JsonTarget};
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
@@ -29,11 +29,10 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
-use anyhow::Context;
 use picture::Picture;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use summary::Envelope;
+use summary::SCHEMA;
 
 /// Renders and writes everything that the options ask for.
 ///
@@ -42,51 +41,31 @@ use summary::Envelope;
 /// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
-    let mut pictures = options.renders.iter().map(Picture::lock).collect::<Result<Vec<_>, _>>()?;
-    for picture in &mut pictures {
-        if let Some(path) = &picture.render.resume {
-            picture.resumed = Some(saved::resume(path, &picture.render.job).map_err(Failure::input)?);
-        }
+    let mut picture = Picture::lock(&options.render)?;
+    if let Some(path) = &options.render.resume {
+        picture.resumed = Some(saved::resume(path, &options.render.job).map_err(Failure::input)?);
     }
-    render_all(&options, pictures)
+    render(&options, picture)
 }
 
-/// Renders the pictures, whose files are locked.
-fn render_all(options: &BatchOptions, mut pictures: Vec<Picture>) -> Result<ExitCode, Failure> {
-    pictures.iter_mut().try_for_each(Picture::check)?;
+/// Renders a picture, whose files are locked.
+fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Failure> {
+    picture.check()?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut studio = Studio::open(&options.backend, &interrupt)?;
-    if let (Some(path), [only]) = (&options.save_scene, options.renders.as_slice()) {
-        write_text(path, &file::to_toml(&only.recipe)).map_err(Failure::run)?;
+    if let Some(path) = &options.save_scene {
+        write_text(path, &file::to_toml(&options.render.recipe)).map_err(Failure::run)?;
     }
-    let has_stdout = options.renders.iter().any(|render| render.out == Path::new(STANDARD));
+    let has_stdout = options.render.out == Path::new(STANDARD);
     let beside = if has_stdout { Some(&JsonTarget::StandardOutput) } else { options.json.as_ref() };
-    let mut summaries = Vec::new();
-    let (mut failure, mut printed) = (None, Ok(()));
-    for picture in pictures {
-        let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
-        // Render the pictures even if the figures cannot be printed.
-        printed = printed.and(print_beside(beside, &format!("{summary}\n")));
-        summaries.push(summary.json());
-        failure = outcome.err();
-        if failure.is_some() || interrupt.is_set() {
-            break;
-        }
-    }
-    let figures = printed.and(write_figures(options, summaries));
-    ended(failure, figures, &interrupt)
+    let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
+    let printed = print_beside(beside, &summary.to_string());
+    let figures = printed.and(write_figures(&summary.json(), options.json.as_ref()));
+    ended(outcome.err(), figures, &interrupt)
 }
 
-fn write_figures(options: &BatchOptions, mut summaries: Vec<serde_json::Value>) -> anyhow::Result<()> {
-    let Some(target) = &options.json else { return Ok(()) };
-    let content = match (&options.directory, summaries.pop()) {
-        (None, Some(only)) => only,
-        (_, last) => {
-            summaries.extend(last);
-            serde_json::json!({ "stages": summaries })
-        }
-    };
-    write_json(&Envelope::of(content), target)
+fn write_figures(figures: &serde_json::Value, target: Option<&JsonTarget>) -> anyhow::Result<()> {
+    target.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target))
 }
 
 /// The result of a run. `figures` is the outcome of printing and writing its figures.
@@ -120,23 +99,13 @@ pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
 
 /// Checks everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
-    if let Some(directory) = &options.directory {
-        create_directory(directory)?;
-    }
-    let pictures = options.renders.iter().flat_map(|render| [Some(&render.out), render.checkpoint.as_ref()]);
-    let scene = options.save_scene.as_ref();
-    let json = options.json.as_ref().and_then(JsonTarget::file);
-    for path in pictures.chain([scene]).flatten().map(PathBuf::as_path).chain(json) {
+    let BatchOptions { render, save_scene, json, .. } = options;
+    let files = [Some(&render.out), render.checkpoint.as_ref(), save_scene.as_ref()].into_iter().flatten();
+    for path in files.map(PathBuf::as_path).chain(json.as_ref().and_then(JsonTarget::file)) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
-    options.renders.iter().try_for_each(|render| render.job.check_memory(1)).map_err(Failure::input)
-}
-
-fn create_directory(directory: &Path) -> Result<(), Failure> {
-    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
-    let created = if directory.as_os_str().is_empty() { Ok(()) } else { std::fs::create_dir_all(directory) };
-    created.with_context(context).map_err(Failure::Input)
+    render.job.check_memory(1).map_err(Failure::input)
 }
 
 /// Prints the scenes, stages and devices to choose from.
@@ -176,7 +145,7 @@ mod tests {
 
     /// The options of its picture.
     pub(super) fn options(flags: &[&str]) -> RenderOptions {
-        batch(flags).renders.remove(0)
+        batch(flags).render
     }
 
     #[test]

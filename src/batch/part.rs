@@ -1,16 +1,14 @@
 //! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it continues from the
-//! part's last checkpoint or the existing frames, and ends at once if the part is complete.
+//! part's last checkpoint, and ends at once if the part is complete.
 
 use super::picture::Picture;
 use super::summary::Summary;
-use super::{check_before, frames, render_all, write_figures};
+use super::{check_before, render, write_figures};
 use crate::cli::terminal::print_beside;
-use crate::cli::{
-    BatchOptions, FramesOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths,
-};
+use crate::cli::{BatchOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths};
 use crate::film::CheckpointError;
-use crate::job::output::{OutputFormat, PpmForm};
-use crate::job::plan::{Frames, Part, Plan, Samples, Work};
+use crate::job::output::OutputFormat;
+use crate::job::plan::{Part, Plan};
 use crate::job::saved::{self, OpenError, SavedFilm};
 use crate::progressive::{self, EndReason, Phase, Status};
 use crate::system::console;
@@ -33,52 +31,25 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
     let files: Vec<NamedPath> = files.iter().map(|file| ("the plan", Some(file.as_path()))).collect();
     let json = options.json.as_ref().and_then(JsonTarget::file);
     check_paths(&files, &[("--json", json)]).map_err(Failure::Input)?;
-    match &plan.manifest.work {
-        Work::Samples(work) => render_samples(&plan, work, index, options),
-        Work::Frames(work) => frames::render_frames(frames_of(&plan, work, index, options)),
-    }
+    render_samples(&plan, index, options)
 }
 
-fn frames_of(plan: &Plan, work: &Frames, index: usize, options: PartOptions) -> FramesOptions {
-    FramesOptions {
-        recipe: plan.recipe.clone(),
-        job: plan.job.clone(),
-        stage: plan.stage(),
-        path: work.camera_path(&plan.recipe),
-        frames: work.parts[index].range(),
-        names: plan.frame_names(),
-        animation: None,
-        backend: options.backend,
-        progress: options.progress,
-        json: options.json,
-        command: options.command,
-    }
-}
-
-fn render_samples(
-    plan: &Plan,
-    work: &Samples,
-    index: usize,
-    options: PartOptions,
-) -> Result<ExitCode, Failure> {
-    let part = &work.parts[index];
+fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<ExitCode, Failure> {
+    let part = &plan.manifest.parts[index];
     let ([start, end], path) = (part.samples, plan.beside(&part.file));
-    let render = RenderOptions {
-        recipe: plan.recipe.clone(),
-        job: plan.job.clone(),
-        stage: plan.stage(),
-        plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
-        out: path.clone(),
-        format: OutputFormat::Exr,
-        checkpoint: Some(path.clone()),
-        every: options.every,
-        resume: Some(path.clone()),
-        ppm: PpmForm::Binary,
-        command: options.command,
-    };
     let batch = BatchOptions {
-        renders: vec![render],
-        directory: None,
+        render: RenderOptions {
+            recipe: plan.recipe.clone(),
+            job: plan.job.clone(),
+            stage: plan.stage(),
+            plan: progressive::Plan { first_sample: start, ..super::Studio::plan(end) },
+            out: path.clone(),
+            format: OutputFormat::Exr,
+            checkpoint: Some(path.clone()),
+            every: options.every,
+            resume: Some(path.clone()),
+            command: options.command,
+        },
         save_scene: None,
         backend: options.backend,
         progress: options.progress,
@@ -86,19 +57,18 @@ fn render_samples(
         crashes_at: None,
     };
     check_before(&batch)?;
-    let mut pictures = batch.renders.iter().map(Picture::lock).collect::<Result<Vec<_>, _>>()?;
-    let found = find(&path, plan, part)?;
-    match found {
+    let mut picture = Picture::lock(&batch.render)?;
+    match find(&path, plan, part)? {
         Some(found) if part.missing(found.film.samples()) == 0 => {
             let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
             print_beside(batch.json.as_ref(), &text).map_err(Failure::Run)?;
-            let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found).json());
-            write_figures(&batch, summaries.collect()).map_err(Failure::Run)?;
+            let figures = summary_of_whole(&batch.render, &found).json();
+            write_figures(&figures, batch.json.as_ref()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
         }
         found => {
-            pictures[0].resumed = found;
-            render_all(&batch, pictures)
+            picture.resumed = found;
+            render(&batch, picture)
         }
     }
 }

@@ -177,7 +177,7 @@ mod tests {
         let interrupt = Interrupt::unheard();
         let mut studio =
             Studio::with_factory(Box::new(|_| Ok(Box::new(Failing))), &options.backend, &interrupt);
-        let picture = Picture::lock(&options.renders[0]).unwrap();
+        let picture = Picture::lock(&options.render).unwrap();
         let (_, outcome) = picture.render(&options, &mut studio, &interrupt);
         let failure = outcome.unwrap_err();
         let message = failure.to_string();

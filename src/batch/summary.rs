@@ -6,29 +6,13 @@ use crate::progressive::describe::{counted, seconds};
 use crate::progressive::{Contribution, Phase, Status};
 use crate::system::console::printable;
 use crate::system::files::{JsonPath, ShownPath};
-use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
-const SCHEMA: u32 = 1;
-
-/// The start of all figures in JSON.
-#[derive(Serialize)]
-pub(super) struct Envelope<T: Serialize> {
-    schema: u32,
-    version: &'static str,
-    #[serde(flatten)]
-    content: T,
-}
-
-impl<T: Serialize> Envelope<T> {
-    pub fn of(content: T) -> Self {
-        Envelope { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), content }
-    }
-}
+pub(super) const SCHEMA: u32 = 1;
 
 /// Time and quality of one picture. Times and counts are those of this run; samples per pixel, rejected samples and the
 /// estimates are those of the film, including its earlier samples.

@@ -2,10 +2,9 @@
 
 use super::raw::{ProgressChoice, RawPicture};
 use super::render::RenderFlags;
-use super::values::{JsonTarget, parse_rate, parse_turn, range};
+use super::values::{JsonTarget, parse_turn, range};
 use super::{Line, check_paths, sources};
 use crate::backends::BackendChoice;
-use crate::job::output::FrameRate;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
 use crate::scene::animation::{CameraPath, FRAME_LIMIT, FrameNames, Turn};
@@ -16,11 +15,8 @@ use clap::{ArgGroup, Args};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The rate of an animated PNG.
-const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
-
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true))]
+#[command(next_help_heading = "Animation", group = ArgGroup::new("moving").multiple(true).conflicts_with("sample_range"))]
 pub(super) struct AnimationFlags {
     /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
     /// file [default with --turntable: one turn]
@@ -31,19 +27,6 @@ pub(super) struct AnimationFlags {
     #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
           require_equals = true, default_missing_value = "120", group = "moving")]
     turntable: Option<Turn>,
-    /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
-    #[arg(long, value_name = "RATE", value_parser = parse_rate, requires = "moving")]
-    fps: Option<FrameRate>,
-}
-
-/// Frames to render, and how the camera moves.
-pub(super) struct Animation {
-    /// Numbers of the frames, whose cameras are valid.
-    pub frames: Range<u32>,
-    pub path: CameraPath,
-    /// How the camera circles, unless it follows keyframes.
-    pub turntable: Option<Turn>,
-    pub rate: FrameRate,
 }
 
 impl AnimationFlags {
@@ -51,8 +34,8 @@ impl AnimationFlags {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// The animation of a picture.
-    pub fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<Animation> {
+    /// The frames to render, whose cameras are valid, and how the camera moves.
+    fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<(Range<u32>, CameraPath)> {
         let path = match self.turntable {
             Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
             None if recipe.keyframes.is_empty() => {
@@ -76,8 +59,7 @@ impl AnimationFlags {
         for frame in frames.clone() {
             job.seen_by(path.camera(frame), *job.settings()).with_context(|| format!("frame {frame}"))?;
         }
-        let rate = self.fps.unwrap_or(DEFAULT_RATE);
-        Ok(Animation { frames, path, turntable: self.turntable, rate })
+        Ok((frames, path))
     }
 }
 
@@ -96,8 +78,6 @@ pub struct FramesOptions {
     pub frames: Range<u32>,
     /// The files of the frames.
     pub names: FrameNames,
-    /// The animated PNG to make of them, if any.
-    pub animation: Option<(PathBuf, FrameRate)>,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<JsonTarget>,
@@ -108,23 +88,18 @@ pub struct FramesOptions {
 /// Validates the flags of an animation.
 pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
     let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
-    let Animation { frames, path, rate, .. } = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
+    let (frames, path) = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
     let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
         bail!(
-            "an animation needs --batch and --out: it writes many pictures; name a directory, a pattern such as \
-             turn-####.png, or an animated turn.png"
+            "an animation needs --batch and --out: it writes many pictures; name a directory, or a pattern such as \
+             turn-####.png"
         );
     };
-    let (names, animation) = places(out)?;
-    if flags.animation.fps.is_some() && animation.is_none() {
-        bail!(
-            "--fps needs --out FILE.png: single frames have no rate; give it to the program that makes a film of them"
-        );
-    }
+    let names = names(out)?;
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
     let json = flags.files.json.as_ref().and_then(JsonTarget::file);
-    let mut outputs = vec![("--out", animation.as_deref()), ("--json", json)];
-    outputs.extend(files.iter().map(|file| ("a frame of the animation", Some(file.as_path()))));
+    let frame_files = files.iter().map(|file| ("a frame of the animation", Some(file.as_path())));
+    let outputs: Vec<_> = std::iter::once(("--json", json)).chain(frame_files).collect();
     check_paths(&[("--scene", sources::scene_file(flags.picture.scene.as_deref()))], &outputs)?;
     Ok(FramesOptions {
         recipe: chosen.recipe,
@@ -133,7 +108,6 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
         path,
         frames,
         names,
-        animation: animation.map(|file| (file, rate)),
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
@@ -141,22 +115,17 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
     })
 }
 
-/// The files of the frames, and the animated PNG if `out` is one. Its frames are in a directory beside it.
-fn places(out: &Path) -> Result<(FrameNames, Option<PathBuf>)> {
-    let ending = out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+/// The files of the frames.
+fn names(out: &Path) -> Result<FrameNames> {
     let is_pattern = out.file_name().is_some_and(|name| name.to_string_lossy().contains('#'));
-    match (ending.as_deref(), FrameNames::of_pattern(out)) {
-        _ if out.is_dir() => Ok((FrameNames::in_directory(out), None)),
-        (Some("png"), Some(names)) => Ok((names, None)),
-        (None, _) if !is_pattern => Ok((FrameNames::in_directory(out), None)),
-        (Some("png" | "apng"), _) if !is_pattern => {
-            let mut directory = out.file_stem().unwrap_or_default().to_owned();
-            directory.push("-frames");
-            Ok((FrameNames::in_directory(&out.with_file_name(directory)), Some(out.to_owned())))
-        }
+    let is_png = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    match FrameNames::of_pattern(out) {
+        _ if out.is_dir() => Ok(FrameNames::in_directory(out)),
+        Some(names) if is_png => Ok(names),
+        _ if out.extension().is_none() && !is_pattern => Ok(FrameNames::in_directory(out)),
         _ => bail!(
-            "--out is {}, but an animation is a directory of PNG files, a pattern with a single row of # such as \
-             turn-####.png, or an animated turn.png; it has no film",
+            "--out is {}, but an animation is a directory of PNG files, or a pattern with a single row of # such as \
+             turn-####.png; other programs, such as ffmpeg, make a film of them",
             out.shown()
         ),
     }

@@ -1,17 +1,15 @@
 //! The flags of `weekender bench`.
 
 use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size, whole};
+use super::values::{JsonTarget, Levels, parse_levels, parse_seconds, parse_size, whole};
 use super::{NamedPath, check_paths, sources};
 use crate::job::recipe::Recipe;
-use crate::job::render::{RenderJob, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
-use crate::numbers::chart::ChartFormat;
+use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use anyhow::Result;
 use clap::Args;
-use std::path::PathBuf;
 
 /// Options of `weekender bench`.
 #[derive(Debug, Args)]
@@ -19,12 +17,9 @@ pub struct BenchOptions {
     /// A built-in scene, field:N or a scene file; may be given several times [default: three-spheres and book]
     #[arg(long, value_name = "NAME|FILE.toml")]
     scene: Vec<String>,
-    /// Measure fields of A to B spheres instead, each about three times as large as the one before
-    #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene")]
-    pub scale: Option<Box<[u64]>>,
     /// Measure the gain from leaving out of each kernel the code that its picture does not need, for all stages and
     /// built-in scenes
-    #[arg(long, conflicts_with_all = ["scale", "plot"])]
+    #[arg(long)]
     pub features: bool,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's; with --features, 200 pixels across]
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -59,9 +54,6 @@ pub struct BenchOptions {
     /// Write all runs and figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<JsonTarget>,
-    /// Write a chart as .png or .svg
-    #[arg(long, value_name = "FILE")]
-    pub plot: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -71,8 +63,6 @@ pub struct BenchOptions {
 #[derive(Debug)]
 pub struct BenchScene {
     pub name: String,
-    /// Whether it is a stage of the book.
-    pub is_stage: bool,
     pub job: RenderJob,
     /// Most samples per pixel of a run.
     pub samples: u64,
@@ -89,15 +79,11 @@ const QUICK_PATH_LIMIT: u64 = 3_000_000;
 const FEATURES_WIDTH: u32 = 200;
 
 impl BenchOptions {
-    /// Returns an error if the files conflict or the chart has no known format.
+    /// Returns an error if the JSON would replace a scene file.
     pub(super) fn check(self) -> Result<Self> {
-        if let Some(plot) = &self.plot {
-            ChartFormat::from_path(plot)?;
-        }
         let inputs = self.scene.iter().map(|scene| ("--scene", sources::scene_file(Some(scene))));
         let json = self.json.as_ref().and_then(JsonTarget::file);
-        let outputs = [("--json", json), ("--plot", self.plot.as_deref())];
-        check_paths(&inputs.collect::<Vec<NamedPath>>(), &outputs)?;
+        check_paths(&inputs.collect::<Vec<NamedPath>>(), &[("--json", json)])?;
         Ok(self)
     }
 
@@ -119,19 +105,14 @@ impl BenchOptions {
         })
     }
 
-    /// The scenes to measure; none if fields are measured instead.
+    /// The scenes to measure.
     ///
     /// # Errors
     /// If one is unknown, not valid or too large.
     pub fn scenes(&self) -> Result<Vec<BenchScene>> {
-        if self.scale.is_some() {
-            return Ok(Vec::new());
-        }
         let mut scenes: Vec<BenchScene> = Vec::new();
         if self.features && self.scene.is_empty() {
-            for stage in Stage::ALL {
-                scenes.push(self.scene_of(stage.recipe(), true)?);
-            }
+            scenes = Stage::ALL.iter().map(|stage| self.scene_of(stage.recipe())).collect::<Result<_>>()?;
         }
         let named: Vec<&str> = match self.scene.as_slice() {
             [] if self.features => BuiltinScene::ALL.iter().map(|scene| scene.name).collect(),
@@ -139,7 +120,7 @@ impl BenchOptions {
             named => named.iter().map(String::as_str).collect(),
         };
         for name in named {
-            let scene = self.scene_of(sources::scene(name)?, false)?;
+            let scene = self.scene_of(sources::scene(name)?)?;
             // Some stages show a built-in scene.
             if !self.features || scenes.iter().all(|other| other.job != scene.job) {
                 scenes.push(scene);
@@ -152,18 +133,18 @@ impl BenchOptions {
     ///
     /// # Errors
     /// If it is not valid or too large.
-    pub fn scene_of(&self, recipe: Recipe, is_stage: bool) -> Result<BenchScene> {
+    fn scene_of(&self, recipe: Recipe) -> Result<BenchScene> {
         let samples = self.samples_of(&recipe);
         let mut settings = recipe.settings;
-        let own_size = (settings.width, settings.height);
-        (settings.width, settings.height) = self.size.unwrap_or(match self.features {
-            true => (FEATURES_WIDTH, scaled_height(own_size)),
-            false => own_size,
-        });
+        if let Some((width, height)) = self.size {
+            (settings.width, settings.height) = (width, height);
+        } else if self.features {
+            sources::scale(&mut settings, FEATURES_WIDTH);
+        }
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         let job = RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules)?;
         job.check_memory(2)?;
-        Ok(BenchScene { name: recipe.name, is_stage, job, samples })
+        Ok(BenchScene { name: recipe.name, job, samples })
     }
 
     /// Most samples per pixel of a run.
@@ -180,12 +161,6 @@ impl BenchOptions {
         // Sobol points are best at powers of two.
         if recipe.samples_per_pixel <= most { recipe.samples_per_pixel } else { 1 << most.ilog2() }
     }
-}
-
-/// The height that a picture of `own_size` has at [`FEATURES_WIDTH`].
-fn scaled_height((width, height): (u32, u32)) -> u32 {
-    let scaled = f64::from(height) * f64::from(FEATURES_WIDTH) / f64::from(width);
-    (scaled.round() as u32).clamp(1, SIZE_LIMIT)
 }
 
 #[cfg(test)]

@@ -2,13 +2,11 @@
 
 use super::raw::{self, RawPicture};
 use super::sources::{self, ChosenRecipe};
-use super::values::{JsonTarget, Level, backend_named, parse_isa, parse_pixel, parse_tolerance, whole};
+use super::values::{JsonTarget, backend_named, parse_pixel, parse_tolerance, whole};
 use crate::backends::BackendChoice;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
-use crate::render_cpu::CpuOptions;
 use anyhow::{Result, bail, ensure};
 use clap::Args;
-use clap::builder::BoolishValueParser;
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Comparison")]
@@ -25,8 +23,7 @@ pub(super) struct RawDiff {
     #[arg(long, value_name = "SAMPLES", value_parser = whole(1..=SAMPLE_LIMIT, 100), num_args = 0..=1,
           default_missing_value = "4")]
     find: Option<u64>,
-    /// The two backends to compare: cpu (at the level --isa), portable (multiply and add rounded separately),
-    /// reference (f64) or gpu
+    /// The two backends to compare: cpu, portable (multiply and add rounded separately), reference (f64) or gpu
     #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = "cpu,gpu")]
     sides: Vec<String>,
     /// Largest relative difference that does not count
@@ -35,16 +32,9 @@ pub(super) struct RawDiff {
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING")]
     adapter: Option<String>,
-    /// Instruction level of the side cpu: auto, portable, sse4.2, avx2, avx512, neon
-    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto")]
-    isa: Level,
     /// Write both paths and the verdict as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     json: Option<JsonTarget>,
-    /// Whether samples are kept in two halves, as for rendering; it determines their random numbers
-    /// [default: on, or the scene's]
-    #[arg(long, value_name = "on|off", value_parser = BoolishValueParser::new())]
-    estimate_error: Option<bool>,
     #[command(flatten)]
     picture: RawPicture,
 }
@@ -84,9 +74,9 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions> {
     let json_file = raw.json.as_ref().and_then(JsonTarget::file);
     super::check_paths(&[("--scene", scene_file)], &[("--json", json_file)])?;
     let ChosenRecipe { mut recipe, stage } = sources::find(&raw.picture, None)?;
-    raw::change(&mut recipe, &raw.picture, raw.estimate_error);
-    if raw.find.is_some() {
-        sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
+    raw::change(&mut recipe, &raw.picture, None);
+    if raw.find.is_some() && raw.picture.size.is_none() && recipe.settings.width > FIND_WIDTH {
+        sources::scale(&mut recipe.settings, FIND_WIDTH);
     }
     let (width, height) = (recipe.settings.width, recipe.settings.height);
     let path = match (raw.find, raw.pixel.unwrap_or_default()) {
@@ -105,19 +95,13 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions> {
 }
 
 fn sides(raw: &RawDiff) -> Result<[BackendChoice; 2]> {
-    let needs = [("--adapter", raw.adapter.is_some(), "gpu"), ("--isa", raw.isa.0.is_some(), "cpu")];
-    for (flag, is_given, side) in needs {
-        ensure!(
-            !is_given || raw.sides.iter().any(|name| name == side),
-            "{flag} needs the side {side} in --sides: it applies only to that side; otherwise leave it out"
-        );
-    }
+    ensure!(
+        raw.adapter.is_none() || raw.sides.iter().any(|name| name == "gpu"),
+        "--adapter needs the side gpu in --sides: it applies only to that side; otherwise leave it out"
+    );
     let [a, b] = raw.sides.as_slice() else {
         bail!("--sides must be two of {} separated by a comma", BackendChoice::NAMES.join(", "))
     };
-    let side = |name: &str| match name {
-        "cpu" => Ok(BackendChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() })),
-        name => backend_named(name, raw.adapter.as_deref()),
-    };
+    let side = |name: &str| backend_named(name, raw.adapter.as_deref());
     Ok([side(a)?, side(b)?])
 }

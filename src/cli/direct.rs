@@ -1,15 +1,16 @@
-//! Commands whose flags are their options: merge, info, gallery, companion, check and stress.
+//! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
 use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_duration, parse_levels};
+use super::values::{JsonTarget, Levels, parse_levels};
 use super::{NamedPath, check_paths};
 use crate::backends::BackendChoice;
+use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
-use crate::stages::Stage;
+use crate::stages::{Stage, Transfer};
 use anyhow::Result;
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use std::time::Duration;
 
 /// Options of `weekender merge`.
 #[derive(Clone, Debug, Args)]
@@ -17,20 +18,12 @@ pub struct MergeOptions {
     /// Film files (.exr), as --checkpoint, --out and merge write them, or one plan: its directory, or its plan.json
     #[arg(required = true, num_args = 1.., value_name = "FILM|PLAN")]
     pub films: Vec<PathBuf>,
-    /// Where the result is written: .exr for the film, .png or .ppm for the picture; .png for an animation; may be
-    /// repeated
+    /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
     #[arg(long, value_name = "FILE", required_unless_present = "check")]
     pub out: Vec<PathBuf>,
-    /// Merge the parts of a plan as they come, and write the picture so far, until the plan is complete or Ctrl-C; an
-    /// animation is written once it is complete
-    #[arg(long)]
-    pub watch: bool,
-    /// Interval at which --watch writes the picture so far: 0.1s to 30d
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, default_value = "60s", requires = "watch")]
-    pub every: Duration,
     /// Write nothing; read everything, list what a plan lacks and what is damaged or foreign, and print the commands for
     /// what is missing
-    #[arg(long, conflicts_with_all = ["out", "watch"])]
+    #[arg(long, conflicts_with = "out")]
     pub check: bool,
     /// How commands call this program.
     #[arg(skip)]
@@ -125,6 +118,46 @@ impl CheckOptions {
     }
 }
 
+/// Options of `weekender compare`.
+#[derive(Clone, Debug, Args)]
+pub struct CompareOptions {
+    /// A film or picture (.exr, .pfm, .png, .ppm) of any program; FILE:LAYER chooses a layer of an EXR
+    #[arg(value_name = "FIRST")]
+    pub first: PathBuf,
+    /// Like the first
+    #[arg(value_name = "SECOND")]
+    pub second: PathBuf,
+    /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
+    #[arg(long, value_enum, default_value = "gamma2")]
+    pub encoding: Encoding,
+    /// Write the figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<JsonTarget>,
+}
+
+impl CompareOptions {
+    /// Refuses JSON that would replace a picture.
+    pub(super) fn check(self) -> Result<Self> {
+        let inputs = [&self.first, &self.second].map(|path| ("a picture", Some(path.as_path())));
+        check_paths(&inputs, &[("--json", self.json.as_ref().and_then(JsonTarget::file))])?;
+        Ok(self)
+    }
+}
+
+impl ValueEnum for Encoding {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Encoding::Book(Transfer::Gamma2), Encoding::Book(Transfer::Linear), Encoding::Srgb]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(match self {
+            Encoding::Book(Transfer::Linear) => "linear",
+            Encoding::Book(_) => "gamma2",
+            Encoding::Srgb => "srgb",
+        }))
+    }
+}
+
 /// Options of `weekender stress`.
 #[derive(Clone, Debug, Args)]
 pub struct StressOptions {
@@ -142,7 +175,7 @@ pub struct StressOptions {
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<JsonTarget>,
-    /// Write pictures and the table as Markdown to this directory
+    /// Write the table as Markdown to table.md in this directory
     #[arg(long, value_name = "DIRECTORY")]
     pub out: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal

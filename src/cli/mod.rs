@@ -1,12 +1,10 @@
 //! The command line, parsed and validated.
 
-pub mod about;
 mod animation;
 pub mod terminal;
 
 mod backend;
 mod bench;
-mod compare;
 mod diff;
 mod direct;
 mod paths;
@@ -19,14 +17,15 @@ mod values;
 
 pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
-pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice};
-pub use direct::{CheckOptions, CompanionOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions};
+pub use direct::{
+    CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
+};
 pub use paths::{NamedPath, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
-pub use report::{ReferenceChoice, ReportOptions};
+pub use report::ReportOptions;
 pub use sources::DEFAULT_SCENE;
 pub use values::JsonTarget;
 
@@ -43,10 +42,8 @@ use std::path::{Path, PathBuf};
 /// What the program should do.
 #[derive(Debug)]
 pub enum Request {
-    /// Print the version and, with `is_verbose`, details of the build and the machine.
-    Version {
-        is_verbose: bool,
-    },
+    /// Print the version.
+    Version,
     Window(Box<WindowOptions>),
     Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
@@ -73,12 +70,9 @@ pub enum Request {
 #[command(name = "weekender", version, disable_version_flag = true, args_conflicts_with_subcommands = true,
           after_help = EXIT_CODES)]
 struct Raw {
-    /// Print the version; with --verbose also commit, target, instruction level, adapters and version of film files
+    /// Print the version, commit and target
     #[arg(short = 'V', long = "version", id = "version")]
     _version: bool,
-    /// With --version: print everything that a report of a fault should say
-    #[arg(long = "verbose", id = "verbose", requires = "version")]
-    _verbose: bool,
     /// Write a log of what the program does; RUST_LOG chooses what, such as warn,weekender=trace
     #[arg(long = "log", id = "log", value_name = "FILE.log", value_parser = values::file_ending(".log"), global = true)]
     _log: Option<PathBuf>,
@@ -90,27 +84,25 @@ struct Raw {
 
 #[derive(Debug, Subcommand)]
 enum RawCommand {
-    /// Measure the speed of this machine, compared with a plain C program: tables, JSON, a chart
+    /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
     /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<BenchOptions>),
-    /// Divide the samples of a picture, or the frames of an animation, into parts that many machines render, and make the
-    /// commands for them
+    /// Divide the samples of a picture into parts that many machines render, and make the commands for them
     ///
     /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
-    /// from the part's last checkpoint or from the existing frames, and ends at once if the part is whole.
+    /// from the part's last checkpoint, and ends at once if the part is whole.
     Plan(Box<plan::PlanFlags>),
     /// Render a part of a plan, or continue it
     ///
-    /// The part's film is its own checkpoint; frames are kept one by one. The exit code is 0 if the part is whole, 143 after
-    /// SIGTERM (the checkpoint is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
+    /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint is
+    /// written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
     RenderPart(Box<PartOptions>),
     /// Merge films of the same picture that hold different samples, or the parts of a plan
     ///
-    /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included; frames become an animated PNG
-    /// once all of them exist. The exit code is 0 if nothing is missing, 1 if a part is missing, unfinished or damaged, and
-    /// 2 if nothing could be merged.
+    /// Given a plan, it adds up whatever exists, checkpoints of unfinished parts included. The exit code is 0 if nothing is
+    /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
     Merge(Box<MergeOptions>),
     /// Say what a film, picture, scene file or plan says about itself
     Info(InfoOptions),
@@ -121,10 +113,8 @@ enum RawCommand {
     /// Tell whether two pictures are equal apart from noise, and where they are not
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
-    Compare(Box<compare::RawCompare>),
+    Compare(Box<CompareOptions>),
     /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
-    ///
-    /// Continues an interrupted report that has the same settings.
     Report(Box<ReportOptions>),
     /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
     ///
@@ -173,7 +163,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let matches =
         command().try_get_matches_from(&arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
     if matches.get_flag("version") {
-        return Ok(Request::Version { is_verbose: matches.get_flag("verbose") });
+        return Ok(Request::Version);
     }
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
@@ -205,7 +195,7 @@ fn request(raw: Raw, line: &Line) -> Result<Request> {
         }
         Some(RawCommand::Info(options)) => Request::Info(options),
         Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
-        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(compare::compare(*raw)?)),
+        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(raw.check()?)),
         Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
         Some(RawCommand::Stress(raw)) => Request::Stress(raw),
         Some(RawCommand::Companion(options)) => Request::Companion(options),

@@ -1,12 +1,11 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
-use super::animation::{Animation, AnimationFlags};
 use super::raw::{ProgressChoice, RawPicture};
 use super::sources::{self, SampleFlags};
 use super::values::{JsonTarget, parse_duration, whole};
 use super::{Line, backend};
 use crate::backends::BackendChoice;
-use crate::job::plan::{Format, Frames, Samples, Work, divide};
+use crate::job::plan::{Format, Manifest};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
@@ -21,17 +20,16 @@ const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"
 
 #[derive(Debug, Args)]
 pub(super) struct PlanFlags {
-    /// Parts, 1 to 100000: each holds some samples of the whole picture, or some whole frames of an animation
+    /// Parts, 1 to 100000, each with some samples of the whole picture
     #[arg(long, value_name = "COUNT", value_parser = whole(1..=100_000_u64, 10))]
     parts: u64,
     /// The directory of the plan, of its parts and of the merged film; it is created if necessary
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Interval at which a part's film is written, as for rendering: 0.1s to 30d [default: 60s]
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, conflicts_with = "AnimationFlags")]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
     every: Option<Duration>,
-    /// What is made: the commands, one per line; the same as JSON; or files that give the parts to Slurm, GNU parallel or
-    /// make
+    /// What is made: the commands, one per line, or files that give the parts to Slurm, GNU parallel or make
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
     /// How the commands call this program [default: as it was called, with its directory if that was given]
@@ -41,8 +39,6 @@ pub(super) struct PlanFlags {
     picture: RawPicture,
     #[command(flatten)]
     samples: SampleFlags,
-    #[command(flatten)]
-    animation: AnimationFlags,
     #[command(flatten)]
     backend: BackendChoice,
 }
@@ -55,8 +51,8 @@ pub struct PlanOptions {
     pub job: RenderJob,
     /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
-    /// What is divided, in parts.
-    pub work: Work,
+    /// The parts, without the scene.
+    pub manifest: Manifest,
     pub directory: PathBuf,
     pub format: Format,
     /// Flags for the command of every part.
@@ -123,25 +119,18 @@ pub(super) fn plan(flags: PlanFlags, line: &Line) -> Result<PlanOptions> {
         flags.out.shown()
     );
     let (mut chosen, job) = sources::picture(picture, samples, None)?;
-    let (work, count) = if flags.animation.is_given() {
-        let Animation { frames, turntable, rate, .. } = flags.animation.of(&job, &chosen.recipe, picture)?;
-        let work = Frames::new(&frames, turntable, rate, *parts);
-        (work.map(Work::Frames), format!("{} frames", frames.len()))
-    } else {
-        let range = samples.sample_range.clone().unwrap_or(0..chosen.recipe.samples_per_pixel);
-        chosen.recipe.samples_per_pixel = range.end;
-        let work = divide(range.clone(), *parts).map(|division| Samples::new(&range, &division));
-        (work.map(Work::Samples), format!("{} samples per pixel", range.end - range.start))
-    };
-    let work = work.with_context(|| {
-        format!("--parts is {parts}, but there are {count} to divide; each part needs one at least")
+    let range = samples.sample_range.clone().unwrap_or(0..chosen.recipe.samples_per_pixel);
+    chosen.recipe.samples_per_pixel = range.end;
+    let manifest = Manifest::new(&range, *parts).with_context(|| {
+        let count = range.end - range.start;
+        format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs one at least")
     })?;
     Ok(PlanOptions {
         flags: line.words(&[&backend::FLAGS[..], &["every"]].concat()),
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
-        work,
+        manifest,
         directory: flags.out,
         format: flags.format,
         program: flags.program.unwrap_or_else(|| line.program.clone()),

@@ -6,21 +6,21 @@ use super::sources::{self, ChosenRecipe, SampleFlags};
 use super::values::{JsonTarget, file_ending, parse_duration, parse_noise_target, parse_seconds};
 use super::{Line, NamedPath, Request, backend};
 use crate::backends::BackendChoice;
-use crate::job::output::{OutputFormat, PpmForm};
+use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
 use crate::job::render::RenderJob;
 use crate::job::saved;
 use crate::progressive::{Plan, Stop};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct RenderFlags {
-    /// Render to a file, without a window; with --stage all, every stage of the book, to the directory --out
+    /// Render to a file, without a window
     #[arg(long)]
     pub batch: bool,
     /// List scenes, stages and devices
@@ -72,8 +72,8 @@ pub(super) struct StopFlags {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Files")]
 pub(super) struct FileFlags {
-    /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --stage all, the
-    /// directory; with --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
+    /// The picture: .png, .ppm, .exr (linear film) or .pfm (linear), or - for standard output; with --frames, a
+    /// directory or a pattern such as turn-####.png [default: SCENE.png]
     #[arg(long, value_name = "FILE", requires = "batch")]
     pub out: Option<PathBuf>,
     /// The format of --out, if its name does not tell it
@@ -83,9 +83,6 @@ pub(super) struct FileFlags {
     /// is; --noise-target is then for the denoised picture
     #[arg(long, requires = "batch", conflicts_with = "AnimationFlags")]
     denoise: bool,
-    /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
-    #[arg(long, value_enum, requires = "batch", conflicts_with = "AnimationFlags")]
-    ppm: Option<PpmForm>,
     /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. An
     /// existing file is never replaced, unless the render continues its film (--continue, --resume)
     #[arg(long, value_name = "FILE.exr", value_parser = file_ending(".exr"), requires = "batch",
@@ -112,11 +109,8 @@ pub(super) struct FileFlags {
 /// Options of `--batch`.
 #[derive(Debug)]
 pub struct BatchOptions {
-    /// The pictures: one, or those of all stages.
-    pub renders: Vec<RenderOptions>,
-    /// The directory for the pictures of all stages, which is created if necessary.
-    pub directory: Option<PathBuf>,
-    /// A scene file to write as well, of the only picture.
+    pub render: RenderOptions,
+    /// A scene file to write as well.
     pub save_scene: Option<PathBuf>,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
@@ -179,7 +173,6 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
-    pub ppm: PpmForm,
     /// The command that renders it.
     pub command: String,
 }
@@ -199,7 +192,7 @@ pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request> {
     match (flags.batch, &flags.files.save_scene) {
         (false, None) => Ok(Request::Window(Box::new(window(flags, line)?))),
         (false, Some(path)) => {
-            check_paths(&flags, &[])?;
+            check_paths(&flags, None)?;
             let (chosen, _) =
                 sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
@@ -247,31 +240,12 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
 
 fn batch(flags: RenderFlags, line: &Line) -> Result<Request> {
     let RenderFlags { picture, samples, files, .. } = &flags;
-    let (renders, directory) = if picture.stage.as_deref() == Some("all") {
-        ensure!(
-            files.checkpoint.is_none() && files.resume.is_none() && files.save_scene.is_none(),
-            "--stage all cannot be used with --checkpoint, --resume or --save-scene: these are for a single picture; \
-             choose one stage"
-        );
-        let reason = "--stage all needs --out DIR: it writes one picture for each stage";
-        let directory = files.out.clone().context(reason)?;
-        let of_stage = |stage: &'static Stage| {
-            let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
-            let chosen = sources::changed(chosen, picture, samples)?;
-            let ending = files.format.unwrap_or(OutputFormat::Png).ending();
-            render(chosen, &flags, directory.join(format!("{}{ending}", stage.id)), line)
-        };
-        (Stage::ALL.iter().map(of_stage).collect::<Result<Vec<_>>>()?, Some(directory))
-    } else {
-        let chosen = sources::picture(picture, samples, files.resume.as_deref())?;
-        let name = chosen.0.stage.map_or(chosen.0.recipe.name.as_str(), |stage| stage.id);
-        let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
-        (vec![render(chosen, &flags, out, line)?], None)
-    };
-    check_paths(&flags, &renders)?;
+    let chosen = sources::picture(picture, samples, files.resume.as_deref())?;
+    let name = chosen.0.stage.map_or(chosen.0.recipe.name.as_str(), |stage| stage.id);
+    let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
+    check_paths(&flags, Some(&out))?;
     Ok(Request::Batch(Box::new(BatchOptions {
-        renders,
-        directory,
+        render: render(chosen, &flags, out, line)?,
         backend: flags.backend,
         progress: flags.progress,
         save_scene: flags.files.save_scene,
@@ -301,9 +275,6 @@ fn render(
         !to_stdout(&out) || files.json != Some(JsonTarget::StandardOutput),
         "--out - and --json - would both write to standard output; write one of them to a file"
     );
-    if files.ppm.is_some() && format != OutputFormat::P6 {
-        bail!("--ppm needs --out FILE.ppm or --format ppm: it is about how a PPM holds its numbers");
-    }
     if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
         bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
     }
@@ -320,21 +291,20 @@ fn render(
         checkpoint: files.checkpoint.clone(),
         every: files.every,
         resume: files.resume.clone(),
-        ppm: files.ppm.unwrap_or_default(),
         command: line.command.clone(),
     })
 }
 
 /// Refuses outputs that would replace each other or an input.
-fn check_paths(flags: &RenderFlags, renders: &[RenderOptions]) -> Result<()> {
+fn check_paths(flags: &RenderFlags, out: Option<&Path>) -> Result<()> {
     let files = &flags.files;
     let scene = sources::scene_file(flags.picture.scene.as_deref());
-    let mut outputs: Vec<NamedPath> = vec![
+    let outputs: [NamedPath; 4] = [
         ("--checkpoint", files.checkpoint.as_deref()),
         ("--save-scene", files.save_scene.as_deref()),
         ("--json", files.json.as_ref().and_then(JsonTarget::file)),
+        ("--out", out),
     ];
-    outputs.extend(renders.iter().map(|render| ("--out", Some(render.out.as_path()))));
     super::check_paths(&[("--scene", scene), ("--resume", files.resume.as_deref())], &outputs)
 }
 
@@ -355,9 +325,9 @@ mod tests {
     use std::path::Path;
     use std::time::Duration;
 
-    fn renders(line: &str) -> Vec<super::RenderOptions> {
+    fn render(line: &str) -> super::RenderOptions {
         match parse(format!("weekender --batch {line}").split(' ').map(Into::into)).unwrap() {
-            Request::Batch(options) => options.renders,
+            Request::Batch(options) => options.render,
             other => panic!("{other:?}"),
         }
     }
@@ -371,7 +341,7 @@ mod tests {
             ("--sample-range 4..9 --time-limit 5", Some(4..9), Some(5.0), None),
             ("--sample-range 4294967295..4294967296", Some(4_294_967_295..4_294_967_296), None, None),
         ] {
-            let plan = &renders(flags)[0].plan;
+            let plan = render(flags).plan;
             let found = plan.stop.samples.map(|end| plan.first_sample..end);
             assert_eq!((found, plan.stop.seconds, plan.stop.noise), (range, seconds, noise), "{flags}");
         }
@@ -379,10 +349,9 @@ mod tests {
 
     #[test]
     fn files_and_intervals_have_defaults() {
-        let render = &renders("--stage metal --checkpoint no-such.exr")[0];
-        assert_eq!((render.out.as_path(), render.every), (Path::new("metal.png"), Duration::from_secs(60)));
-        let render = &renders("--scene field:9 --checkpoint no-such.exr --every 5m")[0];
-        assert_eq!(render.every, Duration::from_secs(300));
-        assert_eq!(renders("--stage all --out no-such").len(), crate::stages::Stage::ALL.len());
+        let options = render("--stage metal --checkpoint no-such.exr");
+        assert_eq!((options.out.as_path(), options.every), (Path::new("metal.png"), Duration::from_secs(60)));
+        let options = render("--scene field:9 --checkpoint no-such.exr --every 5m");
+        assert_eq!(options.every, Duration::from_secs(300));
     }
 }

@@ -4,32 +4,25 @@ use super::raw::ProgressChoice;
 use super::values::{backend_named, parse_rmse, parse_seconds, parse_size, whole};
 use super::{NamedPath, check_paths, sources};
 use crate::backends::BackendChoice;
-use crate::job::recipe::{Recipe, plain_name};
+use crate::job::recipe::Recipe;
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
 use anyhow::{Context, Result, ensure};
-use clap::builder::BoolishValueParser;
-use clap::{ArgAction, Args};
+use clap::Args;
 use std::path::PathBuf;
 
 /// Options of `weekender report`.
 #[derive(Debug, Args)]
 pub struct ReportOptions {
-    /// Directory of the report: report.md, .csv and .json, error-vs-time.png and .svg, references
+    /// Directory of the report: report.md, report.json, error-vs-time.svg
     #[arg(long, value_name = "DIRECTORY")]
     pub out: PathBuf,
-    /// Check the accuracy of the error estimates. Other defaults apply: 24 pictures of 96x54 per curve, 256 samples, no
-    /// time limit; scenes three-spheres, book, close-up and hollow glass from nearby; backends cpu and, if there is
-    /// one, gpu
-    #[arg(long)]
-    calibration: bool,
     /// Built-in scenes, field:N or scene files, separated by commas
     #[arg(
         long,
         alias = "scene",
         value_name = "A,B,...",
         value_delimiter = ',',
-        default_value = "three-spheres,book",
-        default_value_if("calibration", "true", "three-spheres,book,close-up,near-glass")
+        default_value = "three-spheres,book"
     )]
     scenes: Vec<String>,
     /// Backends: cpu (the widest packets), scalar (one lane), portable, reference (f64), gpu,
@@ -43,32 +36,25 @@ pub struct ReportOptions {
     #[arg(long, value_name = "SUBSTRING")]
     adapter: Option<String>,
     /// Width and height of all pictures in pixels, each 1 to 16384
-    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x90",
-          default_value_if("calibration", "true", "96x54"))]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x90")]
     pub size: (u32, u32),
     /// Pictures per curve, which differ only in their random numbers, 1 to 1000
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_u32, 8), default_value = "8",
-          default_value_if("calibration", "true", "24"))]
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_u32, 8), default_value = "8")]
     pub seeds: u32,
     /// Seconds of tracing for all pictures of a curve; each picture ends with the last doubling that fits
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "12",
-          default_value_if("calibration", "true", "1e9"))]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "12")]
     pub time_limit: f64,
     /// Maximum samples per pixel, 2 to 4294967296
     #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
-          default_value = "1024", default_value_if("calibration", "true", "256"))]
+          default_value = "1024")]
     pub max_samples: u64,
-    /// Keep samples in two halves, which is needed to estimate the error; off keeps them as a single point set
-    #[arg(long, value_name = "on|off", value_parser = BoolishValueParser::new(), action = ArgAction::Set,
-          default_value = "on", conflicts_with = "calibration")]
-    pub estimate_error: bool,
     /// Also report the seconds needed to reach this RMSE, and mark it in the plot
     #[arg(long, value_name = "RMSE", value_parser = parse_rmse, default_value = "0.01")]
     target: f64,
     /// The backend that renders the references, named as for --backends
     #[arg(long, value_name = "BACKEND", default_value = "reference")]
-    reference_backend: String,
-    /// Samples per pixel of the references [default: 4 times --max-samples, with --calibration 16 times]
+    pub reference_backend: String,
+    /// Samples per pixel of the references [default: 4 times --max-samples]
     #[arg(long, value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024))]
     reference_samples: Option<u64>,
     /// Show progress on standard error; auto: if it is a terminal
@@ -79,24 +65,14 @@ pub struct ReportOptions {
     pub command: String,
 }
 
-/// How to render the pictures that errors are measured against.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReferenceChoice {
-    /// Name of the backend.
-    pub name: String,
-    pub choice: BackendChoice,
-    pub samples: u64,
-}
-
 /// Name of the C program among the backends of a report.
 const BASELINE: &str = "c89";
 
 /// Target errors that every report has.
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
-/// The files that a report writes to its directory, apart from references.
-const REPORT_FILES: [&str; 5] =
-    ["report.json", "report.md", "report.csv", "error-vs-time.png", "error-vs-time.svg"];
+/// The files that a report writes to its directory.
+const REPORT_FILES: [&str; 3] = ["report.json", "report.md", "error-vs-time.svg"];
 
 impl ReportOptions {
     /// Returns an error if there is no such backend or flags conflict; `command` is what the report says of itself.
@@ -124,8 +100,8 @@ impl ReportOptions {
             return self.backends.clone();
         }
         let has_gpu = BackendChoice::gpu_if_present(self.adapter.as_deref()).is_some();
-        let usual = if self.calibration { &["cpu", "gpu"][..] } else { &["cpu", "scalar", "gpu", BASELINE] };
-        usual.iter().filter(|name| has_gpu || **name != "gpu").map(|name| (*name).to_owned()).collect()
+        let usual = ["cpu", "scalar", "gpu", BASELINE].into_iter();
+        usual.filter(|name| has_gpu || *name != "gpu").map(str::to_owned).collect()
     }
 
     /// The backend of this name; `None` is the C program.
@@ -154,26 +130,18 @@ impl ReportOptions {
                 "--scenes has two scenes called {name}; leave one out or rename its file"
             );
             (scenes[index].settings.width, scenes[index].settings.height) = self.size;
-            // A film, its reference, and the film of a pass.
+            // A film, its reference, and the denoised one.
             scenes[index].job()?.check_memory(4)?;
         }
-        self.check_paths(&scenes)?;
+        self.check_paths()?;
         Ok(scenes)
     }
 
-    fn check_paths(&self, scenes: &[Recipe]) -> Result<()> {
-        let names =
-            REPORT_FILES.iter().map(|name| (*name).to_owned()).chain(scenes.iter().map(reference_name));
-        let files: Vec<PathBuf> = names.map(|name| self.out.join(name)).collect();
-        let scenes = self.scenes.iter().map(|scene| ("--scenes", sources::scene_file(Some(scene))));
-        let inputs: Vec<NamedPath> = scenes.collect();
+    fn check_paths(&self) -> Result<()> {
+        let files = REPORT_FILES.map(|name| self.out.join(name));
+        let inputs = self.scenes.iter().map(|scene| ("--scenes", sources::scene_file(Some(scene))));
         let outputs = files.iter().map(|file| ("a file of --out,", Some(file.as_path())));
-        check_paths(&inputs, &outputs.collect::<Vec<NamedPath>>())
-    }
-
-    /// Where the reference of a scene is kept.
-    pub fn reference_path(&self, scene: &Recipe) -> PathBuf {
-        self.out.join(reference_name(scene))
+        check_paths(&inputs.collect::<Vec<NamedPath>>(), &outputs.collect::<Vec<NamedPath>>())
     }
 
     /// Target errors; the first is marked in the plot.
@@ -182,20 +150,17 @@ impl ReportOptions {
         std::iter::once(self.target).chain(usual).collect()
     }
 
-    /// The references for errors.
+    /// The backend of the references.
     ///
     /// # Errors
     /// If there is no such backend.
-    pub fn reference(&self) -> Result<ReferenceChoice> {
-        let name = self.reference_backend.clone();
-        let factor = if self.calibration { 16 } else { 4 };
-        let samples = self.reference_samples.unwrap_or((factor * self.max_samples).min(SAMPLE_LIMIT));
-        Ok(ReferenceChoice { choice: backend_named(&name, self.adapter.as_deref())?, name, samples })
+    pub fn reference(&self) -> Result<BackendChoice> {
+        backend_named(&self.reference_backend, self.adapter.as_deref())
     }
-}
 
-fn reference_name(scene: &Recipe) -> String {
-    format!("reference-{}.exr", plain_name(&scene.name))
+    pub fn reference_samples(&self) -> u64 {
+        self.reference_samples.unwrap_or((4 * self.max_samples).min(SAMPLE_LIMIT))
+    }
 }
 
 #[cfg(test)]
@@ -216,7 +181,6 @@ mod tests {
     fn adapter_flag_requires_the_gpu() {
         let names = |words: &str| parsed(words).unwrap().backends();
         assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
-        assert_eq!(names("--adapter some --calibration"), ["cpu", "gpu"]);
         assert_eq!(names("--adapter some --backends portable,gpu"), ["portable", "gpu"]);
         let error = parsed("--backends portable --adapter some").unwrap_err();
         assert!(error.contains("--adapter") && error.contains("gpu in --backends"), "{error}");
@@ -227,12 +191,11 @@ mod tests {
     fn reference_samples_stay_within_the_limit() {
         for (words, expected) in [
             ("--max-samples 64", 256),
-            ("--max-samples 64 --calibration", 1024),
             ("--max-samples 4294967296", SAMPLE_LIMIT),
             ("--max-samples 64 --reference-samples 100", 100),
         ] {
-            let found = parsed(&format!("--backends portable {words}")).unwrap().reference().unwrap();
-            assert_eq!(found.samples, expected, "{words}");
+            let found = parsed(&format!("--backends portable {words}")).unwrap().reference_samples();
+            assert_eq!(found, expected, "{words}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::raw::{self, RawPicture};
 use super::values::{range, whole};
 use crate::job::recipe::{Recipe, file};
-use crate::job::render::{RenderJob, SAMPLE_LIMIT};
+use crate::job::render::{RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::job::saved::Saved;
 use crate::stages::Stage;
 use crate::system::files::STANDARD;
@@ -25,7 +25,7 @@ pub(super) struct SampleFlags {
     pub samples: Option<u64>,
     /// Only samples A to B - 1, for `weekender merge` or to add them to a picture that has the others
     #[arg(long, value_name = "A..B", value_parser = range(SAMPLE_LIMIT, "0..64"),
-          conflicts_with_all = ["samples", "AnimationFlags"])]
+          conflicts_with = "samples")]
     pub sample_range: Option<Range<u64>>,
     /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
     /// [default: on, or the scene's]
@@ -47,15 +47,7 @@ pub(super) fn picture(
     samples: &SampleFlags,
     resume: Option<&Path>,
 ) -> Result<(ChosenRecipe, RenderJob)> {
-    changed(find(raw, resume)?, raw, samples)
-}
-
-/// The picture with the changes of the flags, and its validated job.
-pub(super) fn changed(
-    mut chosen: ChosenRecipe,
-    raw: &RawPicture,
-    samples: &SampleFlags,
-) -> Result<(ChosenRecipe, RenderJob)> {
+    let mut chosen = find(raw, resume)?;
     raw::change(&mut chosen.recipe, raw, samples.estimate_error);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
@@ -78,16 +70,10 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenReci
     }
 }
 
-/// The example scene that is part of the program for use in reports.
-const NEAR_GLASS: &str = "near-glass";
-
 /// The scene with this name or in this file.
 pub(super) fn scene(name: &str) -> Result<Recipe> {
     match scene_file(Some(name)) {
         Some(path) => Ok(file::load(path)?),
-        None if name == NEAR_GLASS => {
-            Ok(file::parse(include_str!("../../assets/scenes/near-glass.toml"), NEAR_GLASS)?)
-        }
         None => Recipe::find(name),
     }
 }
@@ -98,11 +84,8 @@ pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
     (scene == Some(STANDARD) || path.extension().is_some() || path.components().count() > 1).then_some(path)
 }
 
-/// Reduces the picture to at most `width` pixels across, keeping its shape, unless its size was given.
-pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
-    let settings = &mut recipe.settings;
-    if raw.size.is_none() && settings.width > width {
-        let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
-        (settings.width, settings.height) = (width, (height.round() as u32).max(1));
-    }
+/// Makes a picture `width` pixels wide, keeping its shape.
+pub(super) fn scale(settings: &mut RenderSettings, width: u32) {
+    let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
+    (settings.width, settings.height) = (width, (height.round() as u32).clamp(1, SIZE_LIMIT));
 }

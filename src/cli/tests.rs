@@ -2,12 +2,8 @@
 
 use super::*;
 use crate::backends::BackendChoice;
-use crate::job::output::FrameRate;
-use crate::job::plan::{Format, Work};
-use crate::render_cpu::{CpuOptions, Isa};
+use crate::job::plan::Format;
 use crate::render_gpu::GpuOptions;
-use crate::scene::animation::Turn;
-use std::time::Duration;
 
 fn request(line: &str) -> Result<Request, Failure> {
     parse(format!("weekender {line}").split(' ').map(Into::into))
@@ -57,7 +53,6 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
         &format!("--out={}", inside("a.png")),
         "--json",
         "-",
-        "--fps=30000/1001",
         "--adapter",
         "a/b",
         "--log=/no-such-directory/run.log",
@@ -65,26 +60,12 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
     ];
     assert_eq!(
         recorded(&words.map(OsString::from)),
-        "weekender --batch --scene 'my scene.toml' --out=a.png --json - --fps=30000/1001 --adapter a/b --log=run.log x.exr"
+        "weekender --batch --scene 'my scene.toml' --out=a.png --json - --adapter a/b --log=run.log x.exr"
     );
 }
 
 #[test]
-fn a_merge_is_watched_or_checked() {
-    let merged = |line: &str| match request(&format!("merge p {line}")) {
-        Ok(Request::Merge(options)) => (options.watch, options.every, options.check),
-        other => panic!("{other:?}"),
-    };
-    let minute = Duration::from_secs(60);
-    assert_eq!(merged("--out no-such.png"), (false, minute, false));
-    assert_eq!(merged("--out no-such.png --every 2m --watch"), (true, 2 * minute, false));
-    assert_eq!(merged("--check"), (false, minute, true));
-    assert!(refused("merge p --out no-such.exr --every 5s").contains("--watch"));
-    assert!(refused("merge p --out no-such.exr --check").contains("--check"));
-}
-
-#[test]
-fn a_plan_has_its_format_its_flags_and_its_frames() {
+fn a_plan_has_its_format_and_its_flags() {
     let planned = |flags: &str| match request(&format!("plan --out no-such-plan --parts 2 {flags}")) {
         Ok(Request::Plan(options)) => *options,
         other => panic!("{other:?}"),
@@ -93,41 +74,20 @@ fn a_plan_has_its_format_its_flags_and_its_frames() {
     assert_eq!((options.format, options.recipe.samples_per_pixel), (Format::Make, 4));
     assert_eq!(options.flags, ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]);
     assert!(planned("--sample-range 4..8").flags.is_empty());
-    for (flags, frames, turn, rate) in [
-        ("--turntable", [0, 120], Turn::FramesPerTurn(120), [30, 1]),
-        ("--turntable=7 --fps 30000/1001", [0, 7], Turn::FramesPerTurn(7), [30_000, 1001]),
-        ("--frames 3..5 --turntable=-2deg", [3, 5], Turn::DegreesPerFrame(-2.0), [30, 1]),
-    ] {
-        let Work::Frames(work) = planned(flags).work else { panic!("{flags}") };
-        let rate = FrameRate { frames: rate[0], seconds: rate[1] };
-        assert_eq!((work.frames, work.turntable, work.rate), (frames, Some(turn), rate), "{flags}");
-    }
-    for (flags, part) in [
-        ("--parts 5 --samples 4", "--parts is 5, but there are 4 samples"),
-        ("--parts 2 --turntable=2deg", "--frames"),
-        ("--parts 2 --turntable=9 --every 5s", "--every"),
-        ("--parts 2 --turntable=9 --sample-range 4..8", "--sample-range"),
-        ("--parts 2 --fps 9", "--frames"),
-        ("--parts 2 --stage all", "all"),
-    ] {
-        let error = refused(&format!("plan --out no-such-plan {flags}"));
-        assert!(error.contains(part), "{flags}: {error}");
-    }
+    assert!(refused("plan --out no-such-plan --parts 5 --samples 4").contains("there are 4 samples"));
+    assert!(refused("merge p --out no-such.exr --check").contains("--check"));
 }
 
 #[test]
 fn frames_default_to_one_turn() {
-    for (flags, frames, samples, animation) in [
-        ("--turntable=4 --samples 3 --out no-such", 0..4, 3, None),
-        ("--frames 3..5 --turntable=90 --samples 2 --out no-such.png", 3..5, 2, Some([30, 1])),
-        ("--turntable=5 --fps 25/2 --samples 1 --out no-such.APNG", 0..5, 1, Some([25, 2])),
+    for (flags, frames, samples) in [
+        ("--turntable=4 --samples 3 --out no-such", 0..4, 3),
+        ("--frames 3..5 --turntable=90 --samples 2 --out no-such-#.png", 3..5, 2),
     ] {
         let Ok(Request::Frames(options)) = request(&format!("--batch --device cpu {flags}")) else {
             panic!("no frames: {flags}")
         };
         assert_eq!((options.frames, options.recipe.samples_per_pixel), (frames, samples), "{flags}");
-        let rate = options.animation.map(|(_, rate)| [rate.frames, rate.seconds]);
-        assert_eq!(rate, animation, "{flags}");
     }
 }
 
@@ -149,11 +109,9 @@ fn diff_takes_sides_and_place_from_flags() {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),
     };
-    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa, ..CpuOptions::default() });
     let flags = "--pixel 0,0 --sides gpu,portable --adapter some";
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
     assert_eq!(compared(flags).sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
-    assert_eq!(compared("--pixel 0,0 --sides cpu,cpu --isa portable").sides[0], cpu(Some(Isa::Portable)));
     for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
         assert!(refused(&format!("diff --find --sides {sides}")).contains("reference"), "{sides}");
     }
@@ -169,7 +127,6 @@ fn diff_takes_sides_and_place_from_flags() {
     for (flags, part) in [
         ("--pixel 20,9 --size 20x10", "the last one is 19,9"),
         ("--pixel 0,0 --adapter some", "--adapter needs the side gpu in --sides"),
-        ("--pixel 0,0 --isa portable", "--isa needs the side cpu in --sides"),
     ] {
         let error = refused(&format!("diff --sides portable,reference {flags}"));
         assert!(error.contains(part), "{error}");

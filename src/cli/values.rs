@@ -2,11 +2,9 @@
 
 use crate::backends::BackendChoice;
 use crate::film::ROUNDING_LIMIT;
-use crate::job::output::FrameRate;
 use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
-use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use anyhow::{Context, Result};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
@@ -102,27 +100,6 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
         Some(isa) => Err(CpuError::Isa { isa: *isa, available }.to_string()),
         None => Ok(Levels(Some(named))),
     }
-}
-
-/// Numbers of spheres from `A` to `B`: `A` times powers of ten, and three times these.
-pub(super) fn parse_counts(text: &str) -> Result<Box<[u64]>, String> {
-    let limits = FIELD_COUNT_LIMITS;
-    // 1e6 is easier to type than a million.
-    let count = |text: &str| {
-        let number: f64 = text.trim().parse().ok()?;
-        let is_whole = number.fract() == 0.0 && number >= 0.0 && number <= *limits.end() as f64;
-        is_whole.then_some(number as u64).filter(|count| limits.contains(count))
-    };
-    let ends = text.split_once("..").and_then(|(a, b)| Some((count(a)?, count(b)?)));
-    let (first, last) = ends.filter(|(first, last)| first <= last).ok_or_else(|| {
-        format!(
-            "must be A..B with A at most B, both from {} to {}, such as 1e3..1e6",
-            limits.start(),
-            limits.end()
-        )
-    })?;
-    let decades = (0..).map(|power| first * 10_u64.pow(power)).take_while(|count| *count <= last);
-    Ok(decades.flat_map(|count| [count, 3 * count]).filter(|count| *count <= last).collect())
 }
 
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -249,17 +226,6 @@ pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {
             "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
         )
     })
-}
-
-pub(super) fn parse_rate(text: &str) -> Result<FrameRate, String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|number| *number > 0);
-    let (frames, seconds) = text.split_once('/').unwrap_or((text, "1"));
-    number(frames).zip(number(seconds)).map(|(frames, seconds)| FrameRate { frames, seconds }).ok_or_else(
-        || {
-            "must be a whole number or a fraction of numbers from 1 to 65535, such as 30, 25/2 or 30000/1001"
-                .to_owned()
-        },
-    )
 }
 
 #[cfg(test)]

@@ -20,8 +20,6 @@ pub mod key {
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
-    /// The part of the picture that the file holds: its size, then its first column and row.
-    pub const CROP: &str = "Crop";
     pub const FRAME: &str = "Frame";
     pub const COMMAND: &str = "Command";
     pub const BACKEND: &str = "Backend";

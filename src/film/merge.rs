@@ -66,16 +66,6 @@ impl FilmSum {
         }
     }
 
-    /// A copy, or an error if there is not enough memory.
-    ///
-    /// # Errors
-    /// [`FilmError::Memory`].
-    pub fn try_copy(&self) -> Result<Self, FilmError> {
-        let FilmSum { film, description, first, parts } = self;
-        let (description, first, parts) = (description.clone(), first.clone(), parts.clone());
-        Ok(FilmSum { film: film.try_copy()?, description, first, parts })
-    }
-
     /// Adds the film of a file and returns its samples. `same_job` gets the recipes of the sum and of the file, and
     /// returns what differs if their jobs do.
     ///

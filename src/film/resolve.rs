@@ -42,21 +42,6 @@ impl Film {
         self.resolve_sums(rows, transfer, self.fixed_point_of_1(), bytes);
     }
 
-    /// The part of [`Film::to_rgb8`] that begins at column and row `first` and has `size` pixels.
-    ///
-    /// # Panics
-    /// If the part is not within the picture.
-    pub fn part_rgb8(&self, transfer: Transfer, first: [u32; 2], size: [u32; 2]) -> Vec<u8> {
-        let columns = 3 * first[0] as usize..3 * (first[0] + size[0]) as usize;
-        let mut row_bytes = vec![0; 3 * self.width as usize];
-        let mut bytes = Vec::with_capacity(3 * size[0] as usize * size[1] as usize);
-        for row in first[1]..first[1] + size[1] {
-            self.resolve_rows(row..row + 1, transfer, &mut row_bytes);
-            bytes.extend_from_slice(&row_bytes[columns.clone()]);
-        }
-        bytes
-    }
-
     /// Resolves rows so that a sum of `unit` is white.
     fn resolve_sums(&self, rows: Range<u32>, transfer: Transfer, unit: f64, bytes: &mut [u8]) {
         let height = self.height as usize;

@@ -50,15 +50,3 @@ fn processor(info: &str) -> String {
 fn load(averages: &str) -> Option<f64> {
     averages.split_whitespace().next()?.parse().ok()
 }
-
-/// Peak memory of this process since [`forget_peak_memory`], bytes; `None` if unknown.
-pub fn peak_memory() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(peak.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
-}
-
-/// Resets [`peak_memory`] where the system supports it; elsewhere it counts from the start of the process.
-pub fn forget_peak_memory() {
-    let _ = fs::write("/proc/self/clear_refs", "5");
-}

@@ -13,31 +13,22 @@ mod table;
 pub use candidate::{Candidate, Source, Stop, Traced};
 
 use crate::cli::JsonTarget;
-use crate::cli::terminal;
-use anyhow::{Context, Result};
+use crate::cli::terminal::write_figures;
+use anyhow::Result;
 use machine::Machine;
 use serde::Serialize;
-use std::path::Path;
 
 /// Version of the JSON, incremented when a key is removed or changes meaning.
 pub const SCHEMA: u32 = 1;
 
-/// Common start of every measurement's JSON.
+/// Figures of a machine.
 #[derive(Serialize)]
-struct Envelope<'a, T> {
-    schema: u32,
-    version: &'static str,
+struct Measured<'a, T> {
     machine: &'a Machine,
     #[serde(flatten)]
     figures: &'a T,
 }
 
 fn write_json(target: &JsonTarget, machine: &Machine, figures: &impl Serialize) -> Result<()> {
-    terminal::write_json(&Envelope { schema: SCHEMA, version: machine.version, machine, figures }, target)
-}
-
-fn make_directory(directory: &Path) -> Result<()> {
-    std::fs::create_dir_all(directory).with_context(|| {
-        format!("cannot create the directory {}; choose another with --out", directory.display())
-    })
+    write_figures(SCHEMA, &Measured { machine, figures }, target)
 }

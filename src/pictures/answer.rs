@@ -1,7 +1,7 @@
 //! What the programs on pictures share: text for people, JSON for programs, and an exit code.
 
 use crate::cli::JsonTarget;
-use crate::cli::terminal::{print_beside, write_json};
+use crate::cli::terminal::{print_beside, write_figures};
 use crate::system::failure::{BAD_INPUT, FAILED};
 use crate::system::files::check_writable;
 use anyhow::Result;
@@ -47,18 +47,8 @@ pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
     })
 }
 
-#[derive(Serialize)]
-struct Envelope<'a, T: Serialize> {
-    /// Incremented when a key is removed or changes meaning.
-    schema: u32,
-    version: &'static str,
-    #[serde(flatten)]
-    figures: &'a T,
-}
-
 /// Prints `text` (to standard error if JSON takes standard output) and writes `figures` as JSON.
 pub fn deliver(json: Option<&JsonTarget>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
     print_beside(json, text)?;
-    let version = env!("CARGO_PKG_VERSION");
-    json.map_or(Ok(()), |target| write_json(&Envelope { schema, version, figures }, target))
+    json.map_or(Ok(()), |target| write_figures(schema, figures, target))
 }

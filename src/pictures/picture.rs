@@ -57,7 +57,7 @@ impl Picture {
             saved.as_ref().and_then(|saved| saved.description.get(key::DENOISED)).map(str::to_owned);
         let denoised = denoised.or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         if let Some(film) = saved.and_then(|saved| saved.film) {
-            check_memory(film.width(), film.height(), 0)?;
+            check_memory(film.width(), film.height())?;
             let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
             let about = format!("film, {}", about_film(&film, recipe.as_ref()));
             return Ok(Picture { job, ..Picture::of_film(name, about, film) });
@@ -100,7 +100,7 @@ impl Picture {
 
     /// The picture of a film rendered by this program. Fails if a comparison of this size does not fit into memory.
     pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
-        check_memory(film.width(), film.height(), 0)?;
+        check_memory(film.width(), film.height())?;
         let about = format!("film, {}", about_film(&film, Some(&recipe)));
         Ok(Picture { job: recipe.job().ok(), ..Picture::of_film(name, about, film) })
     }
@@ -113,18 +113,17 @@ impl Picture {
 }
 
 /// Bytes per pixel during a comparison, without films: both pictures, their relations (twice as much), the difference,
-/// the halves' differences or the steps and bounds, the noise, and the heat map.
-const BYTES_PER_PIXEL: u64 = 8 * 24 + 8;
+/// the halves' differences or the steps and bounds, and the noise.
+const BYTES_PER_PIXEL: u64 = 8 * 24;
 
-/// Fails unless the pictures and `films` films of two halves fit into memory.
-pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
-    let pixels = u64::from(width) * u64::from(height);
-    let bytes = films * Film::bytes(width, height, 2) + pixels * BYTES_PER_PIXEL;
+/// Fails unless a comparison of this size fits into memory.
+fn check_memory(width: u32, height: u32) -> Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
     let what = || format!("comparing pictures of {width}x{height}");
-    Ok(memory::check(what, bytes, "compare smaller pictures (--size sets the size of rendered ones)")?)
+    Ok(memory::check(what, bytes, "compare smaller pictures")?)
 }
 
-pub(super) fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
+fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
     let size = format!("{}x{}, {} samples", film.width(), film.height(), film.sample_count());
     match recipe {
         Some(Recipe { name, settings, .. }) => {

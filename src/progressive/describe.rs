@@ -38,16 +38,6 @@ pub fn describe(
     description
 }
 
-/// The description of an animated PNG of frames of `recipe`.
-pub fn describe_animation(recipe: &Recipe, command: &str) -> Description {
-    let mut description = Description::new(&file::to_picture_toml(recipe));
-    description.set(key::SOFTWARE, SOFTWARE);
-    description.set(key::SCENE, &recipe.name);
-    description.set(key::SAMPLES, recipe.samples_per_pixel);
-    description.set(key::COMMAND, command);
-    description
-}
-
 /// A number with its noun: `1 sample`, `8 samples`.
 pub fn counted(number: u64, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })

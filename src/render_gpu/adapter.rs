@@ -27,8 +27,6 @@ pub struct AdapterInfo {
     pub storage_binding_limit: u64,
     /// Size limit of a buffer, in bytes.
     pub buffer_limit: u64,
-    /// Whether the adapter supports timestamp queries, which time a dispatch.
-    pub has_timestamps: bool,
     /// Largest number of threads that run in step.
     pub subgroup_size: u32,
     /// The reason why the path tracer cannot run on this adapter, if it cannot.
@@ -68,7 +66,6 @@ impl AdapterInfo {
             is_software: info.device_type == wgpu::DeviceType::Cpu || names_software(&info.name),
             storage_binding_limit: limits.max_storage_buffer_binding_size,
             buffer_limit: limits.max_buffer_size,
-            has_timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
             subgroup_size: info.subgroup_max_size,
             lacks,
         }
@@ -192,7 +189,6 @@ pub(super) mod tests {
             is_software,
             storage_binding_limit: 1 << 27,
             buffer_limit: 1 << 28,
-            has_timestamps: false,
             subgroup_size: 32,
             lacks: lacks.map(str::to_owned),
         }

@@ -1,7 +1,7 @@
 //! The camera: its position, direction and lens. (Book 1, sections 12 and 13.)
 
 use super::SceneError;
-use super::error::{finite, finite_vector, position};
+use super::error::{allowed, finite_vector, position};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -74,46 +74,31 @@ impl Camera {
         if right(self.vup, w).is_none() {
             return Err(SceneError::NoUp { vup: self.vup, remedy: least_aligned(w) });
         }
-        finite(|| "vfov_degrees".to_owned(), self.vfov_degrees)?;
+        let named = |name: &'static str| move || name.to_owned();
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
-        if !(narrowest..=widest).contains(&self.vfov_degrees) {
-            return Err(SceneError::range(
-                "vfov_degrees".into(),
-                self.vfov_degrees,
-                format!("within {narrowest} and {widest} degrees"),
-                "90 is wide, 20 is a portrait lens",
-            ));
-        }
-        finite(|| "defocus_angle_degrees".to_owned(), self.defocus_angle_degrees)?;
-        if !(0.0..DEFOCUS_LIMIT_DEGREES).contains(&self.defocus_angle_degrees) {
-            return Err(SceneError::range(
-                "defocus_angle_degrees".into(),
-                self.defocus_angle_degrees,
-                "at least 0 and below 179 degrees",
-                "use 0 for a pinhole",
-            ));
-        }
-        match self.focus_distance {
-            None if !FOCUS_LIMITS.contains(&self.effective_focus_distance()) => Err(SceneError::range(
-                "focus_distance (that from look_from to look_at)".into(),
-                self.effective_focus_distance(),
-                "within 1e-18 and 1e19 scene units",
-                "move look_at or give a focus_distance",
-            )),
-            None => Ok(()),
-            Some(distance) => {
-                finite(|| "focus_distance".to_owned(), distance)?;
-                if FOCUS_LIMITS.contains(&distance) {
-                    return Ok(());
-                }
-                Err(SceneError::range(
-                    "focus_distance".into(),
-                    distance,
-                    "within 1e-18 and 1e19 scene units",
-                    "leave it out to focus on look_at",
-                ))
+        allowed(
+            named("vfov_degrees"),
+            self.vfov_degrees,
+            (narrowest..=widest).contains(&self.vfov_degrees),
+            format!("within {narrowest} and {widest} degrees"),
+            "90 is wide, 20 is a portrait lens",
+        )?;
+        allowed(
+            named("defocus_angle_degrees"),
+            self.defocus_angle_degrees,
+            (0.0..DEFOCUS_LIMIT_DEGREES).contains(&self.defocus_angle_degrees),
+            "at least 0 and below 179 degrees",
+            "use 0 for a pinhole",
+        )?;
+        let (name, remedy) = match self.focus_distance {
+            None => {
+                ("focus_distance (that from look_from to look_at)", "move look_at or give a focus_distance")
             }
-        }
+            Some(_) => ("focus_distance", "leave it out to focus on look_at"),
+        };
+        let distance = self.effective_focus_distance();
+        let is_allowed = FOCUS_LIMITS.contains(&distance);
+        allowed(named(name), distance, is_allowed, "within 1e-18 and 1e19 scene units", remedy)
     }
 
     /// The focus distance in effect, scene units.

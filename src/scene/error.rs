@@ -60,17 +60,6 @@ pub enum SceneError {
     },
 }
 
-impl SceneError {
-    pub(crate) fn range(
-        what: String,
-        value: f64,
-        limit: impl Into<Cow<'static, str>>,
-        remedy: &'static str,
-    ) -> Self {
-        SceneError::OutOfRange { what, value, limit: limit.into(), remedy }
-    }
-}
-
 /// A name as a scene file's key, quoted if necessary.
 pub(crate) fn toml_key(name: &str) -> String {
     let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
@@ -102,6 +91,19 @@ pub(super) fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), Sc
     if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what(), value }) }
 }
 
+/// A finite number that `is_allowed`, or an error that names the `limit` and the `remedy`.
+pub(super) fn allowed(
+    what: impl Fn() -> String,
+    value: f64,
+    is_allowed: bool,
+    limit: impl Into<Cow<'static, str>>,
+    remedy: &'static str,
+) -> Result<(), SceneError> {
+    finite(&what, value)?;
+    let error = || SceneError::OutOfRange { what: what(), value, limit: limit.into(), remedy };
+    if is_allowed { Ok(()) } else { Err(error()) }
+}
+
 pub(super) fn finite_vector(what: impl Fn() -> String, value: DVec3) -> Result<(), SceneError> {
     components(value)
         .into_iter()
@@ -110,15 +112,10 @@ pub(super) fn finite_vector(what: impl Fn() -> String, value: DVec3) -> Result<(
 
 pub(super) fn position(what: impl Fn() -> String, value: DVec3) -> Result<(), SceneError> {
     finite_vector(&what, value)?;
-    match components(value).into_iter().find(|(_, component)| component.abs() > LENGTH_LIMIT) {
-        None => Ok(()),
-        Some((axis, component)) => Err(SceneError::range(
-            format!("{}.{axis}", what()),
-            component,
-            "within -1e18 and 1e18",
-            "scale the scene down",
-        )),
-    }
+    components(value).into_iter().try_for_each(|(axis, x)| {
+        let what = || format!("{}.{axis}", what());
+        allowed(what, x, x.abs() <= LENGTH_LIMIT, "within -1e18 and 1e18", "scale the scene down")
+    })
 }
 
 pub(super) fn colour(what: impl Fn() -> String, value: DVec3, limit: f64) -> Result<(), SceneError> {

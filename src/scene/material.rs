@@ -1,7 +1,7 @@
 //! How surfaces scatter light. (Book 1, sections 9 to 11.)
 
 use super::SceneError;
-use super::error::{colour, finite};
+use super::error::{allowed, colour};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -127,29 +127,15 @@ impl Material {
             Material::Lambertian { albedo } => colour(|| of("albedo"), albedo, 1.0),
             Material::Metal { albedo, fuzz } => {
                 colour(|| of("albedo"), albedo, 1.0)?;
-                finite(|| of("fuzz"), fuzz)?;
-                if fuzz < 0.0 {
-                    return Err(SceneError::range(
-                        of("fuzz"),
-                        fuzz,
-                        "0 or more",
-                        "use 0 for a perfect mirror",
-                    ));
-                }
-                Ok(())
+                allowed(|| of("fuzz"), fuzz, fuzz >= 0.0, "0 or more", "use 0 for a perfect mirror")
             }
-            Material::Dielectric { refraction_index } => {
-                finite(|| of("refraction_index"), refraction_index)?;
-                if !REFRACTION_INDEX_LIMITS.contains(&refraction_index) {
-                    return Err(SceneError::range(
-                        of("refraction_index"),
-                        refraction_index,
-                        "within 1e-9 and 1e9",
-                        "glass is about 1.5; an air bubble in glass is 1/1.5",
-                    ));
-                }
-                Ok(())
-            }
+            Material::Dielectric { refraction_index } => allowed(
+                || of("refraction_index"),
+                refraction_index,
+                REFRACTION_INDEX_LIMITS.contains(&refraction_index),
+                "within 1e-9 and 1e9",
+                "glass is about 1.5; an air bubble in glass is 1/1.5",
+            ),
         }
     }
 }

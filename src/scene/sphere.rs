@@ -1,7 +1,7 @@
 //! A sphere. (Book 1, section 5.)
 
 use super::SceneError;
-use super::error::{LENGTH_LIMIT, finite, position};
+use super::error::{LENGTH_LIMIT, allowed, position};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -23,19 +23,12 @@ impl Sphere {
     pub(crate) fn validate(&self, index: usize, material_count: usize) -> Result<(), SceneError> {
         let of = |key: &str| format!("spheres[{index}].{key}");
         position(|| of("center"), self.center)?;
-        finite(|| of("radius"), self.radius)?;
-        if !RADIUS_LIMITS.contains(&self.radius) {
-            return Err(SceneError::range(
-                of("radius"),
-                self.radius,
-                "within 1e-18 and 1e18",
-                if self.radius < 0.0 {
-                    "for a hollow glass sphere, put a smaller sphere of index 1/n inside it"
-                } else {
-                    "give the sphere a size or remove it"
-                },
-            ));
-        }
+        let remedy = match self.radius {
+            ..0.0 => "for a hollow glass sphere, put a smaller sphere of index 1/n inside it",
+            _ => "give the sphere a size or remove it",
+        };
+        let is_allowed = RADIUS_LIMITS.contains(&self.radius);
+        allowed(|| of("radius"), self.radius, is_allowed, "within 1e-18 and 1e18", remedy)?;
         if self.material >= material_count {
             return Err(SceneError::MissingMaterial { sphere: index, material: self.material.to_string() });
         }

@@ -1,13 +1,9 @@
-//! Frames and animated PNG, rendered by the program.
+//! Frames, rendered by the program.
 
 use super::common::{SCENE, names, pixels, render, weekender};
 use std::fs;
-use std::io::BufReader;
-use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use weekender::job::output::{key, read_description};
-use weekender::job::recipe::file::parse;
 
 fn temp() -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
@@ -75,14 +71,13 @@ fn only_incomplete_frames_are_rendered_again() {
 fn interrupted_run_keeps_whole_frames_and_continues() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let directory = temp();
-        let flags =
-            ["--batch", "--size", "160x90", "--samples", "64", "--turntable=400", "--out", "turn.png"];
+        let flags = ["--batch", "--size", "160x90", "--samples", "64", "--turntable=400", "--out", "frames"];
         let mut child = weekender(directory.path(), &[&flags[..], &["--json", "figures.json"]].concat())
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let frames = directory.path().join("turn-frames");
+        let frames = directory.path().join("frames");
         let count = || if frames.is_dir() { names(&frames).len() } else { 0 };
         let begin = Instant::now();
         while count() < 3 && begin.elapsed() < Duration::from_secs(100) {
@@ -97,18 +92,13 @@ fn interrupted_run_keeps_whole_frames_and_continues() {
         assert!(names(&frames).iter().all(|name| name.starts_with("frame-")), "{:?}", names(&frames));
         let figures = fs::read_to_string(directory.path().join("figures.json")).unwrap();
         let figures: serde_json::Value = serde_json::from_str(&figures).unwrap();
-        assert_eq!(
-            (&figures["frames_done"], &figures["animation"]),
-            (&done.into(), &serde_json::Value::Null)
-        );
-        assert!(!directory.path().join("turn.png").exists());
+        assert_eq!(figures["frames_done"], done);
 
         let range = format!("0..{}", done + 1);
         let again = [&flags[..], &["--frames", &range, "--json", "-"]].concat();
         let output = weekender(directory.path(), &again).output().unwrap();
         let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!((&json["kept"], &json["rendered"]), (&done.into(), &1.into()));
-        assert!(directory.path().join("turn.png").exists());
     }
 }
 
@@ -125,48 +115,4 @@ fn failed_run_reports_where_and_keeps_its_frames() {
         assert!(message.contains("frame 2 failed; 2 frames before it stay"), "{message}");
     }
     assert_eq!(names(&directory.path().join("d")), ["frame-0000.png", "frame-0001.png", "frame-0002.png"]);
-}
-
-/// Frames and delays of an animated PNG.
-fn decoded(path: &Path) -> (u32, Vec<(u16, u16, Vec<u8>)>) {
-    let file = BufReader::new(fs::File::open(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let control = *reader.info().animation_control().unwrap();
-    let mut frames = Vec::new();
-    for _ in 0..control.num_frames {
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut pixels).unwrap();
-        let frame = reader.info().frame_control().unwrap();
-        frames.push((frame.delay_num, frame.delay_den, pixels));
-    }
-    reader.finish().unwrap();
-    (control.num_plays, frames)
-}
-
-#[test]
-fn an_animated_png_has_all_frames_and_exact_delays() {
-    let directory = temp();
-    for (flags, delay, range) in [
-        (&[][..], (1, 30), 0_u32..6),
-        (&["--fps", "30000/1001"], (1001, 30_000), 0..6),
-        (&["--frames", "2..5"], (1, 30), 2..5),
-    ] {
-        let json = render(directory.path(), &[&["--turntable=6", "--out", "turn.png"], flags].concat());
-        assert_eq!(json["animation"], "turn.png");
-        assert_eq!(
-            (&json["first_frame"], &json["last_frame"]),
-            (&range.start.into(), &(range.end - 1).into())
-        );
-        assert_eq!((&json["frames"], &json["frames_done"]), (&range.len().into(), &range.len().into()));
-        let (plays, frames) = decoded(&directory.path().join("turn.png"));
-        assert_eq!((plays, frames.len()), (0, range.len()), "it repeats without end");
-        for (number, (delay_number, denominator, found)) in range.zip(&frames) {
-            assert_eq!((*delay_number, *denominator), delay);
-            let frame = directory.path().join(format!("turn-frames/frame-{number:04}.png"));
-            assert!(*found == pixels(&frame), "frame {number}");
-        }
-    }
-    let description = read_description(&directory.path().join("turn.png")).unwrap();
-    assert!(description.get(key::COMMAND).unwrap().contains("--turntable=6"));
-    parse(description.recipe(), "turn").unwrap().job().unwrap();
 }

@@ -16,7 +16,7 @@ fn refused(arguments: &[&str], parts: &[&str]) {
 }
 
 #[test]
-fn ranges_turns_and_rates_have_limits() {
+fn ranges_and_turns_have_limits() {
     for range in ["5..5", "6..5", "0..100001", "7", "a..b"] {
         refused(
             &["--batch", "--turntable", "--frames", range, "--out", "d"],
@@ -25,9 +25,6 @@ fn ranges_turns_and_rates_have_limits() {
     }
     for turn in ["0", "1", "-5", "100001", "0deg", "181deg", "nandeg", "x"] {
         refused(&["--batch", &format!("--turntable={turn}"), "--out", "d"], &[turn, "such as 3deg or -3deg"]);
-    }
-    for rate in ["0", "29.97", "30/0", "70000"] {
-        refused(&["--batch", "--turntable", "--fps", rate, "--out", "a.png"], &[rate, "30000/1001"]);
     }
 }
 
@@ -48,15 +45,13 @@ fn an_animation_is_not_a_film() {
     let base = ["--batch", "--turntable", "--frames", "0..2"];
     let with = |more: &[&str], parts: &[&str]| refused(&[&base[..], more].concat(), parts);
     with(&[], &["--out"]);
-    for out in ["a.exr", "a.mp4", "a-##.ppm", "a-#-#.png"] {
+    for out in ["a.exr", "a.mp4", "a.png", "a-##.ppm", "a-#-#.png"] {
         with(&["--out", out], &[out, "turn-####.png"]);
     }
-    with(&["--out", "d", "--fps", "30"], &["--fps needs --out FILE.png"]);
-    with(&["--out", "a.png", "--json", "a.png"], &["--json", "a.png"]);
+    with(&["--out", "a-#.png", "--json", "a-1.png"], &["a-1.png"]);
     for (flag, value) in [
         ("--resume", "film.exr"),
         ("--checkpoint", "film.exr"),
-        ("--ppm", "ascii"),
         ("--time-limit", "3"),
         ("--noise-target", "0.1"),
         ("--sample-range", "0..4"),
@@ -64,7 +59,5 @@ fn an_animation_is_not_a_film() {
     ] {
         with(&["--out", "d", flag, value], &["cannot be used with", flag]);
     }
-    with(&["--out", "d", "--stage", "all"], &["all"]);
     refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--batch"]);
-    refused(&["--batch", "--fps", "30"], &["--frames"]);
 }

@@ -3,7 +3,7 @@
 /// Each room with the rooms that it may use, one row a room. Lower layers come first.
 pub const ROOMS: &str = "\
 system:
-numbers: system
+numbers:
 scene: system
 stages: system scene
 film: system stages
@@ -15,10 +15,10 @@ render_cpu: system stages film job kernel prepared
 render_gpu: stages film job kernel prepared
 backends: system scene stages film job kernel render_cpu render_gpu
 progressive: system numbers scene stages film denoise job backends
-cli: system numbers scene stages film job render_cpu render_gpu backends progressive
+cli: system scene stages film job render_cpu render_gpu backends progressive
 batch: system scene stages film denoise job backends progressive cli
 pictures: system numbers scene stages film job kernel render_cpu render_gpu backends cli
-measure: system numbers scene stages film denoise job kernel prepared render_cpu render_gpu backends progressive cli pictures
+measure: system numbers scene stages film denoise job kernel render_cpu render_gpu backends cli pictures
 page: system numbers scene stages film job kernel render_cpu render_gpu backends progressive cli batch pictures measure
 app: system numbers scene stages film denoise job render_cpu render_gpu backends progressive cli pictures measure page";
 
@@ -34,7 +34,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("fearless_simd", &["denoise", "render_cpu"]),
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
-    ("image", &["numbers", "job", "pictures", "page", "app"]),
+    ("image", &["job", "pictures", "page", "app"]),
     ("indicatif", &["cli", "measure"]),
     ("maud", &["page"]),
     ("plotters", &["numbers"]),

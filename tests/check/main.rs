@@ -70,12 +70,32 @@ fn planted_mistakes_are_named() {
     }
 }
 
+/// With the rules of an earlier section, black glass looks like glass whose normals are not turned.
+#[test]
+fn mistakes_with_the_same_picture_are_both_named() {
+    let finding = judge(&mine("hollow-glass", "glass-black", 60, 3), None, |_| {}).unwrap();
+    let named = [finding.named(), finding.alike].map(|mistake| mistake.unwrap().id);
+    assert!(named.contains(&"glass-black"), "{named:?}");
+}
+
 /// Some mistake always fits slightly better than none, but no mistake turns one scene into another.
 #[test]
 fn other_scene_matches_no_mistake() {
     for (shown, stage) in [("lambertian-gamma", "hollow-glass"), ("metal-fuzzy", "lambertian-gamma")] {
         assert_eq!(found(&mine(shown, "", 30, 7), Some(stage)), "unknown", "{shown} as {stage}");
     }
+}
+
+#[test]
+fn mistakes_are_named_without_a_stage() {
+    for (stage, mistake) in [
+        ("lambertian-gamma", "zero-t-min"),
+        ("lambertian-gamma", "hemisphere"),
+        ("lambertian-gamma", "same-seed"),
+    ] {
+        assert_eq!(found(&mine(stage, mistake, 60, 3), None), mistake, "{stage}");
+    }
+    assert_eq!(found(&mine("normals-world", "", 10, 3), None), "right");
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn part_killed_at_random_ends_with_the_bits_of_one_run() {
         let status = wait(&mut child);
         assert_eq!(status.code(), asked.then_some(143), "round {round}: {status}");
         if path.exists() {
-            let held = checkpoint::check(&path).unwrap().samples;
+            let held = checkpoint::load(&path).unwrap().film.samples().clone();
             assert_eq!(held.first_gap(1 << 30..held.end(), u64::MAX), None, "round {round}");
             assert!(held.count() >= last, "round {round}: {} samples, {last} before", held.count());
             last = held.count();

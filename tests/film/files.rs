@@ -106,7 +106,7 @@ fn old_film_file_is_read() {
     assert_eq!(description.get(key::SCENE), Some("three-spheres"));
     let sum = |half: usize| film.halves()[half].iter().flat_map(|sum| sum.0).sum::<u64>();
     assert_eq!([sum(0), sum(1)], [15_795_466_573, 15_650_156_772]);
-    assert_eq!(checkpoint::check(path).unwrap().description, description);
+    assert_eq!(checkpoint::read_head(path).unwrap().description, description);
 }
 
 /// The bytes of an attribute in a file: name, type, length and value.
@@ -188,10 +188,8 @@ fn damage_is_located() {
         std::fs::write(&path, bytes).unwrap();
         let first = row / 16 * 16;
         let rows = format!("the rows {first} to {}", (first + 15).min(69));
-        for result in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
-            let message = result.unwrap_err().to_string();
-            assert!(message.contains("is damaged") && message.contains(&rows), "{row}: {message}");
-        }
+        let message = checkpoint::load(&path).unwrap_err().to_string();
+        assert!(message.contains("is damaged") && message.contains(&rows), "{row}: {message}");
     }
 }
 
@@ -215,7 +213,5 @@ fn head_has_everything_but_the_sums() {
     let head = checkpoint::read_head(&path).unwrap();
     assert_eq!((head.width, head.height, head.halves), (5, 3, 1));
     assert_eq!((&head.samples, head.rejected), (film.samples(), 6));
-    assert_eq!(head.bytes, std::fs::metadata(&path).unwrap().len());
     assert_eq!(head.description, description());
-    assert_eq!(checkpoint::check(&path).unwrap(), head);
 }

@@ -109,11 +109,9 @@ fn damaged_film_leaves_the_sum_unchanged() {
     let refused = sum.add(&path("b.exr"), same_recipe_text).unwrap_err();
     assert!(matches!(refused, MergeError::File(CheckpointError::Damaged { .. })), "{refused}");
     assert!(sum.film() == &noisy_film(3, 400, 2, &[0..2]));
-    let mut copy = sum.try_copy().unwrap();
     std::fs::write(path("b.exr"), whole).unwrap();
-    assert_eq!(copy.add(&path("b.exr"), same_recipe_text).unwrap().to_string(), "2..4");
+    assert_eq!(sum.add(&path("b.exr"), same_recipe_text).unwrap().to_string(), "2..4");
     assert!(
-        copy.film() == &noisy_film(3, 400, 2, &[0..4]) && copy.description().get(key::SECONDS) == Some("3")
+        sum.film() == &noisy_film(3, 400, 2, &[0..4]) && sum.description().get(key::SECONDS) == Some("3")
     );
-    assert!(sum.film() == &noisy_film(3, 400, 2, &[0..2]), "the copy is another sum");
 }

@@ -12,7 +12,6 @@ use weekender::render_cpu::path::trace;
 use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
-use weekender::stages::Transfer;
 
 /// Traces a prepared scene without validating it, in one tile of at most 256 pixels a side.
 pub fn trace_tables(
@@ -122,21 +121,5 @@ fn case_25_not_a_number() {
     assert_eq!(trace_tables(&prepared, &mut film, 0..SAMPLES).rejected, 64 * 36 * SAMPLES);
     for pixel in 0..64 * 36 {
         assert_eq!(film.pixel_sum(pixel).0, [0; 3]);
-    }
-}
-
-/// Each pixel of a part equals the whole picture's, with the transfer of its own row.
-#[test]
-fn crop_matches_whole_picture() {
-    let (scene, camera) = (three_spheres(LeftSphere::HollowGlass), Camera::BOOK);
-    let film = render(&mut widest(), &job(&scene, camera, size(7, 5)), 0..2);
-    for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
-        let whole = film.to_rgb8(transfer);
-        for [left, top, width, height] in [[0, 0, 7, 5], [2, 1, 3, 4], [6, 3, 1, 2]] {
-            let rows = (top..top + height).map(|row| 3 * (7 * row + left));
-            let expected: Vec<u8> = rows.flat_map(|at| whole[at..at + 3 * width].to_vec()).collect();
-            let [first, size] = [[left, top], [width, height]].map(|pair| pair.map(|n| n as u32));
-            assert_eq!(film.part_rgb8(transfer, first, size), expected, "{first:?} {size:?}");
-        }
     }
 }

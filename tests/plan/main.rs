@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod common;
-mod frames;
 mod info;
 mod merging;
 mod parts;
@@ -11,5 +10,3 @@ mod parts;
 mod program_common;
 mod refused;
 mod scripts;
-#[cfg(unix)]
-mod watching;

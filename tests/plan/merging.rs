@@ -27,7 +27,7 @@ fn existing_parts_are_merged_and_missing_ones_named() {
     render_part(at, "p", 1);
     render_part(at, "p", 2);
     succeeds(at, &["merge", "p", "--out", "m.exr"]);
-    assert_eq!(succeeds(at, &["merge", "p", "--check"]), "4 of 4 parts are whole\n");
+    assert!(succeeds(at, &["merge", "p", "--check"]).ends_with("; 4 of 4 parts are whole\n"));
     assert!(film(&at.join("m.exr")) == whole(at, "0..32", &[]));
 }
 
@@ -116,7 +116,7 @@ fn films_without_a_plan_are_added_or_refused() {
         assert!(!at.join("m.exr").exists());
     }
     let (_, message) = ends(at, 2, &["merge", "--check", "a.exr", "b c.exr"]);
-    assert!(message.contains("need a plan"), "{message}");
+    assert!(message.contains("needs a plan"), "{message}");
     let message = succeeds(at, &["merge", "a.exr", "b c.exr", "--out", "all.exr"]);
     assert!(message.starts_with("24 samples per pixel (0..24) from 2 films"), "{message}");
     assert!(film(&at.join("all.exr")) == whole(at, "0..24", &[]));

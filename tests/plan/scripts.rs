@@ -23,20 +23,14 @@ fn is_there(tool: &str) -> bool {
 }
 
 #[test]
-fn json_has_every_command() {
+fn commands_have_the_flags_of_the_plan() {
     let at = TempDir::new().unwrap();
-    let at = at.path();
-    let json = plan(at, "p q", &["--samples", "8", "--parts", "2", "--format", "json", "--every", "2m"]);
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["samples"], serde_json::json!([0, 8]));
-    assert_eq!(json["parts"][1], serde_json::json!({"file": "part-1.exr", "samples": [4, 8]}));
-    let words: Vec<&str> =
-        json["part_commands"][1].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+    let lines = plan(at.path(), "p q", &["--samples", "8", "--parts", "2", "--every", "2m"]);
+    let words = shlex::split(lines.lines().nth(1).unwrap()).unwrap();
     assert_eq!(
         words[1..],
         ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=2m"]
     );
-    assert_eq!(json["merge_command"][2], "p q/plan.json");
 }
 
 #[cfg(unix)]

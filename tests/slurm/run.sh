@@ -177,19 +177,3 @@ expect compare.log "equal to the bit"
 [ "$(bands plan/picture.exr)" = "$(bands whole.exr)" ] || fail "the sums differ"
 [ "$(bands whole.exr)" != "$(bands plan/part-0.exr)" ] || fail "the checksums do not tell sums apart"
 said "the picture and its sums are equal to the bit to those of one run"
-
-# Frames of an animation: the array renders them, and the job after it makes the animated PNG.
-turn=(--scene book --size 96x54 --device cpu --samples 16 --turntable=12)
-"$program" plan "${turn[@]}" --threads 1 --parts 4 --format slurm --program "$work/weekender" --out turn > turn.log 2>&1 ||
-    fail "the animation is not planned: $(cat turn.log)"
-told=$(sh turn/submit.sh --partition=test --time=10)
-wait_for 60 "the animation is made" has_ended "${told##* }"
-[ "$(field "${told##* }" ExitCode)" = 0:0 ] || fail "the animation is not made: $(cat turn/merge.log)"
-"$program" --batch "${turn[@]}" --out turn-alone.png > turn-alone.log 2>&1 || fail "the single run failed"
-for frame in turn/frame-*.png; do
-    "$program" compare "$frame" "turn-alone-frames/${frame##*/}" > compare.log 2>&1 || fail "$frame differs"
-    expect compare.log "(0.00e0 RMS), +0.0e0 on average"
-done
-frames=(turn/frame-*.png)
-[ "${#frames[@]}" -eq 12 ] || fail "there are ${#frames[@]} frames"
-said "an array rendered 12 frames, which equal those of one run, and the job after it made the animated PNG"

@@ -65,7 +65,7 @@ fn weekender(arguments: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn program_writes_table_json_and_pictures() {
+fn program_writes_table_and_json() {
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out");
     let json = directory.path().join("figures.json");
@@ -81,9 +81,7 @@ fn program_writes_table_json_and_pictures() {
     assert_eq!(output.status.code(), Some(i32::from(!are_right)), "{text}");
     assert_eq!(cases[0]["id"], "shells/1");
     assert_eq!(cases[0]["measured"][0]["mean"], 0.5);
-    for name in ["table.md", "shells-1-ours.png", "shells-1-book.png"] {
-        assert!(out.join(name).exists(), "{name}");
-    }
+    assert!(std::fs::read_to_string(out.join("table.md")).unwrap().contains("| `shells/1` |"));
 }
 
 #[test]

@@ -88,7 +88,7 @@ mod tests {
     /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
         match parse(line.split_whitespace().map(Into::into)).unwrap() {
-            Request::Batch(options) => options.renders[0].job.clone(),
+            Request::Batch(options) => options.render.job.clone(),
             other => panic!("{line}: {other:?}"),
         }
     }

@@ -1,7 +1,5 @@
-//! `weekender merge`: adds films of the same picture, or the parts of a plan as they come, and makes an animated PNG of
-//! frames.
+//! `weekender merge`: adds films of the same picture, or the existing parts of a plan.
 
-mod pieces;
 mod plan;
 
 use crate::cli::terminal::print;
@@ -39,8 +37,8 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
         films if films.iter().any(|film| Plan::is_at(film)) => refuse(
             "a plan names its parts itself: merge it alone, then merge the result with the other files",
         ),
-        _ if options.watch || options.check => refuse(
-            "--watch and --check need a plan: only a plan says which parts there should be; make one with `weekender plan`",
+        _ if options.check => refuse(
+            "--check needs a plan: only a plan says which parts there should be; make one with `weekender plan`",
         ),
         films => merge(films, options),
     }

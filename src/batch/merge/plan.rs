@@ -1,156 +1,47 @@
-//! Merges the existing parts of a plan, or parts as they come.
+//! Merges the existing parts of a plan, and says what is missing.
 
-use super::pieces::{Piece, Pieces, State};
 use super::{check_outputs, warn_of_loss, write, wrote};
 use crate::cli::MergeOptions;
 use crate::cli::terminal::print;
-use crate::film::{Film, FilmSum, MergeError, key};
-use crate::job::output::{OutputFormat, write_animation};
-use crate::job::plan::{Frames, Plan, Work};
+use crate::film::{Film, FilmSum, MergeError, checkpoint, key};
+use crate::job::plan::{Commands, Part, Plan};
 use crate::job::saved::same_job;
 use crate::progressive::Status;
-use crate::progressive::describe::{describe, describe_animation};
+use crate::progressive::describe::describe;
 use crate::system::console;
 use crate::system::failure::{FAILED, Failure};
 use crate::system::files::ShownPath;
-use crate::system::interrupt::Interrupt;
-use anyhow::anyhow;
 use std::process::ExitCode;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
 
-/// Pause between checks of signals.
-const SIGNAL: Duration = Duration::from_millis(100);
-
-/// Merges, watches or checks the parts.
+/// Merges or checks the parts.
 pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
     check_outputs("a file of the plan", &plan.files(), options)?;
-    let sum = match plan.manifest.work {
-        Work::Samples(_) => Some(empty_sum(plan).map_err(Failure::input)?),
-        Work::Frames(_) => check_names(options).map(|()| None)?,
-    };
-    let pieces = Pieces::of(plan);
-    let mut merging = Merging { options, pieces, sum, found: String::new(), is_written: false };
+    let mut sum = empty_sum(plan).map_err(Failure::input)?;
+    let parts = &plan.manifest.parts;
+    let added = parts.iter().enumerate().map(|(index, part)| (index, add(&mut sum, plan, part)));
+    let lacking: Vec<(usize, String)> =
+        added.filter_map(|(index, state)| Some((index, state.err()?))).collect();
+    let mut lines: Vec<String> =
+        lacking.iter().map(|(index, what)| format!("part {index}: {what}")).collect();
+    lines.extend(remedy(plan, &lacking, &options.program));
+    let (film, [start, end]) = (sum.film(), plan.manifest.samples);
+    let (samples, count, of) = (film.samples(), film.sample_count(), end - start);
+    let (whole, all) = (parts.len() - lacking.len(), parts.len());
+    let found = format!("{count} of {of} samples per pixel ({samples}); {whole} of {all} parts are whole\n");
     if options.check {
-        return merging.check();
-    }
-    let interrupt = if options.watch { Some(Interrupt::install().map_err(Failure::Run)?) } else { None };
-    let is_interrupted = || interrupt.as_ref().is_some_and(Interrupt::is_set);
-    loop {
-        let is_end = !options.watch || is_interrupted();
-        let before = merging.found.clone();
-        merging.merge(interrupt.as_ref(), is_end)?;
-        if is_end || merging.pieces.is_complete() {
-            return merging.finish(interrupt.filter(Interrupt::is_set));
-        }
-        if merging.found != before {
-            merging.pieces.wrong().for_each(|line| console::note(&format!("warning: {line}")));
-            console::note(&merging.found);
-        }
-        let begin = Instant::now();
-        while begin.elapsed() < options.every && !is_interrupted() {
-            sleep(SIGNAL.min(options.every));
-        }
-    }
-}
-
-/// Refuses a result that is not an animated PNG.
-fn check_names(options: &MergeOptions) -> Result<(), Failure> {
-    let is_png = |out: &&std::path::PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Png));
-    match options.out.iter().find(|out| !is_png(out)) {
-        Some(out) => Err(Failure::Input(anyhow!(
-            "--out is {}, but the frames of an animation make an animated PNG; let the name end in .png",
-            out.shown()
-        ))),
-        None => Ok(()),
-    }
-}
-
-/// A merge in progress.
-struct Merging<'a> {
-    options: &'a MergeOptions,
-    pieces: Pieces<'a>,
-    /// The sum of the whole parts, until the end; `None` for frames.
-    sum: Option<FilmSum>,
-    /// How much exists, as of the last merge.
-    found: String,
-    is_written: bool,
-}
-
-impl Merging<'_> {
-    /// Reads everything, and prints what is missing, damaged or foreign.
-    fn check(mut self) -> Result<ExitCode, Failure> {
-        self.pieces.look();
-        if let Some(sum) = &mut self.sum {
-            add(sum, &mut self.pieces.all, true);
-        }
-        let (pieces, is_complete) = (&self.pieces, self.pieces.is_complete());
-        let mut lines: Vec<String> = pieces.lines().chain([pieces.words()]).collect();
-        if !is_complete {
-            lines.push(pieces.remedy(&self.options.program));
-        }
-        print(&(lines.join("\n") + "\n")).map_err(Failure::Run)?;
-        Ok(if is_complete { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
-    }
-
-    /// Writes the picture so far if it has changed, or the animation once it is complete.
-    fn merge(&mut self, interrupt: Option<&Interrupt>, is_end: bool) -> Result<(), Failure> {
-        let Merging { options, pieces, sum, found, is_written } = self;
-        let plan = pieces.plan;
-        pieces.look();
-        let names: Vec<String> = options.out.iter().map(ShownPath::shown).collect();
-        let _writing = interrupt.map(|interrupt| interrupt.while_writing(names.join(" and ")));
-        if let Work::Frames(work) = &plan.manifest.work {
-            *found = pieces.words();
-            if pieces.is_complete() {
-                assemble(plan, work, options)?;
-                *is_written = true;
-            }
-            return Ok(());
-        }
-        let Some(whole) = sum else { return Ok(()) };
-        add(whole, &mut pieces.all, false);
-        // Unfinished checkpoints will grow, so they are added to a copy unless this is the end.
-        let mut sum = if is_end || pieces.is_complete() {
-            sum.take()
-        } else {
-            whole.try_copy().inspect_err(|error| console::note(&format!("warning: {error}"))).ok()
-        };
-        let Some(sum) = &mut sum else { return Ok(()) };
-        add(sum, &mut pieces.all, true);
-        let (samples, lengths) = (sum.film().samples(), plan.manifest.work.lengths());
-        let (count, of) = (samples.count(), lengths.iter().sum::<u64>());
-        let now = format!("{count} of {of} samples per pixel ({samples}); {}", pieces.words());
-        let is_new = now != *found;
-        *found = now;
-        if is_new && count > 0 {
-            if !*is_written {
-                warn_of_loss(&options.out, sum.film(), &sum.description());
-            }
-            write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
-            *is_written = true;
-        }
-        Ok(())
-    }
-
-    /// Reports the outcome; `interrupt` is that of a merge that was interrupted.
-    fn finish(self, interrupt: Option<Interrupt>) -> Result<ExitCode, Failure> {
-        let Merging { options, pieces, found, is_written, .. } = self;
-        if is_written {
-            print(&format!("{found}\n{}", wrote(&options.out))).map_err(Failure::Run)?;
+        let lines = lines.iter().map(|line| format!("{line}\n"));
+        print(&std::iter::once(found).chain(lines).collect::<String>()).map_err(Failure::Run)?;
+    } else {
+        if count > 0 {
+            warn_of_loss(&options.out, film, &sum.description());
+            write(&options.out, film, plan.recipe.rules.transfer, &sum.description())?;
+            print(&(found + &wrote(&options.out))).map_err(Failure::Run)?;
         } else {
             console::note(&found);
         }
-        if pieces.is_complete() {
-            return Ok(ExitCode::SUCCESS);
-        }
-        if interrupt.is_some() {
-            console::note("interrupted; the same command continues");
-        }
-        pieces.lines().for_each(|line| console::note(&line));
-        console::note(&pieces.remedy(&options.program));
-        Ok(interrupt.map_or(ExitCode::from(FAILED), |interrupt| interrupt.exit_code()))
+        lines.iter().for_each(|line| console::note(line));
     }
+    Ok(if lacking.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
 
 fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
@@ -160,36 +51,62 @@ fn empty_sum(plan: &Plan) -> Result<FilmSum, MergeError> {
     FilmSum::new(settings.width, settings.height, settings.half_count(), description, &plan.path)
 }
 
-/// Adds the films of whole parts, and of unfinished ones `with_unfinished`. One that cannot be added becomes
-/// [`State::Wrong`].
-fn add(sum: &mut FilmSum, pieces: &mut [Piece], with_unfinished: bool) {
-    for piece in pieces.iter_mut().filter(|piece| !piece.is_merged) {
-        match piece.state {
-            State::Whole => {}
-            State::Unfinished { .. } if with_unfinished => {}
-            _ => continue,
+/// Adds what exists of a part.
+///
+/// # Errors
+/// What the part lacks, or why its film was not added.
+fn add(sum: &mut FilmSum, plan: &Plan, part: &Part) -> Result<(), String> {
+    let (Part { file, samples: [start, end] }, path) = (part, plan.beside(&part.file));
+    if path.symlink_metadata().is_err() {
+        return Err(format!("{file} is missing"));
+    }
+    let head = checkpoint::read_head(&path).map_err(|error| error.to_string())?;
+    if part.is_exceeded_by(&head.samples) {
+        let (path, samples) = (path.shown(), head.samples);
+        return Err(format!(
+            "{path} holds the samples {samples}, but this part has {start}..{end}; move the file away"
+        ));
+    }
+    let samples = sum.add(&path, same_job).map_err(|error| match error {
+        MergeError::OtherJob { other, difference, .. } => {
+            format!("{} is the film of another picture: {difference}; move it away", other.shown())
         }
-        match sum.add(&piece.path, same_job) {
-            Ok(_) => piece.is_merged = piece.state == State::Whole,
-            Err(MergeError::OtherJob { other, difference, .. }) => {
-                let other = other.shown();
-                piece.state = State::Wrong(format!(
-                    "{other} is the film of another picture: {difference}; move it away"
-                ));
-            }
-            Err(error) => piece.state = State::Wrong(error.to_string()),
-        }
+        error => error.to_string(),
+    })?;
+    match (part.missing(&samples), end - start) {
+        (0, _) => Ok(()),
+        (missing, of) => Err(format!("{file} has {} of {of} samples per pixel", of - missing)),
     }
 }
 
-/// Makes the animated PNG of all frames.
-fn assemble(plan: &Plan, work: &Frames, options: &MergeOptions) -> Result<(), Failure> {
-    let (settings, names) = (plan.job.settings(), plan.frame_names());
-    let description = describe_animation(&plan.recipe, &plan.manifest.command);
-    let size = [settings.width, settings.height];
-    for out in &options.out {
-        let frames = work.range().map(|frame| names.path(frame));
-        write_animation(out, size, work.rate, frames, &description).map_err(Failure::run)?;
+/// How to render what is missing: a heading, then one command per line.
+fn remedy(plan: &Plan, lacking: &[(usize, String)], program: &str) -> Vec<String> {
+    if lacking.is_empty() {
+        return Vec::new();
     }
-    Ok(())
+    let parts: Vec<usize> = lacking.iter().map(|(part, _)| *part).collect();
+    let commands = Commands::new(program, &plan.path.to_string_lossy(), &plan.manifest);
+    let heading = format!("for what is missing (--array={} in Slurm):", ranges(&parts));
+    std::iter::once(heading).chain(parts.iter().map(|part| commands.part(&part.to_string()))).collect()
+}
+
+/// Ascending numbers as Slurm writes them: `0,3-7,9`.
+fn ranges(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|number, next| number + 1 == *next);
+    let text = |run: &[usize]| match run {
+        [first, _, .., last] => format!("{first}-{last}"),
+        few => few.iter().map(usize::to_string).collect::<Vec<_>>().join(","),
+    };
+    runs.map(text).collect::<Vec<_>>().join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_grouped_as_slurm_reads_them() {
+        assert_eq!(ranges(&[0, 3, 4, 5, 7, 8]), "0,3-5,7,8");
+        assert_eq!(ranges(&[]), "");
+    }
 }

@@ -32,6 +32,24 @@ pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     print(text)
 }
 
+/// Figures with what all JSON of this program begins with.
+#[derive(Serialize)]
+struct Envelope<'a, T> {
+    /// Incremented when a key is removed or changes meaning.
+    schema: u32,
+    version: &'static str,
+    #[serde(flatten)]
+    figures: &'a T,
+}
+
+/// Writes `figures` as JSON, which begins with its `schema`.
+///
+/// # Errors
+/// As [`write_json`].
+pub fn write_figures(schema: u32, figures: &impl Serialize, target: &JsonTarget) -> Result<()> {
+    write_json(&Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures }, target)
+}
+
 /// Writes `value` as JSON, followed by a newline.
 ///
 /// # Errors

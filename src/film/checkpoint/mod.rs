@@ -24,7 +24,7 @@ mod write;
 pub(crate) use length::check_length;
 pub(crate) use open::read_description;
 pub use open::{FilmHead, read_head};
-pub use read::{check, load, read};
+pub use read::{load, read};
 pub(crate) use write::write;
 pub use write::{save, save_with};
 

@@ -27,8 +27,6 @@ pub struct FilmHead {
     /// Rejected samples, over all pixels.
     pub rejected: u64,
     pub description: Description,
-    /// Length of the file in bytes.
-    pub bytes: u64,
 }
 
 /// Reads a film file's description of its film.
@@ -76,7 +74,6 @@ impl<'a> Opened<'a> {
             samples: head.ranges().map_err(|error| damaged(path, error))?,
             rejected: head.rejected,
             description,
-            bytes: length,
         };
         Ok(Some(Opened { path, header: header.clone(), about, bands: head.bands, planes }))
     }

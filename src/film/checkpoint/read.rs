@@ -39,17 +39,6 @@ pub fn read(reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFi
     opened.film(halves)
 }
 
-/// Reads a whole film file and checks it, with memory for a few rows.
-///
-/// # Errors
-/// [`CheckpointError`]; each message says what to do.
-pub fn check(path: &Path) -> Result<FilmHead, CheckpointError> {
-    let (file, length) = files::open(path)?;
-    let (opened, _) = Opened::new(At::start(&file), length, path)?;
-    opened.read_all(&file, &mut []).map_err(|error| resaved_or(error, &opened.header))?;
-    Ok(opened.about)
-}
-
 impl Opened<'_> {
     /// Empty sums of the film's shape.
     fn halves(&self) -> Result<Vec<Vec<PixelSum>>, CheckpointError> {
@@ -70,7 +59,7 @@ impl Opened<'_> {
         }
     }
 
-    /// Reads all bands with several threads, into `halves` unless that is empty.
+    /// Reads all bands with several threads.
     fn read_all(&self, file: &File, halves: &mut [Vec<PixelSum>]) -> Result<(), CheckpointError> {
         let bands = band_count(self.about.height);
         let each = bands.div_ceil(threads() as u32);
@@ -95,7 +84,7 @@ impl Opened<'_> {
         outcomes.into_iter().try_for_each(|outcome| outcome.unwrap_or_else(panicked))
     }
 
-    /// Reads some bands in order and checks each. `sums` are their places in each half, if they are kept.
+    /// Reads some bands in order and checks each. `sums` are their places in each half.
     fn read_bands<R: Read + Seek>(
         &self,
         reader: Reader<R>,

@@ -1,8 +1,6 @@
-//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film, all with a [`Description`]; and
-//! PFM, which has no place for one.
+//! Picture files: 8-bit PNG, and OpenEXR with the whole film, both with a [`Description`]; PPM and PFM without one.
 //! Pictures of other programs can be read, too: [`read_picture`].
 
-mod apng;
 mod exr;
 mod limits;
 mod netpbm;
@@ -10,7 +8,6 @@ mod png;
 mod ppm;
 mod read;
 
-pub use apng::{FrameRate, animation_in, check_frame, write_animation};
 pub use read::{
     Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
 };
@@ -23,7 +20,7 @@ use crate::system::files::{self, InputError, ShownPath, WriteError, replace_file
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// Longest recipe that is read from a PNG or PPM file, bytes: about two million listed spheres.
+/// Longest recipe that is read from a PNG file, bytes: about two million listed spheres.
 const RECIPE_LIMIT: usize = 256 << 20;
 
 /// File format of a picture.
@@ -86,7 +83,7 @@ pub enum OutputError {
     #[error("cannot read {}: {reason}", path.shown())]
     Read { path: PathBuf, reason: io::Error },
     #[error(
-        "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
+        "{} does not say how it was made; only PNG and EXR files written by Weekender do, unless another program has saved them again",
         path.shown()
     )]
     NoDescription { path: PathBuf },
@@ -97,35 +94,6 @@ impl OutputError {
         let reason = limits::invalid(format!("{reason}; check whether the file is complete"));
         OutputError::Read { path: path.to_owned(), reason }
     }
-}
-
-/// How a PPM stores its numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum PpmForm {
-    /// As bytes (P6).
-    #[default]
-    Binary,
-    /// As text (P3), as the book writes them.
-    Ascii,
-}
-
-/// How hard to compress a PNG.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PngForm {
-    /// Fast.
-    #[default]
-    Fast,
-    /// For pages that should load quickly: a seventh smaller, five times as slow.
-    Small,
-}
-
-/// Variants of the formats that have several.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Forms {
-    /// The format, if not that of the name's extension.
-    pub format: Option<OutputFormat>,
-    pub ppm: PpmForm,
-    pub png: PngForm,
 }
 
 /// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
@@ -139,43 +107,26 @@ pub fn write_image(
     transfer: Transfer,
     description: &Description,
 ) -> Result<(), OutputError> {
-    write_image_as(path, film, transfer, description, Forms::default())
+    write_image_as(path, OutputFormat::from_path(path)?, film, transfer, description)
 }
 
-/// As [`write_image`], in the given `forms`.
+/// As [`write_image`], in this format.
 ///
 /// # Errors
 /// As for [`write_image`].
 pub fn write_image_as(
     path: &Path,
+    format: OutputFormat,
     film: &Film,
     transfer: Transfer,
     description: &Description,
-    forms: Forms,
 ) -> Result<(), OutputError> {
-    let format = forms.format.map_or_else(|| OutputFormat::from_path(path), Ok)?;
     replace_file(path, |writer| match format {
-        OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
-        OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
+        OutputFormat::Png => png::write(film, transfer, description, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, writer),
         OutputFormat::Exr => checkpoint::write(film, None, description, writer),
         OutputFormat::Pfm => netpbm::write_pfm(film, writer),
     })?;
-    Ok(())
-}
-
-/// Writes the part of a film's picture that begins at column and row `first` and has `size` pixels, as an 8-bit PNG.
-///
-/// # Errors
-/// [`OutputError::Write`]; an existing file is then unchanged.
-pub fn write_part(
-    path: &Path,
-    film: &Film,
-    transfer: Transfer,
-    [first, size]: [[u32; 2]; 2],
-    description: &Description,
-) -> Result<(), OutputError> {
-    let rgb8 = film.part_rgb8(transfer, first, size);
-    replace_file(path, |writer| png::write_bytes(size, &rgb8, description, writer))?;
     Ok(())
 }
 
@@ -197,11 +148,19 @@ pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Resul
     let start = start_of(&mut reader).map_err(unreadable)?;
     let found = match start.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
-        [b'P', b'3' | b'6', ..] => ppm::read_description(reader).map_err(unreadable)?,
         start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
         _ => None,
     };
     found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// Checks that a file is a complete 8-bit RGB PNG of `size`, width and height in pixels.
+///
+/// # Errors
+/// [`OutputError::Input`] or [`OutputError::Read`].
+pub fn check_frame(path: &Path, size: [u32; 2]) -> Result<(), OutputError> {
+    let (file, _) = files::open(path)?;
+    png::check(BufReader::new(file), size).map_err(|reason| OutputError::unreadable(path, &reason))
 }
 
 /// The first bytes, which tell the format of a file.

@@ -1,71 +1,11 @@
-//! PPM, binary (P6) or as text (P3). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
-//! key alone, then the lines of the recipe.
+//! Binary PPM (P6), without a description: simple readers stumble over comments in the header.
 
-use super::{Description, PpmForm, RECIPE_KEY, RECIPE_LIMIT, write_rows};
+use super::write_rows;
 use crate::film::Film;
 use crate::stages::Transfer;
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 
-pub(super) fn write(
-    film: &Film,
-    transfer: Transfer,
-    description: &Description,
-    form: PpmForm,
-    writer: &mut impl Write,
-) -> io::Result<()> {
-    writeln!(writer, "{}", if form == PpmForm::Ascii { "P3" } else { "P6" })?;
-    for line in description.lines() {
-        writeln!(writer, "# {line}")?;
-    }
-    writeln!(writer, "# {RECIPE_KEY}:")?;
-    for line in description.recipe().split('\n') {
-        writeln!(writer, "# {line}")?;
-    }
-    writeln!(writer, "{} {}\n255", film.width(), film.height())?;
-    match form {
-        PpmForm::Binary => write_rows(film, transfer, writer),
-        PpmForm::Ascii => write_rows(film, transfer, &mut Numbers(writer)),
-    }
-}
-
-/// Writes bytes as decimal numbers, one pixel per line. Each call must pass whole pixels.
-struct Numbers<W>(W);
-
-impl<W: Write> Write for Numbers<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        for pixel in bytes.chunks(3) {
-            let numbers: Vec<String> = pixel.iter().map(u8::to_string).collect();
-            writeln!(self.0, "{}", numbers.join(" "))?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
-
-pub(super) fn read_description(reader: impl BufRead) -> io::Result<Option<Description>> {
-    // Each line of the recipe has a prefix of two bytes; the rest is for the other entries.
-    let mut reader = reader.take(4 * RECIPE_LIMIT as u64);
-    let mut line = Vec::new();
-    reader.read_until(b'\n', &mut line)?;
-    let mut comments = Vec::new();
-    loop {
-        line.clear();
-        reader.read_until(b'\n', &mut line)?;
-        match line.strip_prefix(b"# ") {
-            Some(comment) => {
-                comments.push(String::from_utf8_lossy(comment).trim_end_matches('\n').to_owned())
-            }
-            None => break,
-        }
-    }
-    let is_recipe = |line: &String| line.strip_suffix(':') == Some(RECIPE_KEY);
-    let Some(start) = comments.iter().position(is_recipe) else { return Ok(None) };
-    let mut description = Description::new(&comments[start + 1..].join("\n"));
-    for line in &comments[..start] {
-        description.set_line(line);
-    }
-    Ok(Some(description))
+pub(super) fn write(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {
+    writeln!(writer, "P6\n{} {}\n255", film.width(), film.height())?;
+    write_rows(film, transfer, writer)
 }

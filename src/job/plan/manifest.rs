@@ -1,13 +1,11 @@
 //! The manifest of a plan: a JSON file that names the scene, the parts and their files. With the scene file and the
-//! parts' own files it is the whole state of a plan.
+//! parts' own films it is the whole state of a plan.
 
-use super::Division;
+use super::divide;
 use crate::film::checkpoint::SAMPLE_VERSION;
 use crate::film::{Checksum, SOFTWARE, SampleRanges};
-use crate::job::output::FrameRate;
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
-use crate::scene::animation::{CameraPath, FRAME_LIMIT, FrameNames, Turn};
 use crate::stages::Stage;
 use crate::system::files::{self, ShownPath, write_text};
 use anyhow::{Result, anyhow, ensure};
@@ -19,6 +17,8 @@ use std::path::{Path, PathBuf};
 pub const MANIFEST: &str = "plan.json";
 
 const SCENE: &str = "scene.toml";
+const RESULT: &str = "picture.exr";
+const VERSION: u32 = 1;
 
 /// Longest manifest and longest scene file that are read, bytes.
 const LENGTH_LIMITS: [u64; 2] = [256 << 20, 2 << 30];
@@ -26,7 +26,6 @@ const LENGTH_LIMITS: [u64; 2] = [256 << 20, 2 << 30];
 /// The content of the manifest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// Version of the manifest; each kind of work has its own.
     pub plan_version: u32,
     pub sample_version: u32,
     /// The program that made the plan, and its version.
@@ -38,33 +37,18 @@ pub struct Manifest {
     /// The scene file, beside the manifest.
     pub scene_file: String,
     pub scene_checksum: String,
-    #[serde(flatten)]
-    pub work: Work,
+    /// First sample, and one past the last.
+    pub samples: [u64; 2],
+    /// Parts begin and end at multiples of this power of two.
+    pub block: u64,
+    pub parts: Vec<Part>,
     /// Flags for every part's command.
     pub flags: Vec<String>,
     /// What the parts are merged into, beside the manifest.
     pub result: String,
 }
 
-/// The work and its parts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Work {
-    Samples(Samples),
-    Frames(Frames),
-}
-
-/// Samples of a picture, in parts.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Samples {
-    /// First sample, and one past the last.
-    pub samples: [u64; 2],
-    /// Parts begin and end at multiples of this power of two.
-    pub block: u64,
-    pub parts: Vec<Part>,
-}
-
-/// A part of a picture: a film.
+/// A part of a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
@@ -72,26 +56,6 @@ pub struct Part {
     pub file: String,
     /// First sample, and one past the last.
     pub samples: [u64; 2],
-}
-
-/// Frames of an animation, in parts.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Frames {
-    /// First frame, and one past the last.
-    pub frames: [u32; 2],
-    /// How the camera circles; if it does not, it follows the keyframes of the scene file.
-    pub turntable: Option<Turn>,
-    /// The rate of the animated PNG.
-    pub rate: FrameRate,
-    pub parts: Vec<FramePart>,
-}
-
-/// A part of an animation.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FramePart {
-    /// First frame, and one past the last.
-    pub frames: [u32; 2],
 }
 
 impl Part {
@@ -111,103 +75,18 @@ impl Part {
     }
 }
 
-impl Samples {
-    /// The parts of a division of `samples`, with the names of their files.
-    pub fn new(samples: &Range<u64>, division: &Division) -> Self {
-        let count = division.parts.len();
+impl Manifest {
+    /// A manifest of this version, without the scene. `None` if there are fewer samples than parts, or no parts.
+    pub fn new(samples: &Range<u64>, parts: u64) -> Option<Self> {
+        let division = divide(samples.clone(), parts)?;
+        // As many digits as the last part needs.
+        let digits = (division.parts.len() - 1).to_string().len();
         let part = |(index, range): (usize, &Range<u64>)| Part {
-            file: part_file(index, count),
+            file: format!("part-{index:0digits$}.exr"),
             samples: [range.start, range.end],
         };
-        let parts = division.parts.iter().enumerate().map(part).collect();
-        Samples { samples: [samples.start, samples.end], block: division.block, parts }
-    }
-}
-
-/// The film file of a part, with as many digits as the last of `count` parts needs.
-fn part_file(index: usize, count: usize) -> String {
-    let digits = count.saturating_sub(1).to_string().len();
-    format!("part-{index:0digits$}.exr")
-}
-
-impl FramePart {
-    pub fn range(&self) -> Range<u32> {
-        self.frames[0]..self.frames[1]
-    }
-}
-
-impl Frames {
-    /// Frames in `parts` parts of about the same length; `None` if there are fewer frames than parts, or no parts.
-    pub fn new(frames: &Range<u32>, turntable: Option<Turn>, rate: FrameRate, parts: u64) -> Option<Self> {
-        let count = u64::from(frames.end.checked_sub(frames.start)?);
-        if parts == 0 || count < parts {
-            return None;
-        }
-        let border = |part: u64| frames.start + (count * part / parts) as u32;
-        let parts = (0..parts).map(|part| FramePart { frames: [border(part), border(part + 1)] }).collect();
-        Some(Frames { frames: [frames.start, frames.end], turntable, rate, parts })
-    }
-
-    pub fn range(&self) -> Range<u32> {
-        self.frames[0]..self.frames[1]
-    }
-
-    /// How the camera of `recipe` moves.
-    pub fn camera_path(&self, recipe: &Recipe) -> CameraPath {
-        match self.turntable {
-            Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
-            None => CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() },
-        }
-    }
-}
-
-impl Work {
-    pub fn count(&self) -> usize {
-        match self {
-            Work::Samples(work) => work.parts.len(),
-            Work::Frames(work) => work.parts.len(),
-        }
-    }
-
-    /// Version of the manifest, and the name of the file that the parts are merged into.
-    fn kind(&self) -> (u32, &'static str) {
-        match self {
-            Work::Samples(_) => (1, "picture.exr"),
-            Work::Frames(_) => (2, "animation.png"),
-        }
-    }
-
-    /// The files of the parts that the manifest names.
-    fn files(&self) -> impl Iterator<Item = &str> {
-        let parts = if let Work::Samples(work) = self { work.parts.as_slice() } else { &[] };
-        parts.iter().map(|part| part.file.as_str())
-    }
-
-    /// Samples per pixel or frames of each part.
-    pub fn lengths(&self) -> Vec<u64> {
-        self.ranges().1.iter().map(|[start, end]| end - start).collect()
-    }
-
-    /// The whole, its parts, and the limit on both.
-    fn ranges(&self) -> ([u64; 2], Vec<[u64; 2]>, u64) {
-        match self {
-            Work::Samples(work) => {
-                (work.samples, work.parts.iter().map(|part| part.samples).collect(), SAMPLE_LIMIT)
-            }
-            Work::Frames(work) => {
-                let parts = work.parts.iter().map(|part| part.frames.map(u64::from)).collect();
-                (work.frames.map(u64::from), parts, u64::from(FRAME_LIMIT))
-            }
-        }
-    }
-}
-
-impl Manifest {
-    /// A manifest of this version, without the scene.
-    pub fn new(work: Work) -> Self {
-        let (plan_version, result) = work.kind();
-        Manifest {
-            plan_version,
+        Some(Manifest {
+            plan_version: VERSION,
             sample_version: SAMPLE_VERSION,
             program: SOFTWARE.to_owned(),
             command: String::new(),
@@ -215,10 +94,12 @@ impl Manifest {
             stage: None,
             scene_file: SCENE.to_owned(),
             scene_checksum: String::new(),
-            work,
+            samples: [samples.start, samples.end],
+            block: division.block,
+            parts: division.parts.iter().enumerate().map(part).collect(),
             flags: Vec::new(),
-            result: result.to_owned(),
-        }
+            result: RESULT.to_owned(),
+        })
     }
 
     fn read(path: &Path) -> Result<Manifest> {
@@ -243,35 +124,24 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// Checks that the parts cover the whole, and that the files have the names that this program gives them.
+    /// Checks that it has the parts and the names that this program gives them.
     fn check(&self) -> Result<(), String> {
-        let (version, result) = self.work.kind();
-        if self.plan_version != version {
+        if self.plan_version != VERSION {
             return Err(format!(
-                "it has version {}, but this program reads version {version}",
+                "it has version {}, but this program reads version {VERSION}",
                 self.plan_version
             ));
         }
-        let (whole, parts, limit) = self.work.ranges();
-        let mut next = whole[0];
-        for (index, [start, end]) in parts.iter().enumerate() {
-            if *start != next || end <= start {
-                return Err(format!("part {index} has {start}..{end}, but {next} comes next"));
-            }
-            next = *end;
-        }
-        if parts.is_empty() || next != whole[1] || next > limit {
-            return Err(format!(
-                "its parts end at {next}, but it ends at {}, and {limit} is the limit",
-                whole[1]
-            ));
-        }
-        let own = [(self.scene_file.as_str(), SCENE.to_owned()), (self.result.as_str(), result.to_owned())];
-        let of_parts =
-            self.work.files().enumerate().map(|(index, name)| (name, part_file(index, parts.len())));
-        match own.into_iter().chain(of_parts).find(|(name, expected)| name != expected) {
-            Some((name, expected)) => Err(format!("a file is called {name:?} instead of {expected:?}")),
-            None => Ok(()),
+        let [start, end] = self.samples;
+        let made =
+            (end <= SAMPLE_LIMIT).then(|| Manifest::new(&(start..end), self.parts.len() as u64)).flatten();
+        let of =
+            |plan: &Manifest| (plan.block, plan.parts.clone(), plan.scene_file.clone(), plan.result.clone());
+        match made {
+            Some(made) if of(&made) == of(self) => Ok(()),
+            _ => Err(format!(
+                "its parts are not those of the samples {start}..{end}, or its files have other names"
+            )),
         }
     }
 }
@@ -336,7 +206,8 @@ impl Plan {
         if path.symlink_metadata().is_ok() {
             let there = Manifest::read(&path)?;
             ensure!(
-                (&there.scene_checksum, &there.work) == (&manifest.scene_checksum, &manifest.work),
+                (&there.scene_checksum, &there.samples, &there.parts)
+                    == (&manifest.scene_checksum, &manifest.samples, &manifest.parts),
                 "{} holds the plan of another picture, or of other parts; plan into another directory, or delete it",
                 path.shown()
             );
@@ -354,29 +225,14 @@ impl Plan {
         Ok(Plan { path, manifest, recipe: recipe.clone(), job: job.clone() })
     }
 
-    pub fn directory(&self) -> &Path {
-        let parent = self.path.parent().unwrap_or(Path::new("."));
-        if parent.as_os_str().is_empty() { Path::new(".") } else { parent }
-    }
-
     pub fn beside(&self, name: &str) -> PathBuf {
         self.path.with_file_name(name)
     }
 
-    /// The files of the frames, beside the manifest.
-    pub fn frame_names(&self) -> FrameNames {
-        FrameNames::in_directory(self.directory())
-    }
-
-    /// All files of the plan except its result: manifest, scene, and parts or frames.
+    /// All files of the plan except its result: manifest, scene and films.
     pub fn files(&self) -> Vec<PathBuf> {
-        let mut files = vec![self.path.clone(), self.beside(&self.manifest.scene_file)];
-        files.extend(self.manifest.work.files().map(|name| self.beside(name)));
-        if let Work::Frames(work) = &self.manifest.work {
-            let names = self.frame_names();
-            files.extend(work.range().map(|frame| names.path(frame)));
-        }
-        files
+        let films = self.manifest.parts.iter().map(|part| self.beside(&part.file));
+        [self.path.clone(), self.beside(&self.manifest.scene_file)].into_iter().chain(films).collect()
     }
 
     pub fn stage(&self) -> Option<&'static Stage> {
@@ -388,7 +244,7 @@ impl Plan {
     /// # Errors
     /// If there is no such part.
     pub fn index(&self, number: u64) -> Result<usize> {
-        let count = self.manifest.work.count();
+        let count = self.manifest.parts.len();
         usize::try_from(number).ok().filter(|index| *index < count).ok_or_else(|| {
             anyhow!("there is no part {number} in {}: it has the parts 0 to {}", self.path.shown(), count - 1)
         })
@@ -417,52 +273,27 @@ fn checksum(text: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::plan::divide;
-    use proptest::prelude::*;
-
-    fn samples(parts: &[[u64; 2]]) -> Manifest {
-        let part = |(index, samples): (usize, &[u64; 2])| Part {
-            file: part_file(index, parts.len()),
-            samples: *samples,
-        };
-        let parts = parts.iter().enumerate().map(part).collect();
-        Manifest::new(Work::Samples(Samples { samples: [4, 12], block: 1, parts }))
-    }
 
     #[test]
-    fn parts_must_be_the_whole_without_gaps_and_overlaps() {
-        assert_eq!(samples(&[[4, 8], [8, 12]]).check(), Ok(()));
-        for parts in [
-            &[][..],
-            &[[4, 8]],
-            &[[4, 8], [7, 12]],
-            &[[4, 8], [9, 12]],
-            &[[4, 4], [4, 12]],
-            &[[4, 13]],
-            &[[3, 12]],
-        ] {
-            assert!(samples(parts).check().is_err(), "{parts:?}");
+    fn parts_must_be_those_of_the_samples() {
+        let good = Manifest::new(&(4..12), 2).unwrap();
+        assert_eq!(good.check(), Ok(()));
+        let wrong: [fn(&mut Manifest); 7] = [
+            |plan| plan.parts.clear(),
+            |plan| plan.parts.truncate(1),
+            |plan| plan.parts[1].samples[0] -= 1,
+            |plan| plan.parts[0].samples[1] -= 1,
+            |plan| plan.parts[1].file = "../part-1.exr".to_owned(),
+            |plan| plan.samples[1] = SAMPLE_LIMIT + 1,
+            |plan| plan.result = "plan.json".to_owned(),
+        ];
+        for change in wrong {
+            let mut plan = good.clone();
+            change(&mut plan);
+            assert!(plan.check().is_err(), "{plan:?}");
         }
-        let rate = FrameRate { frames: 30, seconds: 1 };
-        let frames =
-            |start, end| Manifest::new(Work::Frames(Frames::new(&(start..end), None, rate, 2).unwrap()));
-        assert_eq!(frames(FRAME_LIMIT - 9, FRAME_LIMIT).check(), Ok(()));
-        assert!(frames(FRAME_LIMIT - 9, FRAME_LIMIT + 1).check().is_err());
-    }
-
-    #[test]
-    fn manifests_round_trip() {
-        let division = divide(7..50, 3).unwrap();
-        let turn = Some(Turn::DegreesPerFrame(-1.1));
-        let rate = FrameRate { frames: 30_000, seconds: 1001 };
-        for work in [
-            Work::Samples(Samples::new(&(7..50), &division)),
-            Work::Frames(Frames::new(&(3..9), turn, rate, 2).unwrap()),
-        ] {
-            let manifest = Manifest::new(work);
-            let text = serde_json::to_string(&manifest).unwrap();
-            assert_eq!(serde_json::from_str::<Manifest>(&text).unwrap(), manifest);
-        }
+        let text = serde_json::to_string(&good).unwrap();
+        assert_eq!(serde_json::from_str::<Manifest>(&text).unwrap(), good);
     }
 
     #[test]
@@ -477,22 +308,5 @@ mod tests {
         assert_eq!(of(&[[9, 10], [12, 16]]), (3, false));
         assert_eq!(of(&[[7, 9]]), (7, true));
         assert_eq!(of(&[[8, 17]]), (0, true));
-    }
-
-    proptest! {
-        #[test]
-        fn frames_are_divided_evenly_and_without_gaps(start in 0_u32..90_000, count in 0_u32..10_000, parts in 0_u64..99) {
-            let frames = start..start + count;
-            let rate = FrameRate { frames: 30, seconds: 1 };
-            let Some(work) = Frames::new(&frames, None, rate, parts) else {
-                prop_assert!(parts == 0 || u64::from(count) < parts);
-                return Ok(());
-            };
-            let work = Work::Frames(work);
-            prop_assert_eq!(work.count() as u64, parts);
-            let lengths = work.lengths();
-            prop_assert!(lengths.iter().max().unwrap() - lengths.iter().min().unwrap() <= 1);
-            prop_assert_eq!(Manifest::new(work).check(), Ok(()));
-        }
     }
 }

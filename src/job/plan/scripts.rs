@@ -9,8 +9,6 @@ use crate::system::shell::{line, operand, quoted};
 pub enum Format {
     /// The commands on standard output, one per line
     Text,
-    /// Manifest and commands as JSON on standard output
-    Json,
     /// A Slurm job array
     Slurm,
     /// A script for GNU parallel
@@ -23,7 +21,7 @@ impl Format {
     /// The scripts with their texts, which contain `@KEYS@` to fill in. The one to start comes first.
     fn templates(self) -> &'static [(&'static str, &'static str)] {
         match self {
-            Format::Text | Format::Json => &[],
+            Format::Text => &[],
             Format::Slurm => &[
                 ("submit.sh", include_str!("../../../assets/plan/submit.sh")),
                 ("parts.sbatch", include_str!("../../../assets/plan/parts.sbatch")),
@@ -41,7 +39,7 @@ pub struct Commands<'a> {
     /// How they call this program.
     program: &'a str,
     /// How they name the manifest.
-    pub manifest: String,
+    manifest: String,
     /// Flags of every part.
     flags: &'a [String],
 }
@@ -52,38 +50,32 @@ impl<'a> Commands<'a> {
         Commands { program, manifest: operand(path).into_owned(), flags: &manifest.flags }
     }
 
-    /// The words of the command that renders a part.
-    pub fn part(&self, part: usize) -> Vec<String> {
-        let words = [self.program, "render-part", &self.manifest, "--part", &part.to_string()];
-        words.into_iter().map(str::to_owned).chain(self.flags.iter().cloned()).collect()
-    }
-
     /// The command line that renders a part. `part` is its number, or what stands for it in a script.
-    pub fn part_line(&self, part: &str) -> String {
+    pub fn part(&self, part: &str) -> String {
         let before = line([self.program, "render-part", &self.manifest, "--part"]);
         let flags = self.flags.iter().map(|flag| format!(" {}", quoted(flag)));
         format!("{before} {part}{}", flags.collect::<String>())
     }
 
-    /// The words of the command that merges the parts into `out`.
-    pub fn merge(&self, out: &str) -> Vec<String> {
-        [self.program, "merge", &self.manifest, "--out", &operand(out)].map(str::to_owned).to_vec()
+    /// The command line that merges the parts into `out`.
+    pub fn merge(&self, out: &str) -> String {
+        line([self.program, "merge", &self.manifest, "--out", &operand(out)])
     }
 }
 
 /// The scripts of a plan, with their names; the one to start comes first.
 pub fn scripts(format: Format, manifest: &Manifest, program: &str) -> Vec<(&'static str, String)> {
     let commands = Commands::new(program, MANIFEST, manifest);
-    let count = manifest.work.count();
-    let merge = line(commands.merge(&manifest.result));
+    let count = manifest.parts.len();
+    let merge = commands.merge(&manifest.result);
     let [part, merge] = match format {
-        Format::Parallel => [quoted(&commands.part_line("{}")).into_owned(), merge],
+        Format::Parallel => [quoted(&commands.part("{}")).into_owned(), merge],
         Format::Make => {
             // make reads a doubled dollar sign as one.
-            let part = commands.part_line("\u{1}").replace('$', "$$").replace('\u{1}', "$@");
+            let part = commands.part("\u{1}").replace('$', "$$").replace('\u{1}', "$@");
             [part, merge.replace('$', "$$")]
         }
-        _ => [commands.part_line("\"$SLURM_ARRAY_TASK_ID\""), merge],
+        _ => [commands.part("\"$SLURM_ARRAY_TASK_ID\""), merge],
     };
     let parts = (0..count).map(|part| part.to_string()).collect::<Vec<_>>().join(" ");
     let last = (count - 1).to_string();
@@ -98,13 +90,11 @@ pub fn scripts(format: Format, manifest: &Manifest, program: &str) -> Vec<(&'sta
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::job::plan::{Samples, Work, divide};
 
     #[test]
     fn scripts_have_part_numbers_and_quoted_commands() {
-        let work = Samples::new(&(0..6), &divide(0..6, 3).unwrap());
         let flags = vec!["--adapter=it's $1".to_owned()];
-        let manifest = Manifest { flags, ..Manifest::new(Work::Samples(work)) };
+        let manifest = Manifest { flags, ..Manifest::new(&(0..6), 3).unwrap() };
         let expected = [
             (Format::Slurm, 1, "#SBATCH --array=0-2"),
             (

@@ -7,7 +7,7 @@ mod replaced;
 mod rescue;
 
 pub use difference::{difference, same_job};
-pub use frames::FrameState;
+pub use frames::is_whole_frame;
 pub use replaced::Replaced;
 pub use rescue::rescue;
 

@@ -68,11 +68,8 @@ impl Bench<'_> {
         let settings = scene.job.settings();
         let mut row = GainRow {
             name: scene.name.clone(),
-            is_stage: scene.is_stage,
             width: settings.width,
             height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name(),
             ..GainRow::default()
         };
         if let Err(Stop::Failed(reason)) = self.pairs_of_runs(scene, pair, &mut row) {

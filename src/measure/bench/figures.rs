@@ -9,8 +9,6 @@ use serde::Serialize;
 pub struct BenchFigures {
     /// Scenes, with one row per candidate.
     pub scenes: Vec<SceneFigures>,
-    /// Fields of growing size.
-    pub scale: Vec<ScaleFigures>,
     /// Gain of specialised kernels, by device.
     pub features: Vec<DeviceFigures>,
     /// Reasons to doubt the figures.
@@ -94,25 +92,6 @@ pub struct Run {
     pub rmse: Option<f64>,
 }
 
-#[derive(Serialize)]
-pub struct ScaleFigures {
-    pub spheres: u64,
-    /// Time to generate the scene.
-    pub generate_seconds: f64,
-    /// Time to build the prepared scene, hierarchy included.
-    pub build_seconds: f64,
-    pub hierarchy_seconds: f64,
-    /// Bytes per sphere in the scene.
-    pub scene_bytes_per_sphere: f64,
-    /// Bytes per sphere in the prepared scene, hierarchy included.
-    pub table_bytes_per_sphere: f64,
-    /// Peak memory of the process, from generating the scene to the last run.
-    pub peak_memory_bytes: Option<u64>,
-    pub samples_per_pixel: u64,
-    pub paths_per_second: Option<Spread>,
-    pub rays_per_second: Option<Spread>,
-}
-
 /// Gain of specialised kernels on one device.
 #[derive(Serialize)]
 pub struct DeviceFigures {
@@ -128,11 +107,8 @@ pub struct DeviceFigures {
 pub struct GainRow {
     /// Stage id or scene name.
     pub name: String,
-    pub is_stage: bool,
     pub width: u32,
     pub height: u32,
-    pub max_depth: u32,
-    pub sampler: &'static str,
     pub samples_per_pixel: u64,
     /// What its own kernel supports.
     pub kernel: String,

@@ -2,8 +2,6 @@
 
 mod features;
 mod figures;
-mod plot;
-mod scale;
 mod text;
 
 use super::machine::Machine;
@@ -15,7 +13,6 @@ use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
 use crate::denoise;
 use crate::job::render::RenderJob;
-use crate::numbers::chart;
 use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
@@ -45,42 +42,32 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::Input)?;
     let levels = options.levels();
     let json = &options.json;
-    check_outputs(json.as_ref(), options.plot.as_deref()).map_err(Failure::Input)?;
+    check_outputs(json.as_ref(), None).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);
     let figures = BenchFigures::default();
     let mut bench = Bench { options, levels, cancel: interrupt.flag(), progress, figures };
-    let measured = match &options.scale {
-        _ if options.features => bench.features(&scenes),
-        Some(counts) => bench.fields(counts),
-        None => {
-            bench.scenes(&scenes);
-            Ok(())
-        }
+    let measured = if options.features {
+        bench.features(&scenes)
+    } else {
+        bench.scenes(&scenes);
+        Ok(())
     };
     bench.progress.clear();
     let mut figures = bench.figures;
     figures.interrupted = interrupt.is_set();
     figures.warnings = warnings(&figures, machine.load_at_start);
-    let written = write(options, json.as_ref(), &machine, &figures);
+    let written = write(json.as_ref(), &machine, &figures);
     measured.and(written).map_err(Failure::Run)?;
     Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
-fn write(
-    options: &BenchOptions,
-    json: Option<&JsonTarget>,
-    machine: &Machine,
-    figures: &BenchFigures,
-) -> anyhow::Result<()> {
-    // Write the files even if printing failed.
+fn write(json: Option<&JsonTarget>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
+    // Write the file even if printing failed.
     let printed = terminal::print_beside(json, &text::text(machine, figures));
     if let Some(target) = json {
         write_json(target, machine, figures)?;
-    }
-    if let Some(path) = &options.plot {
-        chart::save(path, &plot::figure(machine, figures))?;
     }
     printed
 }
@@ -275,7 +262,6 @@ fn spreads(figures: &BenchFigures) -> Vec<(String, f64)> {
         let name = |row: &Row| format!("{}, {}", scene.scene, row.name);
         found.extend(scene.rows.iter().map(|row| (name(row), row.paths_per_second)));
     }
-    found.extend(figures.scale.iter().map(|row| (format!("field:{}", row.spheres), row.paths_per_second)));
     for device in &figures.features {
         let name = |scene: &str| format!("{scene}, {}", device.device);
         found.extend(device.rows.iter().map(|row| (name(&row.name), row.gain)));

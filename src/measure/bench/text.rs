@@ -2,23 +2,17 @@
 
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
-use super::figures::{
-    BenchFigures, Denoising, DeviceFigures, GainRow, Row, ScaleFigures, SceneFigures, Spread,
-};
+use super::figures::{BenchFigures, Denoising, DeviceFigures, GainRow, Row, SceneFigures, Spread};
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
 
 const SCENE_WIDTHS: [i32; 9] = [-33, 5, 8, 7, 7, 6, 7, 7, 9];
-const SCALE_WIDTHS: [i32; 9] = [9, 11, 9, 12, 7, 9, 5, 9, 9];
 const GAIN_WIDTHS: [i32; 8] = [-33, 10, 10, 10, 9, 7, 7, 7];
 
 pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
     let mut parts = vec![machine.words() + "\n"];
     parts.extend(figures.scenes.iter().map(scene));
-    if !figures.scale.is_empty() {
-        parts.push(scale(&figures.scale));
-    }
     parts.extend(figures.features.iter().map(device));
     if figures.interrupted {
         parts.push("Interrupted: only the runs finished so far are shown.\n".to_owned());
@@ -66,39 +60,6 @@ fn scene_row(row: &Row) -> String {
         or_dash(row.efficiency, |efficiency| format!("{efficiency:.2e}")),
     ];
     text_row(&SCENE_WIDTHS, &cells)
-}
-
-fn scale(rows: &[ScaleFigures]) -> String {
-    let heads = [
-        "spheres",
-        "generate s",
-        "build s",
-        "hierarchy s",
-        "bytes",
-        "peak MiB",
-        "spp",
-        "Mpaths/s",
-        "Mrays/s",
-    ];
-    let row = |row: &ScaleFigures| {
-        let cells = [
-            row.spheres.to_string(),
-            format!("{:.3}", row.generate_seconds),
-            format!("{:.4}", row.build_seconds),
-            format!("{:.4}", row.hierarchy_seconds),
-            format!("{:.1}", row.table_bytes_per_sphere),
-            or_dash(row.peak_memory_bytes, |bytes| (bytes >> 20).to_string()),
-            row.samples_per_pixel.to_string(),
-            millions(row.paths_per_second, |spread| spread.median),
-            millions(row.rays_per_second, |spread| spread.median),
-        ];
-        text_row(&SCALE_WIDTHS, &cells)
-    };
-    format!(
-        "Fields of spheres; bytes per sphere in the prepared scene, hierarchy included\n{}{}",
-        text_row(&SCALE_WIDTHS, &heads),
-        rows.iter().map(row).collect::<String>()
-    )
 }
 
 fn device(device: &DeviceFigures) -> String {

@@ -2,7 +2,7 @@
 
 use super::data::Data;
 use super::summary::{CurvePoint, CurveSummary, distinct};
-use crate::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Series};
+use crate::numbers::chart::{Axis, Corner, Figure, LineChart, Look, Point, Series};
 
 /// One chart per scene, with the times to `target` marked.
 pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
@@ -20,11 +20,11 @@ pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
         about,
         size: [560 * columns as u32, 90 + 470 * rows],
         columns,
-        panels: scenes.into_iter().map(|scene| Panel::Lines(chart(scene, data, curves, target))).collect(),
+        panels: scenes.into_iter().map(|scene| chart(scene, curves, target)).collect(),
     }
 }
 
-fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> LineChart {
+fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
     let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
     let points = || of_scene.iter().flat_map(|c| &c.points).filter(|p| p.rmse > 0.0);
     let least = |of: fn(&CurvePoint) -> f64| points().map(of).fold(f64::INFINITY, f64::min);
@@ -33,7 +33,6 @@ fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> Line
     let errors = [least(|p| p.rmse), most(|p| p.rmse)];
     let bottom = 0.7 * errors[0];
     let mut series = guides(times, errors, bottom, &of_scene, target);
-    series.extend(floor(scene, data, times, bottom));
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
     let axis = |label: &str, limits: [f64; 2]| {
         // A chart without points has no limits.
@@ -88,11 +87,4 @@ fn guides(
         }
     }
     guides
-}
-
-/// Where rounding would stop the error from falling, if the chart reaches that low.
-fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Series> {
-    let of_scene = data.rounding.iter().filter(|row| row.scene == scene);
-    let floor = of_scene.filter_map(|row| row.floor).fold(0.0, f64::max);
-    (floor > bottom).then(|| guide("rounding", [(times[0], floor), (times[1], floor)]))
 }

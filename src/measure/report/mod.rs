@@ -3,7 +3,6 @@
 mod data;
 mod figure;
 mod reference;
-mod rounding;
 mod summary;
 mod text;
 
@@ -12,10 +11,9 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, SCHEMA, Source, Stop, make_directory, write_json};
-use crate::backends;
+use super::{Candidate, Source, Stop, write_json};
 use crate::cli::terminal::print;
-use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
+use crate::cli::{JsonTarget, ReportOptions};
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
@@ -23,41 +21,33 @@ use crate::job::render::{RenderJob, RenderSettings, SamplerKind, Stats};
 use crate::numbers::chart;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::{self, check_writable, write_text};
+use crate::system::files::{check_writable, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use data::{Measured, Run};
 use reference::{ReferencePicture, film_means};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use summary::Findings;
 
-/// Samples per pixel of the films that show the effect of rounding.
-const ROUNDING_SAMPLES: u64 = 256;
-
-/// Expected seconds for a scene's reference and rounding, for the progress bar.
+/// Expected seconds for a scene's reference, for the progress bar.
 const EXPECTED_SECONDS: f64 = 40.0;
 
-/// Largest `report.json` read, bytes.
-const REPORT_LIMIT: u64 = 64 << 20;
-
-/// Measures everything and writes the report to its directory, reusing results of an interrupted report with the same
-/// settings. [`Failure::Input`] if nothing was rendered, [`Failure::Run`] otherwise.
+/// Measures everything and writes the report to its directory. [`Failure::Input`] if nothing was rendered,
+/// [`Failure::Run`] otherwise.
 pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let mut report = Report::open(options).map_err(Failure::Input)?;
     let outcome = report.measure();
     report.progress.clear();
     // Keep the measured results even if the report failed.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
-    let is_interrupted = report.interrupt.is_set();
     match outcome {
         Err(Stop::Failed(reason)) => return Err(Failure::Run(anyhow!(reason))),
         Ok(()) | Err(Stop::Cancelled) => written.map_err(Failure::Run)?,
     }
-    if is_interrupted {
-        console::note("interrupted; run the same command again to continue");
+    if report.interrupt.is_set() {
+        console::note("interrupted: the report has what was measured before");
         return Ok(report.interrupt.exit_code());
     }
     Ok(ExitCode::SUCCESS)
@@ -66,7 +56,6 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
 struct Report<'a> {
     options: &'a ReportOptions,
     scenes: Vec<Recipe>,
-    reference: ReferenceChoice,
     machine: Machine,
     data: Data,
     candidates: Vec<Candidate>,
@@ -75,27 +64,24 @@ struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Checks everything that could fail later, and reads existing results.
+    /// Checks everything that could fail later.
     fn open(options: &'a ReportOptions) -> Result<Self> {
-        let (scenes, reference) = (options.scenes()?, options.reference()?);
-        let candidates = candidates(options)?;
-        let out = &options.out;
-        make_directory(out)?;
-        check_writable(&out.join("report.json"))?;
-        let settings = settings(options, &reference);
-        let data = resumed(&out.join("report.json"), &settings).unwrap_or_else(|| Data::new(settings));
+        let (scenes, candidates) = (options.scenes()?, candidates(options)?);
+        make_directory(&options.out)?;
+        check_writable(&options.out.join("report.json"))?;
+        let data = Data::new(settings(options));
         let per_scene: usize = candidates.iter().map(|c| samplers(c, options).len()).sum();
-        let per_scene = per_scene as f64 * options.time_limit + 2.0 * EXPECTED_SECONDS;
+        let per_scene = per_scene as f64 * options.time_limit + EXPECTED_SECONDS;
         let progress = Progress::new(options.progress, scenes.len() as f64 * per_scene);
         let (machine, interrupt) = (Machine::look(), Interrupt::install()?);
-        Ok(Report { options, scenes, reference, machine, data, candidates, interrupt, progress })
+        Ok(Report { options, scenes, machine, data, candidates, interrupt, progress })
     }
 
     fn measure(&mut self) -> Result<(), Stop> {
         let scenes = std::mem::take(&mut self.scenes);
         let references: Vec<ReferencePicture> =
             scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_, _>>()?;
-        self.data.take_references(references.iter().map(|reference| reference.used.clone()).collect());
+        self.data.references = references.iter().map(|reference| reference.used.clone()).collect();
         // Loop over seeds on the outside, so that load from other programs affects all curves alike.
         for seed in 0..self.options.seeds {
             for (recipe, reference) in scenes.iter().zip(&references) {
@@ -106,22 +92,17 @@ impl<'a> Report<'a> {
                 }
             }
         }
-        scenes.iter().try_for_each(|recipe| self.rounding(recipe))
+        Ok(())
     }
 
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
-        let (interrupt, progress) = (&self.interrupt, &mut self.progress);
-        let ReferenceChoice { choice, samples, .. } = &self.reference;
-        let path = self.options.reference_path(recipe);
-        let what = format!("reference of {}", recipe.name);
-        let mut renderer = backends::create(choice).map_err(anyhow::Error::from)?;
-        let made = reference::make(renderer.as_mut(), &path, recipe, *samples, |share| {
-            progress.at(&what, share * EXPECTED_SECONDS);
-            !interrupt.is_set()
-        });
-        let reference = made?.ok_or(Stop::Cancelled)?;
+        self.progress.at(&format!("reference of {}", recipe.name), 0.0);
+        let job = reference::job_of(recipe).map_err(anyhow::Error::from)?;
+        let mut exact = Candidate::backend("reference", self.options.reference()?);
+        let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
         self.progress.finished(EXPECTED_SECONDS);
-        Ok(reference)
+        let about = exact.info().map_or_else(String::new, |info| format!("{} {}", info.name, info.device));
+        Ok(ReferencePicture::of_film(&recipe.name, &about, &film)?)
     }
 
     fn picture(
@@ -137,67 +118,28 @@ impl<'a> Report<'a> {
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
         let seconds = self.options.time_limit / f64::from(self.options.seeds);
         self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler), 0.0);
-        if !self.data.runs.iter().any(|run| run.curve == curve && run.seed == seed) {
-            let job = job(recipe, sampler, seed, self.options.estimate_error)?;
-            let limits = Limits { seconds, samples: self.options.max_samples };
-            let (about, prepare_seconds, [raw, denoised]) =
-                measured(candidate, &job, reference, limits, self.interrupt.flag())?;
-            let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
-            self.data.runs.push(with(curve.clone(), raw));
-            // One denoised curve for each backend suffices.
-            if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
-                self.data.runs.push(with(curve.denoised(), denoised));
-            }
-            self.write_json()?;
+        let limits = Limits { seconds, samples: self.options.max_samples };
+        let job = job(recipe, sampler, seed)?;
+        let (about, prepare_seconds, [raw, denoised]) =
+            measured(candidate, &job, reference, limits, self.interrupt.flag())?;
+        let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
+        self.data.runs.push(with(curve.clone(), raw));
+        // One denoised curve for each backend suffices.
+        if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
+            self.data.runs.push(with(curve.denoised(), denoised));
         }
         self.progress.finished(seconds);
         Ok(())
     }
 
-    /// Renders the same samples in `f64` and on every other backend.
-    fn rounding(&mut self, recipe: &Recipe) -> Result<(), Stop> {
-        let Report { data, candidates, interrupt, progress, options, .. } = self;
-        let is_there = |name: &str| {
-            data.rounding.iter().any(|row| row.scene == recipe.name && row.backend == name)
-                || name == "reference"
-        };
-        let missing: Vec<&mut Candidate> =
-            candidates.iter_mut().filter(|c| !c.is_baseline() && !is_there(&c.name)).collect();
-        if missing.is_empty() {
-            return Ok(());
-        }
-        progress.at(&format!("rounding of {}", recipe.name), 0.0);
-        let job = job(recipe, SamplerKind::Sobol, 0, true)?;
-        let samples = options.max_samples.min(ROUNDING_SAMPLES);
-        let mut exact = Candidate::backend("reference", backends::BackendChoice::Reference { threads: None });
-        let exact = exact.trace(&job, samples, interrupt.flag())?.film;
-        for candidate in missing {
-            let film = candidate.trace(&job, samples, interrupt.flag())?.film;
-            data.rounding.push(rounding::rounding(&recipe.name, &candidate.name, &film, &exact));
-        }
-        progress.finished(EXPECTED_SECONDS);
-        Ok(self.write_json()?)
-    }
-
-    fn write_json(&self) -> Result<()> {
-        let target = JsonTarget::File(self.options.out.join("report.json"));
-        write_json(&target, &self.machine, &Findings::of(&self.data, &[]))
-    }
-
     fn write(&self) -> Result<()> {
-        self.write_json()?;
         let (out, targets) = (&self.options.out, self.options.targets());
         let findings = Findings::of(&self.data, &targets);
-        write_text(&out.join("report.csv"), &text::csv(&self.data))?;
+        write_json(&JsonTarget::File(out.join("report.json")), &self.machine, &findings)?;
         write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
         let figure = figure::figure(&self.data, &findings.curves, targets[0]);
-        for name in ["error-vs-time.png", "error-vs-time.svg"] {
-            chart::save(&out.join(name), &figure)?;
-        }
-        print(&format!(
-            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg to {}\n",
-            out.display()
-        ))
+        write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;
+        print(&format!("wrote report.md, report.json and error-vs-time.svg to {}\n", out.display()))
     }
 }
 
@@ -221,16 +163,15 @@ fn samplers(candidate: &Candidate, options: &ReportOptions) -> Vec<SamplerKind> 
     if candidate.is_baseline() { vec![SamplerKind::Independent] } else { options.samplers.clone() }
 }
 
-fn settings(options: &ReportOptions, reference: &ReferenceChoice) -> Settings {
+fn settings(options: &ReportOptions) -> Settings {
     Settings {
         software: SOFTWARE.to_owned(),
         size: options.size,
         seeds: options.seeds,
         time_limit: options.time_limit,
         max_samples: options.max_samples,
-        estimate_error: options.estimate_error,
-        reference_samples: reference.samples,
-        reference: reference.name.clone(),
+        reference_samples: options.reference_samples(),
+        reference: options.reference_backend.clone(),
     }
 }
 
@@ -280,7 +221,6 @@ fn measured(
                 device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
                 mse: errors.mse,
                 rel_mse: errors.rel_mse,
-                flip: errors.flip,
                 mse_estimate,
                 rejected: total.rejected,
             }
@@ -309,14 +249,8 @@ pub fn chart(data: &Data, target: f64) -> chart::Figure {
     figure::figure(data, &curves(data, &[target]), target)
 }
 
-/// The measurements in `path`, if made with the same settings.
-fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
-    let data = parse(&files::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
-    (data.schema == SCHEMA && data.settings == *settings).then_some(data)
-}
-
-fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32, estimate_error: bool) -> Result<RenderJob> {
-    let settings = RenderSettings { sampler, seed, estimate_error, ..recipe.settings };
+fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
+    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
     Ok(Recipe { settings, ..recipe.clone() }.job()?)
 }
 
@@ -337,31 +271,29 @@ mod tests {
             seeds: 4,
             time_limit: 10.0,
             max_samples: 64,
-            estimate_error: true,
             reference_samples: 512,
             reference: "cpu".to_owned(),
         })
     }
 
-    pub fn small() -> Recipe {
+    fn small() -> Recipe {
         let mut recipe = Recipe::find("metals").unwrap();
         (recipe.settings.width, recipe.settings.height) = (16, 9);
         recipe
     }
 
-    /// One CPU thread, which panics after this many tiles.
-    pub fn cpu(panics_after: Option<u64>) -> BackendChoice {
-        BackendChoice::Cpu(CpuOptions { threads: Some(1), panics_after, ..CpuOptions::default() })
+    fn cpu() -> BackendChoice {
+        BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() })
     }
 
     #[test]
     fn points_accumulate_until_limit() {
         let go_on = AtomicBool::new(false);
         let recipe = small();
-        let job = job(&recipe, SamplerKind::Sobol, 3, true).unwrap();
-        let film_of = |samples| Candidate::backend("", cpu(None)).trace(&job, samples, &go_on).unwrap().film;
-        let reference = ReferencePicture::of_film("metals", "", &film_of(64), recipe.rules.transfer).unwrap();
-        let mut candidate = Candidate::backend("cpu", cpu(None));
+        let job = job(&recipe, SamplerKind::Sobol, 3).unwrap();
+        let film_of = |samples| Candidate::backend("", cpu()).trace(&job, samples, &go_on).unwrap().film;
+        let reference = ReferencePicture::of_film("metals", "", &film_of(64)).unwrap();
+        let mut candidate = Candidate::backend("cpu", cpu());
         let mut steps = |seconds, samples| {
             measured(&mut candidate, &job, &reference, Limits { seconds, samples }, &go_on).unwrap()
         };
@@ -371,7 +303,7 @@ mod tests {
         for point in &points {
             let film = film_of(point.samples);
             let errors = reference.errors(&film_means(&film));
-            assert_eq!((point.mse, point.rel_mse, point.flip), (errors.mse, errors.rel_mse, errors.flip));
+            assert_eq!((point.mse, point.rel_mse), (errors.mse, errors.rel_mse));
             assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
             assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
         }
@@ -384,24 +316,5 @@ mod tests {
         let limits = Limits { seconds: 1e9, samples: 64 };
         let cancelled = measured(&mut candidate, &job, &reference, limits, &AtomicBool::new(true));
         assert_eq!(cancelled.err(), Some(Stop::Cancelled));
-    }
-
-    #[test]
-    fn resumes_only_with_same_settings() {
-        let at = tempfile::tempdir().unwrap();
-        let path = at.path().join("report.json");
-        let data = data();
-        let write = |data: &Data| {
-            let target = JsonTarget::File(path.clone());
-            write_json(&target, &Machine::look(), data).unwrap();
-        };
-        write(&data);
-        assert_eq!(resumed(&path, &data.settings), Some(data.clone()));
-        let other = Settings { max_samples: 128, ..data.settings.clone() };
-        assert_eq!(resumed(&path, &other), None);
-        assert_eq!(resumed(&at.path().join("nothing.json"), &data.settings), None);
-        let text = std::fs::read_to_string(&path).unwrap();
-        std::fs::write(&path, text.replacen("\"schema\": 1", "\"schema\": 2", 1)).unwrap();
-        assert_eq!(resumed(&path, &data.settings), None);
     }
 }

@@ -1,4 +1,4 @@
-//! What the measurements show: curves, comparisons of samplers, and the accuracy of error estimates.
+//! What the measurements show: curves, and the accuracy of error estimates.
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::numbers::statistics::fit::{Crossing, Point, PowerLaw, time_to};
@@ -23,14 +23,11 @@ pub struct Findings<'a> {
     #[serde(skip)]
     pub targets: &'a [f64],
     pub calibration: Vec<Calibration>,
-    pub sampler_ratios: Vec<SamplerRatio>,
 }
 
 impl<'a> Findings<'a> {
     pub fn of(data: &'a Data, targets: &'a [f64]) -> Self {
-        let curves = curves(data, targets);
-        let (calibration, sampler_ratios) = (calibration(data), sampler_ratios(&curves));
-        Findings { data, curves, targets, calibration, sampler_ratios }
+        Findings { data, curves: curves(data, targets), targets, calibration: calibration(data) }
     }
 }
 
@@ -47,8 +44,6 @@ pub struct CurvePoint {
     pub range: [f64; 2],
     /// Mean relative squared error.
     pub rel_mse: f64,
-    /// Mean FLIP.
-    pub flip: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -106,13 +101,6 @@ impl CurveSummary {
             points,
         }
     }
-
-    /// Number of samples at which the error reaches `error`.
-    pub fn samples_to(&self, error: f64) -> Option<f64> {
-        let known = self.points.iter().filter(|p| p.rmse > 0.0);
-        let points: Vec<Point> = known.map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
-        time_to(&points, error).map(|crossing| crossing.time)
-    }
 }
 
 fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
@@ -125,42 +113,7 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
         rmse: mse.sqrt(),
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
-        flip: mean(|p| p.flip),
     }
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SamplerRatio {
-    pub scene: String,
-    pub backend: String,
-    /// Samples per pixel.
-    pub samples: u64,
-    /// Squared error of independent samples over that of Sobol points.
-    pub at_equal_samples: f64,
-    /// The same at equal time: how many times as long independent samples take.
-    pub at_equal_time: f64,
-}
-
-/// Compares `sobol` with `independent` at every sample count that both have.
-pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
-    let mut ratios = Vec::new();
-    for sobol in curves.iter().filter(|c| c.curve.sampler == "sobol") {
-        let other = Curve { sampler: "independent".to_owned(), ..sobol.curve.clone() };
-        let others = curves.iter().filter(|c| c.curve == other).flat_map(|c| &c.points);
-        for other in others {
-            let same = sobol.points.iter().find(|p| p.samples == other.samples && p.rmse > 0.0);
-            let Some(point) = same else { continue };
-            let at_equal_samples = (other.rmse / point.rmse).powi(2);
-            ratios.push(SamplerRatio {
-                scene: sobol.curve.scene.clone(),
-                backend: sobol.curve.backend.clone(),
-                samples: point.samples,
-                at_equal_samples,
-                at_equal_time: at_equal_samples * other.wall_seconds / point.wall_seconds,
-            });
-        }
-    }
-    ratios
 }
 
 /// Estimated and true errors of a curve's pictures at one sample count.
@@ -233,7 +186,6 @@ mod tests {
                 device_seconds: None,
                 mse,
                 rel_mse: 2.0 * mse,
-                flip: 0.1,
                 mse_estimate: (samples > 1).then_some(1.21 * mse),
                 rejected: 0,
             }
@@ -263,7 +215,6 @@ mod tests {
         assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
         assert!((second.time - 400.0).abs() < 1e-4 && second.is_extrapolated);
         assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
-        assert!((found.samples_to(0.01).unwrap() - 400.0).abs() < 1e-6);
     }
 
     #[test]

@@ -1,8 +1,7 @@
-//! `report.md` and `report.csv`.
+//! `report.md`.
 
 use super::super::table::{markdown_table, or_dash};
-use super::data::{Data, Measured};
-use super::summary::{Calibration, CurvePoint, CurveSummary, Findings, SamplerRatio, TOLERANCE, distinct};
+use super::summary::{Calibration, CurveSummary, Findings, TOLERANCE, distinct};
 use crate::numbers::statistics::fit::Crossing;
 
 /// Backends to compare others with, if measured.
@@ -10,12 +9,12 @@ const BASES: [&str; 2] = ["c89", "scalar"];
 
 /// The report as Markdown. `command` made the report.
 pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
-    let Findings { data, curves, targets, calibration: calibrations, sampler_ratios } = findings;
+    let Findings { data, curves, targets, calibration: calibrations } = findings;
     let settings = &data.settings;
     let mut text = format!(
         "# Error against time\n\nHow the error of a picture falls with time, as measured by\n\n    {command}\n\n\
          with {}. Pictures per curve, with different random numbers: {}. Seconds of tracing for all of them: {}. \
-         Samples per pixel: at most {}.\n\n![Error against time](error-vs-time.png)\n\n{HOW_TO_READ}",
+         Samples per pixel: at most {}.\n\n![Error against time](error-vs-time.svg)\n\n{HOW_TO_READ}",
         settings.software, settings.seeds, settings.time_limit, settings.max_samples
     );
     for scene in distinct(curves.iter().map(|curve| curve.curve.scene.as_str())) {
@@ -31,33 +30,31 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
         }
         text += &overview(&of_scene, targets);
     }
-    text + &samplers(sampler_ratios) + &calibration(calibrations) + &rounding(data, curves)
+    text + &calibration(calibrations)
 }
 
 const HOW_TO_READ: &str = "\
 **How to read it.** *RMSE* is the root mean square difference from the reference over pixels and channels, in linear
 radiance, where white is 1. At .05 a picture is grainy, at .01 nearly clean, and at .001 no screen shows the difference.
-*relMSE* gives more weight to errors in dark areas. *FLIP*, from 0 to 1, is how different the displayed pictures look to
-someone who flips between them. The *slope* is the exponent of the seconds in the RMSE: -.5 means that halving the error
-takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency gives the same picture in half the
-time. These three are of the last point. Times with ~ are extrapolated. Seconds are medians over the pictures and include
-adding to the film; errors are means. `report.csv` has every picture at every number of samples.
+*relMSE* gives more weight to errors in dark areas. The *slope* is the exponent of the seconds in the RMSE: -.5 means that
+halving the error takes four times as long. *Efficiency* is 1/(RMSE^2 seconds): twice the efficiency gives the same
+picture in half the time. Efficiency and relMSE are of the last point. Times with ~ are extrapolated. Seconds are medians
+over the pictures and include adding to the film; errors are means. `report.json` has every picture at every number of
+samples.
 ";
 
 /// One row per curve of a scene.
 fn overview(curves: &[&CurveSummary], targets: &[f64]) -> String {
     let bases: Vec<&str> =
         BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
-    let mut heads =
-        ["backend", "sampler", "slope", "efficiency", "relMSE", "FLIP"].map(str::to_owned).to_vec();
+    let mut heads = ["backend", "sampler", "slope", "efficiency", "relMSE"].map(str::to_owned).to_vec();
     heads.extend(targets.iter().map(|target| format!("to RMSE {target}")));
     heads.extend(bases.iter().map(|base| format!("times {base}")));
     let rows = curves.iter().map(|curve| {
         let slope = or_dash(curve.slope, |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
         let names = [&curve.curve.backend, &curve.curve.sampler].map(Clone::clone);
-        let last = |of: fn(&CurvePoint) -> f64| or_dash(curve.points.last().map(of), number);
-        let figures =
-            [slope, number(curve.efficiency), last(|point| point.rel_mse), last(|point| point.flip)];
+        let rel_mse = or_dash(curve.points.last(), |point| number(point.rel_mse));
+        let figures = [slope, number(curve.efficiency), rel_mse];
         let mut row = [&names[..], &figures].concat();
         row.extend(curve.times.iter().map(|time| {
             or_dash(*time, |c| format!("{}{} s", if c.is_extrapolated { "~" } else { "" }, number(c.time)))
@@ -83,27 +80,6 @@ fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
         let mark = if base.is_extrapolated || mine.is_extrapolated { "~" } else { "" };
         format!("{mark}{:.2}", base.time / mine.time)
     })
-}
-
-fn samplers(ratios: &[SamplerRatio]) -> String {
-    if ratios.is_empty() {
-        return String::new();
-    }
-    let rows = ratios.iter().filter(|ratio| ratio.samples >= 4).map(|ratio| {
-        vec![
-            ratio.scene.clone(),
-            ratio.backend.clone(),
-            ratio.samples.to_string(),
-            format!("{:.2}", ratio.at_equal_samples),
-            format!("{:.2}", ratio.at_equal_time),
-        ]
-    });
-    let heads = ["scene", "backend", "samples", "at equal samples", "at equal time"];
-    format!(
-        "\n## Sobol points against independent samples\n\nThe squared error of independent samples relative to that of \
-         Sobol points, which are best at powers of two.\n\n{}",
-        markdown_table(&heads, 2, rows)
-    )
 }
 
 fn calibration(rows: &[Calibration]) -> String {
@@ -136,45 +112,6 @@ fn calibration(rows: &[Calibration]) -> String {
     )
 }
 
-fn rounding(data: &Data, curves: &[CurveSummary]) -> String {
-    if data.rounding.is_empty() {
-        return String::new();
-    }
-    let rows = data.rounding.iter().map(|row| {
-        let best = curves
-            .iter()
-            .filter(|c| (&c.curve.scene, &c.curve.backend) == (&row.scene, &row.backend))
-            .filter_map(|c| c.samples_to(row.floor.unwrap_or(row.floor_limit)))
-            .reduce(f64::min);
-        let more = if row.floor.is_some() { "" } else { "> " };
-        vec![
-            row.scene.clone(),
-            row.backend.clone(),
-            row.samples.to_string(),
-            format!("{:+.1e}", row.bias),
-            format!("{:.1e}", row.rms),
-            row.floor.map_or(format!("< {:.1e}", row.floor_limit), |floor| format!("{floor:.1e}")),
-            or_dash(best, |samples| format!("~{more}{samples:.0e}")),
-        ]
-    });
-    let heads = [
-        "scene",
-        "backend",
-        "samples",
-        "mean difference",
-        "RMS difference",
-        "floor",
-        "samples until noise is as low",
-    ];
-    format!(
-        "\n## The effect of rounding\n\nThe same samples in double precision and on each backend. The *difference* is that of \
-         the pictures. Nearly all of it comes from paths that rounding sent another way. They are as good as the original \
-         paths, and like noise, this part falls with more samples. The *floor* is the part that never falls; \
-         more samples help until the noise is as low as the floor.\n\n{}",
-        markdown_table(&heads, 2, rows)
-    )
-}
-
 /// Three significant digits.
 fn number(x: f64) -> String {
     match x.abs() {
@@ -184,29 +121,9 @@ fn number(x: f64) -> String {
     }
 }
 
-/// All measurements, one line per picture and sample count.
-pub fn csv(data: &Data) -> String {
-    let mut text = String::from(
-        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
-    );
-    for run in &data.runs {
-        // A scene's name may be any file name.
-        let scene = run.curve.scene.replace([',', '"', '\n'], "_");
-        for point in &run.points {
-            let Measured { samples, trace_seconds, wall_seconds, mse, rel_mse, flip, rejected, .. } = point;
-            let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-            let (device, estimate) = (optional(point.device_seconds), optional(point.mse_estimate));
-            text += &format!(
-                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{device},{mse},{rel_mse},{flip},{estimate},{rejected}\n",
-                run.curve.backend, run.curve.sampler, run.seed
-            );
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::summary::CurvePoint;
     use super::super::tests::curve as key;
     use super::*;
 
@@ -217,7 +134,6 @@ mod tests {
             rmse,
             range: [0.01, 0.03],
             rel_mse: 0.04,
-            flip: 0.125,
         };
         CurveSummary {
             curve: key(backend, sampler),
@@ -240,15 +156,15 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(
             lines[0],
-            "| backend | sampler | slope | efficiency | relMSE | FLIP | to RMSE 0.01 | times c89 |"
+            "| backend | sampler | slope | efficiency | relMSE | to RMSE 0.01 | times c89 |"
         );
         assert_eq!(
             lines[2..6],
             [
-                "| c89 | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | ~40.0 s | ~0.50 |",
-                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | 20.0 s | 1.00 |",
-                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | 5.00 s | 4.00 |",
-                "| cpu | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | 0.125 | ~50.0 s | ~0.40 |",
+                "| c89 | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | ~40.0 s | ~0.50 |",
+                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 20.0 s | 1.00 |",
+                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 0.0400 | 5.00 s | 4.00 |",
+                "| cpu | independent | -0.50 ± 0.01 | 2.00 | 0.0400 | ~50.0 s | ~0.40 |",
             ]
         );
     }

@@ -69,8 +69,6 @@ pub struct Case {
     pub why: &'static str,
     /// Allowed difference of the mean apart from noise, linear radiance.
     pub tolerance: f64,
-    /// A similar scene without the difficulty, to compare times with.
-    pub tame: Option<Recipe>,
     /// How the window shows it; `None` if there is nothing to see.
     pub watch: Option<Watch>,
     /// Whether `cargo test` runs it.
@@ -129,7 +127,6 @@ impl Case {
             expected: Expected::Reference,
             why: "f64 has digits to spare at these scales",
             tolerance: 2e-6,
-            tame: None,
             watch: None,
             is_quick: false,
         }
@@ -144,12 +141,6 @@ impl Case {
     #[must_use]
     pub fn every(self, value: f64, why: &'static str) -> Self {
         self.expect(Expected::Every([value; 3]), why, 1e-6)
-    }
-
-    /// Compares the time with that of `tame`.
-    #[must_use]
-    pub fn beside(self, tame: Recipe) -> Self {
-        Case { tame: Some(tame), ..self }
     }
 
     /// Shows the case in the window.

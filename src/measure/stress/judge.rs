@@ -13,12 +13,6 @@ const PAIRED_SHARE: f64 = 0.5;
 /// Pixel difference that rounding may cause without noise.
 const PAIRED_FLOOR: f64 = 1e-4;
 
-/// A picture is slow if it takes this many times as long as its tame twin and [`SLOW_SECONDS`] longer.
-const SLOW_RATIO: f64 = 8.0;
-
-/// Extra seconds from which slowness matters.
-const SLOW_SECONDS: f64 = 1.0;
-
 /// The difference of two films of the same samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Paired {
@@ -109,8 +103,6 @@ pub enum Verdict {
     /// Wrong, but the backend warned about it and offered a remedy.
     Warned(String),
     Wrong(String),
-    /// Right, but far slower than the tame twin.
-    Slow(String),
     /// No picture: it was refused, the tracer failed, or it took too long.
     None(String),
 }
@@ -122,7 +114,6 @@ impl Verdict {
             Verdict::Right => "right",
             Verdict::Warned(_) => "warned",
             Verdict::Wrong(_) => "WRONG",
-            Verdict::Slow(_) => "SLOW",
             Verdict::None(_) => "NONE",
         }
     }
@@ -131,10 +122,7 @@ impl Verdict {
     pub fn reason(&self) -> &str {
         match self {
             Verdict::Right => "",
-            Verdict::Warned(reason)
-            | Verdict::Wrong(reason)
-            | Verdict::Slow(reason)
-            | Verdict::None(reason) => reason,
+            Verdict::Warned(reason) | Verdict::Wrong(reason) | Verdict::None(reason) => reason,
         }
     }
 
@@ -199,16 +187,6 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
             Verdict::Wrong(format!("pixels are off by {rms:.1e} RMS; at most {allowed_rms:.1e} is allowed"))
         }
         _ => Verdict::Right,
-    }
-}
-
-/// Judges a picture's time if its radiance is right.
-pub fn judge_time(verdict: Verdict, seconds: f64, tame: Option<f64>) -> Verdict {
-    match (verdict, tame) {
-        (Verdict::Right, Some(tame)) if seconds > SLOW_RATIO * tame && seconds > tame + SLOW_SECONDS => {
-            Verdict::Slow(format!("{seconds:.1} s; the tame twin takes {tame:.2} s"))
-        }
-        (verdict, _) => verdict,
     }
 }
 
@@ -297,12 +275,6 @@ mod tests {
             assert!(judge(&level, within, 1e-6, 0).is_right(), "{within:?}");
             assert!(!judge(&level, beyond, 1e-6, 0).is_right(), "{beyond:?}");
             assert!(!judge(&level, within, 1e-6, 1).is_right(), "rejected");
-        }
-        for (seconds, tame, is_right) in
-            [(7.9, 1.0, true), (8.1, 1.0, false), (1.09, 0.1, true), (1.11, 0.1, false)]
-        {
-            let verdict = judge_time(Verdict::Right, seconds, Some(tame));
-            assert_eq!(verdict.is_right(), is_right, "{seconds} {tame}");
         }
     }
 }

@@ -7,7 +7,6 @@
 mod case;
 pub mod families;
 mod judge;
-mod pictures;
 mod report;
 mod suite;
 
@@ -19,14 +18,14 @@ pub use suite::{Suite, by_the_book, trace};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, make_directory, write_json};
+use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::StressOptions;
 use crate::cli::terminal;
 use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::write_text;
+use crate::system::files::{make_directory, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
@@ -49,8 +48,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     let levels = options.levels();
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let painter = Candidate::backend("pictures", cpu(levels[0]));
-    let report = suite(options, &chosen, tracers, painter, interrupt.flag()).map_err(Failure::Run)?;
+    let report = suite(options, &chosen, tracers, interrupt.flag()).map_err(Failure::Run)?;
     Ok(match (interrupt.is_set(), report.is_right()) {
         (true, _) => interrupt.exit_code(),
         (false, true) => ExitCode::SUCCESS,
@@ -81,7 +79,6 @@ fn suite(
     options: &StressOptions,
     chosen: &[&Case],
     tracers: Vec<Candidate>,
-    mut painter: Candidate,
     interrupt: &AtomicBool,
 ) -> Result<StressReport> {
     let (begin, machine) = (Instant::now(), Machine::look());
@@ -95,7 +92,7 @@ fn suite(
         cases: Vec::new(),
     };
     let json = &options.json;
-    // Write pictures and figures even if the table cannot be printed.
+    // Write the figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_ref(), &report::head());
     for case in chosen {
         progress.at(&case.id, 0.0);
@@ -108,9 +105,6 @@ fn suite(
         printed = printed.and(progress.above(row));
         progress.finished(1.0);
         report.cases.push(found);
-        if let Some(directory) = &options.out {
-            pictures::write(directory, case, &mut painter, interrupt)?;
-        }
     }
     progress.clear();
     report.seconds = begin.elapsed().as_secs_f64();

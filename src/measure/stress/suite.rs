@@ -2,7 +2,7 @@
 
 use super::super::{Candidate, Stop, Traced};
 use super::case::{Case, Expected, Form};
-use super::judge::{Against, Level, Paired, Verdict, judge, judge_time, offset};
+use super::judge::{Against, Level, Paired, Verdict, judge, offset};
 use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
@@ -17,12 +17,6 @@ const TIME_LIMIT: Duration = Duration::from_secs(20);
 
 /// How often to check the time limit and the user's interrupt.
 const GLANCE: Duration = Duration::from_millis(50);
-
-/// How often to time a case and its tame twin; the fastest of each counts.
-const TURNS: usize = 5;
-
-/// Time limit of these repetitions, seconds.
-const TURNS_TIME: f64 = 0.6;
 
 /// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
@@ -140,44 +134,22 @@ impl CaseRun<'_> {
 
     fn measure(&mut self, tracer: usize, form: Form, traced: Result<Traced, String>) -> Measured {
         let backend = self.suite.tracers[tracer].name.clone();
-        let mut measured = Measured { backend, form: form.name(), ..Measured::default() };
+        let measured = Measured { backend, form: form.name(), ..Measured::default() };
         let traced = match traced {
             Ok(traced) => traced,
             Err(reason) => return Measured { verdict: Verdict::None(reason), ..measured },
         };
         let level = Level::of(&traced.film);
-        let mut seconds = traced.seconds;
-        if let (Some(tame), Form::Plain) = (&self.case.tame, form) {
-            (seconds, measured.tame_seconds) = self.times(tracer, tame, seconds);
-        }
         let (off, verdict) = self.judge(tracer, &level, &traced.film);
-        let verdict = judge_time(verdict, seconds, measured.tame_seconds).given(&traced.warnings);
+        let verdict = verdict.given(&traced.warnings);
         Measured {
             mean: Some(level.grey()),
             deviation: Some(level.deviation),
-            seconds: Some(seconds),
+            seconds: Some(traced.seconds),
             offset: off,
             verdict,
             ..measured
         }
-    }
-
-    /// Shortest times of the picture and its tame twin, taken alternately: other load on the machine can only add time.
-    fn times(&mut self, tracer: usize, tame: &Recipe, first: f64) -> (f64, Option<f64>) {
-        let case = self.case;
-        // The first picture may have waited for a kernel.
-        let (mut least, mut least_tame, mut spent) = (first, None::<f64>, 0.0);
-        for _ in 0..TURNS {
-            let Ok(of_tame) = self.trace(tracer, tame) else { break };
-            least_tame = Some(least_tame.map_or(of_tame.seconds, |least| least.min(of_tame.seconds)));
-            let Ok(again) = self.trace(tracer, &case.recipe) else { break };
-            least = least.min(again.seconds);
-            spent += of_tame.seconds + again.seconds;
-            if spent > TURNS_TIME {
-                break;
-            }
-        }
-        (least, least_tame)
     }
 
     /// How far a tracer's film is off, and the verdict.

@@ -1,7 +1,7 @@
 //! Lines over two axes.
 
 use super::axis::position;
-use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
+use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, color};
 use super::{LineChart, Look, Point};
 use plotters::chart::SeriesAnno;
 use plotters::coord::Shift;
@@ -9,7 +9,7 @@ use plotters::prelude::*;
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, units: Units) -> Drawn<B> {
+pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart) -> Drawn<B> {
     let points = || chart.series.iter().flat_map(|series| &series.points);
     let x = chart.x.ruler(points().map(|point| point.x));
     let y = chart
@@ -17,20 +17,20 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
         .ruler(points().flat_map(|point| [point.y].into_iter().chain(point.spread.into_iter().flatten())));
 
     let mut builder = ChartBuilder::on(area);
-    builder.margin(units.px(8.0)).margin_right(units.px(18.0));
-    builder.x_label_area_size(units.px(46.0)).y_label_area_size(units.px(64.0));
+    builder.margin(8).margin_right(18);
+    builder.x_label_area_size(46).y_label_area_size(64);
     if !chart.title.is_empty() {
-        builder.caption(&chart.title, (FONT, units.px(17.0), &INK));
+        builder.caption(&chart.title, (FONT, 17, &INK));
     }
     let mut context = builder.build_cartesian_2d(x, y)?;
     context
         .configure_mesh()
-        .bold_line_style(GRID.stroke_width(units.size(1.0)))
-        .light_line_style(FINE_GRID.stroke_width(units.size(1.0)))
-        .axis_style(FAINT_INK.stroke_width(units.size(1.0)))
-        .set_all_tick_mark_size(units.px(4.0))
-        .label_style((FONT, units.px(14.0), &INK))
-        .axis_desc_style((FONT, units.px(15.0), &INK))
+        .bold_line_style(GRID.stroke_width(1))
+        .light_line_style(FINE_GRID.stroke_width(1))
+        .axis_style(FAINT_INK.stroke_width(1))
+        .set_all_tick_mark_size(4)
+        .label_style((FONT, 14, &INK))
+        .axis_desc_style((FONT, 15, &INK))
         .x_desc(&chart.x.label)
         .y_desc(&chart.y.label)
         .draw()?;
@@ -41,9 +41,9 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
         let points: Vec<(f64, f64)> = series.points.iter().filter_map(at).collect();
         match series.look {
             Look::Guide => {
-                let style = GUIDE.stroke_width(units.size(1.5));
-                let line = DashedLineSeries::new(points, units.px(7.0), units.px(5.0), style);
-                name(context.draw_series(line)?, &series.name, style, units);
+                let style = GUIDE.stroke_width(2);
+                let line = DashedLineSeries::new(points, 7, 5, style);
+                name(context.draw_series(line)?, &series.name, style);
             }
             Look::Measured => {
                 let color = color(colors);
@@ -57,9 +57,9 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
                 if band.len() > 2 {
                     context.draw_series([Polygon::new(band, color.mix(0.22).filled())])?;
                 }
-                let style = color.filled().stroke_width(units.size(2.0));
-                let line = LineSeries::new(points, style).point_size(units.size(4.5));
-                name(context.draw_series(line)?, &series.name, style, units);
+                let style = color.filled().stroke_width(2);
+                let line = LineSeries::new(points, style).point_size(5);
+                name(context.draw_series(line)?, &series.name, style);
             }
         }
     }
@@ -67,23 +67,18 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, 
     context
         .configure_series_labels()
         .position(corner)
-        .margin(units.px(12.0))
-        .legend_area_size(units.px(34.0))
-        .label_font((FONT, units.px(14.0), &INK))
+        .margin(12)
+        .legend_area_size(34)
+        .label_font((FONT, 14, &INK))
         .background_style(WHITE.mix(0.9))
-        .border_style(GRID.stroke_width(units.size(1.0)))
+        .border_style(GRID.stroke_width(1))
         .draw()
 }
 
 /// Adds a series to the legend if it has a name.
-fn name<'a, B: DrawingBackend + 'a>(
-    series: &mut SeriesAnno<'a, B>,
-    name: &str,
-    style: ShapeStyle,
-    units: Units,
-) {
+fn name<'a, B: DrawingBackend + 'a>(series: &mut SeriesAnno<'a, B>, name: &str, style: ShapeStyle) {
     if !name.is_empty() {
-        let length = units.px(26.0);
+        let length = 26;
         series.label(name).legend(move |(x, y)| PathElement::new([(x, y), (x + length, y)], style));
     }
 }

@@ -1,18 +1,16 @@
-//! Charts as plain data, drawn to PNG or SVG files: lines with bands on logarithmic axes, and bars with
-//! notes beside them.
+//! Charts as plain data, drawn as SVG: lines with bands on logarithmic axes.
 //!
 //! plotters draws them; no other room uses it. Text is set in the window's embedded font, so no system library is
 //! needed.
 
 mod axis;
-mod bars;
 mod file;
 mod lines;
 mod page;
 mod style;
 
 pub use axis::Axis;
-pub use file::{ChartError, ChartFormat, save};
+pub use file::svg;
 pub use page::{UNTITLED_TOP, page_svg};
 pub use plotters::chart::SeriesLabelPosition as Corner;
 
@@ -22,19 +20,12 @@ pub struct Figure {
     pub title: String,
     /// A smaller line below the title, such as machine and settings; may be empty.
     pub about: String,
-    /// Width and height in points; a PNG has twice as many pixels each way.
+    /// Width and height in points.
     pub size: [u32; 2],
     /// Charts side by side.
     pub columns: usize,
     /// In reading order.
-    pub panels: Vec<Panel>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Panel {
-    Lines(LineChart),
-    /// Horizontal bars, one per row.
-    Bars(BarChart),
+    pub panels: Vec<LineChart>,
 }
 
 /// Series over two axes.
@@ -81,30 +72,4 @@ pub struct Point {
     pub y: f64,
     /// Smallest and largest y, drawn as a band.
     pub spread: Option<[f64; 2]>,
-}
-
-/// Horizontal bars from 0.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BarChart {
-    /// May be empty.
-    pub title: String,
-    /// Meaning of the bars' length, with the unit.
-    pub label: String,
-    /// Top to bottom.
-    pub bars: Vec<Bar>,
-}
-
-/// A bar and the texts of its row.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bar {
-    /// Left of the bar.
-    pub name: String,
-    /// At least 0.
-    pub value: f64,
-    /// Smallest and largest value.
-    pub spread: Option<[f64; 2]>,
-    /// Right of the bar.
-    pub note: String,
-    /// Bars of the same kind have the same colour.
-    pub kind: usize,
 }

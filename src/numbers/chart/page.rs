@@ -2,7 +2,8 @@
 
 use super::Figure;
 use super::file::svg;
-use super::style::{FAINT_INK, FINE_GRID, GRID, GUIDE, INK, PALETTE, provide_font};
+use super::style::{FAINT_INK, FINE_GRID, GRID, GUIDE, INK, PALETTE};
+use anyhow::{Context, Result};
 use plotters::style::{RGBColor, WHITE};
 
 /// Height of the space above the charts of an untitled figure, points.
@@ -10,15 +11,15 @@ pub const UNTITLED_TOP: u32 = 40;
 
 /// The figure as an `<svg>` element that fills its place, in the page's colours: `currentColor` for text, the variables
 /// `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for measurements. `label` describes it to
-/// screen readers. Fails if plotters or the font does.
-pub fn page_svg(figure: &Figure, label: &str) -> Result<String, String> {
-    if !provide_font() {
-        return Err("the font of the charts cannot be read".to_owned());
-    }
-    let text = String::from_utf8(svg(figure)?).map_err(|error| error.to_string())?;
+/// screen readers.
+///
+/// # Errors
+/// As for [`svg`].
+pub fn page_svg(figure: &Figure, label: &str) -> Result<String> {
+    let text = svg(figure)?;
     let inside =
         text.find("<svg").and_then(|start| text[start..].find('>').map(|end| &text[start + end + 1..]));
-    let inside = inside.ok_or("the chart has no <svg> element")?;
+    let inside = inside.context("the chart has no <svg> element")?;
     let [width, height] = figure.size;
     let mut page =
         format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{label}\">{inside}");
@@ -40,7 +41,7 @@ fn quoted(RGBColor(r, g, b): RGBColor) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, LineChart, Look, Panel, Point, Series};
+    use super::super::{Axis, LineChart, Look, Point, Series};
     use super::*;
 
     #[test]
@@ -60,7 +61,7 @@ mod tests {
             about: "about".to_owned(),
             size: [400, 300],
             columns: 1,
-            panels: vec![Panel::Lines(chart)],
+            panels: vec![chart],
         };
         let svg = page_svg(&figure, "A chart").unwrap();
         assert!(

@@ -26,7 +26,7 @@ pub const PALETTE: [RGBColor; 6] = [
     RGBColor(0x56, 0xB4, 0xE9),
 ];
 
-/// Colour of a series or kind of bar.
+/// Colour of a series.
 pub fn color(index: usize) -> RGBColor {
     PALETTE[index % PALETTE.len()]
 }
@@ -39,20 +39,4 @@ pub fn provide_font() -> bool {
     static IS_KNOWN: OnceLock<bool> = OnceLock::new();
     *IS_KNOWN
         .get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok())
-}
-
-/// Pixels per point.
-#[derive(Clone, Copy)]
-pub struct Units(pub f64);
-
-impl Units {
-    /// A length in whole pixels.
-    pub fn px(self, points: f64) -> i32 {
-        (points * self.0).round() as i32
-    }
-
-    /// The same for lengths that cannot be negative.
-    pub fn size(self, points: f64) -> u32 {
-        self.px(points).max(0).unsigned_abs()
-    }
 }

@@ -1,8 +1,7 @@
-//! Statistics of noisy pictures: tests of equality, fits, distances. Pure functions of numbers.
+//! Statistics of noisy pictures: tests of equality, fits. Pure functions of numbers.
 
 pub mod blocks;
 pub mod fit;
-pub mod flip;
 pub mod normal;
 
 /// The median, the mean of the two middle values if their number is even; `None` without values. NaN sorts last.

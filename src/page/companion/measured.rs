@@ -252,7 +252,7 @@ fn error_chart(kept: &Kept) -> Result<Markup> {
         panels: drawn.panels,
     };
     let about = "Error against time for each tracer; the table below has the times.";
-    let svg = chart::page_svg(&figure, about).map_err(anyhow::Error::msg)?;
+    let svg = chart::page_svg(&figure, about)?;
     Ok(html! {
         figure .chart id="chart-error" {
             div .scroll tabindex="0" role="group" aria-label="Chart of error against time" { (PreEscaped(svg)) }

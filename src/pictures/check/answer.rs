@@ -164,6 +164,10 @@ impl Finding {
             )),
             _ => {}
         }
+        if let Some(alike) = self.alike {
+            let remedy = capitalised(alike.remedy);
+            evidence.push(format!("Another mistake gives the same picture: {}. {remedy}", alike.title));
+        }
         let is_gradient = self.stage.setup.rules.shading == Shading::ImageGradient;
         if self.is_right() && mine.width == mine.height && !is_gradient {
             let square = "The picture is square; if you wanted 16:9, divide 16.0 by 9.0, not 16 by 9";
@@ -185,7 +189,7 @@ mod tests {
 
     #[test]
     fn mistakes_link_to_their_own_sections() {
-        for mistake in &MISTAKES {
+        for mistake in MISTAKES {
             let section = Section::find(mistake.section).unwrap();
             assert_eq!(section.number, mistake.section);
             assert!(

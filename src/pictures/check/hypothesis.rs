@@ -62,6 +62,11 @@ impl Mistake {
         self.change.pictures(recipe).into_iter().map(blame).collect()
     }
 
+    /// Whether it is a step of a later section rather than a fault.
+    pub fn is_early(&self) -> bool {
+        self.id.ends_with("-early")
+    }
+
     pub fn is_at_edges(&self) -> bool {
         matches!(self.change, Change::AtEdges(_))
     }

@@ -47,6 +47,8 @@ pub struct Finding {
     pub right: Compared,
     /// The likeliest mistake; `None` if the picture is right.
     pub mistake: Option<Compared>,
+    /// Another mistake that gives the same picture.
+    pub alike: Option<&'static Mistake>,
 }
 
 impl Finding {
@@ -63,10 +65,17 @@ impl Finding {
     fn rank(&self) -> (u8, f64) {
         match &self.mistake {
             None if self.right.is_noise => (0, self.right.misfit),
-            Some(found) if found.is_noise => (1, found.misfit),
-            Some(found) => (2, found.misfit),
-            None => (2, self.right.misfit),
+            Some(found) if self.explains_all() => (1, found.misfit),
+            Some(found) if found.is_noise => (2, found.misfit),
+            Some(found) => (3, found.misfit),
+            None => (3, self.right.misfit),
         }
+    }
+
+    /// Whether a mistake, rather than a step of a later section, explains all differences.
+    fn explains_all(&self) -> bool {
+        let found = self.mistake.as_ref().filter(|found| found.is_noise);
+        found.and_then(|found| found.hypothesis.mistake).is_some_and(|mistake| !mistake.is_early())
     }
 }
 
@@ -81,28 +90,34 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
         Some(stage) => vec![stage],
         None => candidates(mine, &mut say)?,
     };
-    let mut trials = Vec::new();
+    let (mut trials, mut best) = (Vec::new(), None);
     for stage in stages {
         say(format!("comparing with {}", stage.id));
         let trial = Trial::new(mine, stage)?;
-        if trial.right.is_noise {
-            return trial.of_right();
+        if !trial.right.is_noise {
+            trials.push(trial);
+            continue;
         }
-        trials.push(trial);
+        let finding = trial.of_right()?;
+        if finding.is_right() {
+            return Ok(finding);
+        }
+        keep_closer(&mut best, finding);
     }
-    let mut best: Option<Finding> = None;
     for trial in trials {
-        say(format!("trying the mistakes of {}", trial.stage.id));
-        let finding = trial.of_wrong()?;
-        let explains_all = finding.mistake.as_ref().is_some_and(|found| found.is_noise);
-        if best.as_ref().is_none_or(|best| finding.rank() < best.rank()) {
-            best = Some(finding);
-        }
-        if explains_all {
+        if best.as_ref().is_some_and(Finding::explains_all) {
             break;
         }
+        say(format!("trying the mistakes of {}", trial.stage.id));
+        keep_closer(&mut best, trial.of_wrong()?);
     }
     best.context("there is no stage to compare with")
+}
+
+fn keep_closer(best: &mut Option<Finding>, finding: Finding) {
+    if best.as_ref().is_none_or(|best| finding.rank() < best.rank()) {
+        *best = Some(finding);
+    }
 }
 
 /// A picture compared with the right one of a stage.
@@ -123,7 +138,7 @@ impl<'a> Trial<'a> {
     }
 
     fn finding(self, mistake: Option<Compared>) -> Finding {
-        Finding { stage: self.stage, right: self.right, mistake }
+        Finding { stage: self.stage, right: self.right, mistake, alike: None }
     }
 
     /// The finding when blocks differ only by noise: looks for mistakes that blocks cannot show.
@@ -137,8 +152,8 @@ impl<'a> Trial<'a> {
         if let Some(found) = self.in_bytes() {
             return Ok(self.finding(Some(found)));
         }
-        let (mut pictures, mut best) = (all_mistakes(self.studio.recipe()), None);
-        for (samples, count) in COARSE.into_iter().zip([REFINED, 1]) {
+        let (mut pictures, mut ranked) = (all_mistakes(self.studio.recipe()), Vec::new());
+        for samples in COARSE {
             let mut compared = Vec::new();
             for hypothesis in pictures {
                 let expected = self.studio.render(&hypothesis, samples)?;
@@ -146,18 +161,22 @@ impl<'a> Trial<'a> {
             }
             compared.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
             compared.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
-            compared.truncate(count);
+            compared.truncate(REFINED);
             pictures = compared.iter().map(|found| found.hypothesis.clone()).collect();
-            best = compared.into_iter().next();
+            ranked = compared;
         }
-        let Some(best) = best else { return self.of_unexplained() };
+        let mut ranked = ranked.into_iter();
+        let Some(best) = ranked.next() else { return self.of_unexplained() };
         if best.hypothesis.mistake.is_some_and(Mistake::is_at_edges)
             && let Some(found) = at_edges(self.mine, &mut self.studio, &self.right, FINE)?
         {
             return Ok(self.finding(Some(found)));
         }
         if best.is_noise || best.misfit < EXPLAINED * self.right.misfit {
-            return Ok(self.finding(Some(best)));
+            let others = ranked.filter(|found| best.is_noise && found.is_noise);
+            let named = best.hypothesis.mistake.map(|mistake| mistake.id);
+            let alike = others.filter_map(|found| found.hypothesis.mistake).find(|it| Some(it.id) != named);
+            return Ok(Finding { alike, ..self.finding(Some(best)) });
         }
         self.of_unexplained()
     }
@@ -172,7 +191,7 @@ impl<'a> Trial<'a> {
                 let single = self.studio.render(&single, 1)?;
                 if test(self.mine, &self.right, &single) {
                     let hypothesis = Hypothesis { mistake: Some(mistake), ..self.right.hypothesis.clone() };
-                    let found = Compared { hypothesis, ..self.right.clone() };
+                    let found = Compared { hypothesis, is_noise: true, ..self.right.clone() };
                     return Ok(self.finding(Some(found)));
                 }
             }
@@ -261,7 +280,12 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
             let mut least = f64::INFINITY;
             for hypothesis in std::iter::once(right).chain(mistakes) {
                 let expected = studio.render(&hypothesis, SMALL)?;
-                least = least.min(rough_difference(mine, factor, &hypothesis, &expected));
+                let mut difference = rough_difference(mine, factor, &hypothesis, &expected);
+                if hypothesis.mistake.is_some_and(Mistake::is_early) {
+                    // A later stage that looks like the picture is likelier.
+                    difference += FOUND;
+                }
+                least = least.min(difference);
             }
             ranked.push((least, stage));
         }
@@ -271,10 +295,11 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
             a.total_cmp(b).then(distance(stage_a).cmp(&distance(stage_b)))
         });
         if ranked.first().is_some_and(|(least, _)| *least < FOUND) {
-            break;
+            return Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect());
         }
     }
-    Ok(ranked.into_iter().map(|(_, stage)| stage).take(CANDIDATES).collect())
+    // No mistake of any stage looks like the picture: one stage is enough to say where it differs.
+    Ok(ranked.into_iter().map(|(_, stage)| stage).take(1).collect())
 }
 
 /// Root mean square difference of the thumbnails, display values.

@@ -24,11 +24,10 @@ use crate::cli::terminal::Display;
 use crate::cli::{CheckOptions, ProgressChoice};
 use crate::numbers::heat::HeatScale;
 use crate::system::failure::Failure;
-use crate::system::files::replace_file;
+use crate::system::files::{make_directory, replace_file};
 use anyhow::{Context, Result};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,11 +39,7 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
 }
 
 fn checked(options: &CheckOptions) -> Result<ExitCode> {
-    if let Some(directory) = &options.out {
-        fs::create_dir_all(directory).with_context(|| {
-            format!("cannot create the directory {}; choose another with --out", directory.display())
-        })?;
-    }
+    options.out.iter().try_for_each(|directory| make_directory(directory))?;
     let files = options.pictures();
     check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
     let mine = Mine::read(&options.picture)?;

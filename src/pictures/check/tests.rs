@@ -47,7 +47,7 @@ fn mistakes_have_unique_ids_and_apply_somewhere() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), MISTAKES.len());
-    for mistake in &MISTAKES {
+    for mistake in MISTAKES {
         let shows = |stage: &Stage| {
             let recipe = stage.recipe();
             (mistake.applies)(&recipe)

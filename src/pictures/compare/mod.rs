@@ -1,24 +1,17 @@
 //! `weekender compare`: whether two pictures differ by more than noise.
 
-mod heat_map;
 mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
-use super::picture::{Picture, about_film, check_memory};
-use crate::backends::{self, BackendChoice};
-use crate::cli::{CompareOptions, CompareSide};
-use crate::film::Film;
-use crate::job::render::{RenderSettings, Renderer};
+use super::picture::Picture;
+use crate::cli::CompareOptions;
 use crate::numbers::statistics::blocks::{Block, SUM_DEVIATIONS};
 use crate::system::failure::Failure;
-use crate::system::files::replace_file;
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use serde_json::json;
-use std::ops::Range;
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
 
 /// Number of blocks named in the output.
 const NAMED_BLOCKS: usize = 5;
@@ -31,14 +24,11 @@ pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
 
 fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let json = options.json.as_ref();
-    check_outputs(json, options.heat_map.as_deref())?;
-    let sides = sides(options)?;
+    check_outputs(json, None)?;
+    let sides =
+        [Picture::read(&options.first, options.encoding)?, Picture::read(&options.second, options.encoding)?];
     let comparison = compare_sides(&sides)?;
-    if let Some(path) = &options.heat_map {
-        let [a, b] = &sides;
-        replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
-    }
-    deliver(json, &text(&sides, &comparison), 1, &figures(&sides, &comparison))?;
+    deliver(json, &text(&sides, &comparison), 2, &figures(&sides, &comparison))?;
     Ok(comparison.verdict().exit_code())
 }
 
@@ -76,74 +66,6 @@ fn note_on_jobs(a: &Picture, b: &Picture) -> Option<&'static str> {
         job_a.scene() != job_b.scene() || job_a.camera() != job_b.camera() || job_a.rules() != job_b.rules();
     is_other_picture
         .then_some("the recipes differ in scene, camera or rules: these should be different pictures")
-}
-
-/// A side that was read, or a backend that renders the other side's scene at its size.
-enum Opened {
-    Read(Box<Picture>),
-    Backend(Rendering),
-}
-
-fn sides(options: &CompareOptions) -> Result<[Picture; 2]> {
-    let open = |side: &CompareSide| match side {
-        CompareSide::File(path) => Ok(Opened::Read(Box::new(Picture::read(path, options.encoding)?))),
-        CompareSide::Backend { name, choice } => Rendering::start(choice, name).map(Opened::Backend),
-    };
-    let [first, second] = &options.sides;
-    Ok(match (open(first)?, open(second)?) {
-        (Opened::Read(a), Opened::Read(b)) => [*a, *b],
-        (Opened::Read(a), Opened::Backend(mut b)) => {
-            let b = b.beside(Some(&a), options)?;
-            [*a, b]
-        }
-        (Opened::Backend(mut a), Opened::Read(b)) => [a.beside(Some(&b), options)?, *b],
-        (Opened::Backend(mut a), Opened::Backend(mut b)) => {
-            if a.name == b.name {
-                a.name.push_str(" (first)");
-                b.name.push_str(" (second)");
-            }
-            [a.beside(None, options)?, b.beside(None, options)?]
-        }
-    })
-}
-
-struct Rendering {
-    name: String,
-    renderer: Box<dyn Renderer>,
-}
-
-impl Rendering {
-    fn start(choice: &BackendChoice, name: &str) -> Result<Self> {
-        let renderer = backends::create(choice).with_context(|| format!("{name} is not available"))?;
-        Ok(Rendering { name: name.to_owned(), renderer })
-    }
-
-    /// Renders the counterpart of `read` at its size, with the same samples if `read` is a film of the same job. With
-    /// no file, both backends follow the options.
-    fn beside(&mut self, read: Option<&Picture>, options: &CompareOptions) -> Result<Picture> {
-        let mut recipe = options.recipe.clone();
-        if let Some(read) = read {
-            (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
-        }
-        let job = recipe.job()?;
-        let RenderSettings { width, height, .. } = *job.settings();
-        job.check_memory(2)?;
-        check_memory(width, height, 2)?;
-        let is_same_job = read.and_then(|read| read.job.as_ref()) == Some(&job);
-        let first = |count: u64| std::iter::once(0..count).collect();
-        let ranges: Vec<Range<u64>> = match (options.samples, read.and_then(|read| read.film.as_deref())) {
-            (None, Some(film)) if is_same_job => film.samples().iter().collect(),
-            (None, Some(film)) => first(film.sample_count()),
-            (samples, _) => first(samples.unwrap_or(recipe.samples_per_pixel)),
-        };
-        let mut film = Film::try_new(width, height, job.settings().half_count())?;
-        for range in ranges {
-            self.renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false))?;
-        }
-        let info = self.renderer.info();
-        let about = format!("{} {}, {}", info.name, info.device, about_film(&film, Some(&recipe)));
-        Ok(Picture { job: Some(job), ..Picture::of_film(self.name.clone(), about, film) })
-    }
 }
 
 pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {

@@ -1,18 +1,15 @@
-//! Noise, rounding, clipping, NaN, and rendering the counterpart of a file.
+//! Noise, rounding, clipping, NaN.
 
-use super::verdict::{NonFinite, Relation};
+use super::verdict::NonFinite;
 use super::*;
-use crate::film::{Description, FIXED_POINT_SCALE, PixelSum, checkpoint, fixed_point};
+use crate::film::{FIXED_POINT_SCALE, Film, PixelSum, fixed_point};
 use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
-use crate::job::recipe::file::to_picture_toml;
 use crate::kernel::sampling::pcg4d;
-use crate::numbers::heat::HeatScale;
-use crate::numbers::statistics::blocks::{BlockTest, CHANCE, Differences, Noise};
+use crate::numbers::statistics::blocks::CHANCE;
 use crate::numbers::statistics::normal::largest_of;
-use crate::render_cpu::CpuOptions;
 use crate::stages::{Diffuse, Transfer};
-use std::io::Cursor;
+use std::ops::Range;
 use std::sync::Arc;
 
 const PIXELS: usize = 80 * 48;
@@ -330,49 +327,6 @@ fn only_differing_channels_count_as_tries() {
     }
 }
 
-#[test]
-fn heat_map_frames_worst_blocks() {
-    let nan = f64::NAN;
-    // In turn, in the middle of a block: a difference, a value an eighth below the format's limit, one above it, NaN in
-    // one picture, NaN in both.
-    let at = |values: [f64; 5]| {
-        move |pixel: u32| match (pixel % 80, pixel / 80) {
-            (x, 3) if x % 8 == 3 && x < 40 => values[(x / 8) as usize],
-            _ => 0.5,
-        }
-    };
-    let a = floats(at([0.51, 0.75, 5.0, nan, nan]));
-    let b = floats(at([0.5, nan, nan, nan, 0.5]));
-    let b = Picture { steps: Some(vec![[0.01; 3]; PIXELS]), limit: 0.875, ..b };
-    assert_eq!(Relation::of_all(&a, &b)[3 * 80 + 3], [Relation::Difference(0.5 - 0.51); 3]);
-    // Of six differing blocks in the upper row, the fifth differs least.
-    let off = [0.0, 6.0, 1.0, 5.0, -4.0, 0.5, 3.0, 2.0, 0.0, 0.0];
-    let values: Vec<[f64; 3]> =
-        (0..PIXELS).map(|pixel| [if pixel < 640 { off[pixel % 80 / 8] } else { 0.0 }; 3]).collect();
-    let (noise, steps) = (Noise::Spread, None);
-    let test =
-        BlockTest::of(&Differences { width: 80, values: &values, noise, steps, tolerance: 1.0, rare: 0.0 });
-    let mut png = Cursor::new(Vec::new());
-    heat_map::write(&a, &b, &test, &mut png).unwrap();
-    let map = image::load_from_memory(png.get_ref()).unwrap().to_rgb8();
-    let of = |difference: f64| HeatScale::ERROR.colour(difference);
-    let colours = [3, 11, 19, 27, 35].map(|x| map.get_pixel(x, 3).0);
-    assert_eq!(colours, [of(0.01), of(0.125), of(0.0), of(f64::INFINITY), of(f64::INFINITY)]);
-    for (x, y, colour) in map.enumerate_pixels() {
-        let is_edge = [0, 7].contains(&(x % 8)) || [0, 7].contains(&y);
-        let is_framed = is_edge && y < 8 && [1, 3, 4, 6, 7].contains(&(x / 8));
-        assert_eq!(colour.0 == [0, 220, 255], is_framed, "{x},{y}");
-    }
-}
-
-fn one_thread() -> BackendChoice {
-    BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() })
-}
-
-fn backend() -> CompareSide {
-    CompareSide::Backend { name: "cpu".to_owned(), choice: one_thread() }
-}
-
 /// Three spheres at 8x6 with 5 samples per pixel.
 fn small() -> Recipe {
     let mut recipe = Recipe::find("three-spheres").unwrap();
@@ -380,76 +334,11 @@ fn small() -> Recipe {
     recipe
 }
 
-fn options_of(first: CompareSide, second: CompareSide) -> CompareOptions {
-    let encoding = Encoding::Book(Transfer::Gamma2);
-    let (recipe, sides) = (small(), [first, second]);
-    CompareOptions { sides, recipe, samples: None, encoding, heat_map: None, json: None }
-}
-
 /// A film of `recipe` with the samples of `ranges`.
 fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
     let mut film = recipe.job().unwrap().new_film();
     ranges.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
     Picture::of_rendered("film.exr".to_owned(), recipe.clone(), Arc::new(film)).unwrap()
-}
-
-#[test]
-fn counterpart_sample_count_precedence() {
-    let recipe = small();
-    let mut seeded = recipe.clone();
-    seeded.settings.seed = 7;
-    let [film, other] = [&recipe, &seeded].map(|recipe| rendered(recipe, &[4..6, 8..11]));
-    let picture = Picture { film: None, job: None, ..film.clone() };
-    for (read, asked, expected) in [
-        (&film, None, "4..6, 8..11"),
-        (&film, Some(5), "0..5"),
-        (&other, None, "0..5"),
-        (&other, Some(9), "0..9"),
-        (&picture, None, "0..3"),
-        (&picture, Some(9), "0..9"),
-    ] {
-        // The recipe's own size and sample count differ from the file's.
-        let mut recipe = recipe.clone();
-        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (40, 30, 3);
-        let options = CompareOptions { recipe, samples: asked, ..options_of(backend(), backend()) };
-        let mut rendering = Rendering::start(&one_thread(), "cpu").unwrap();
-        let found = rendering.beside(Some(read), &options).unwrap();
-        assert_eq!((found.width, found.height, found.name.as_str()), (8, 6, "cpu"));
-        assert_eq!(found.film.unwrap().samples().to_string(), expected, "{asked:?}");
-    }
-}
-
-#[test]
-fn backend_and_file_keep_order() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("film.exr");
-    let recipe = small();
-    let mut film = recipe.job().unwrap().new_film();
-    film.halves_mut()[0].iter_mut().for_each(|sum| sum.add(fixed_point([50.0; 3]).unwrap()));
-    film.record(0..2, 0).unwrap();
-    checkpoint::save(&path, &film, &Description::new(&to_picture_toml(&recipe))).unwrap();
-    let file = || CompareSide::File(path.clone());
-    for (options, is_file_first) in
-        [(options_of(file(), backend()), true), (options_of(backend(), file()), false)]
-    {
-        let found = sides(&options).unwrap();
-        // The film in the file is far brighter than any picture of the scene.
-        assert_eq!(compare(&found[0], &found[1]).bias < 0.0, is_file_first);
-        assert_eq!((found[0].name == "cpu", found[1].name == "cpu"), (!is_file_first, is_file_first));
-    }
-}
-
-#[test]
-fn two_backends_render_the_same_samples() {
-    for (asked, count) in [(None, 5), (Some(7), 7)] {
-        let options = CompareOptions { samples: asked, ..options_of(backend(), backend()) };
-        let found = sides(&options).unwrap();
-        for side in &found {
-            assert_eq!(side.film.as_ref().unwrap().samples().to_string(), format!("0..{count}"));
-        }
-        assert_eq!(found.each_ref().map(|side| side.name.as_str()), ["cpu (first)", "cpu (second)"]);
-        assert!(compare_sides(&found).unwrap().is_same);
-    }
 }
 
 #[test]

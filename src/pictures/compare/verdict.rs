@@ -237,7 +237,7 @@ pub fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Relation {
+enum Relation {
     /// Second minus first.
     Difference(f64),
     /// NaN in both pictures, or infinite with the same sign.
@@ -249,7 +249,7 @@ pub(super) enum Relation {
 }
 
 impl Relation {
-    pub(super) fn of_all(a: &Picture, b: &Picture) -> Vec<[Relation; 3]> {
+    fn of_all(a: &Picture, b: &Picture) -> Vec<[Relation; 3]> {
         let limit = a.limit.min(b.limit);
         let of = |a: Option<f64>, b: Option<f64>| match (a, b) {
             (Some(a), Some(b)) if a < limit && b < limit && a.is_finite() && b.is_finite() => {
@@ -390,8 +390,7 @@ fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, 
         if largest > LOUD {
             unclear.get_or_insert_with(|| {
                 format!(
-                    "{text}: too few to tell noise from a fault; look at them with --heat-map, or compare films with two \
-                     halves"
+                    "{text}: too few to tell noise from a fault; look there, or compare films with two halves"
                 )
             });
         } else {

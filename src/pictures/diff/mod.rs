@@ -4,7 +4,7 @@ mod paths;
 mod side;
 mod text;
 
-pub use paths::{Difference, Pair, PathComparison, Quantity};
+pub use paths::{Difference, Pair, PathComparison};
 
 use super::answer::{Verdict, check_outputs, deliver, lines};
 use crate::cli::{DiffOptions, PathChoice};
@@ -57,7 +57,7 @@ fn compared(options: &DiffOptions) -> Result<ExitCode> {
         "radiance": comparison.radiance,
         "verdict": pair.verdict(&comparison),
     });
-    deliver(json.as_ref(), &text, 2, &figures)?;
+    deliver(json.as_ref(), &text, 3, &figures)?;
     let verdict = if comparison.first.is_some() { Verdict::Different } else { Verdict::Same };
     Ok(verdict.exit_code())
 }

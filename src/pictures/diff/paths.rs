@@ -10,28 +10,13 @@ use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
 
-/// A quantity of a ray or of the whole path, in order of computation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Quantity {
-    Origin,
-    Direction,
-    /// Before the hit.
-    Throughput,
-    /// The sphere hit, or the sky.
-    Object,
-    Distance,
-    /// How the path continues, or why it ends.
-    Departure,
-    Radiance,
-}
-
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
     /// Index of the ray in the path; 0 is the camera's.
     pub ray: usize,
-    pub quantity: Quantity,
+    /// Label of the row, or `radiance`.
+    pub quantity: &'static str,
     /// Relative to the larger value; infinite if the quantity has no magnitude.
     pub amount: f64,
 }
@@ -50,7 +35,6 @@ pub struct PathComparison {
 
 /// A quantity of a ray on both sides.
 pub struct Row {
-    pub quantity: Quantity,
     pub label: &'static str,
     /// `None` where a side has none.
     pub values: [Option<String>; 2],
@@ -80,7 +64,7 @@ impl Pair<'_> {
         let radiance = radiance_amount(a.radiance, b.radiance);
         let mut comparison = PathComparison { first: None, parting: None, largest: 0.0, radiance };
         for (ray, row) in (0..self.rays()).flat_map(|ray| self.rows(ray).map(|row| (ray, row))) {
-            let difference = Difference { ray, quantity: row.quantity, amount: row.amount };
+            let difference = Difference { ray, quantity: row.label, amount: row.amount };
             if row.amount > self.tolerance {
                 comparison.first.get_or_insert(difference);
             }
@@ -92,7 +76,7 @@ impl Pair<'_> {
         }
         if radiance > self.tolerance {
             let ray = self.rays().saturating_sub(1);
-            let difference = Difference { ray, quantity: Quantity::Radiance, amount: radiance };
+            let difference = Difference { ray, quantity: "radiance", amount: radiance };
             comparison.first.get_or_insert(difference);
         }
         comparison
@@ -109,7 +93,7 @@ impl Pair<'_> {
         let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
         let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
         let departures = self.paths.map(|path| self.departure(path, index));
-        let row = |quantity, label, values, amount| Row { quantity, label, values, amount };
+        let row = |label, values, amount| Row { label, values, amount };
         // Positions are only as exact as the largest coordinate the path has passed through.
         let length = |ray: &RecordedRay| DVec3::from(ray.origin).length();
         let extent = self.paths[0].rays.iter().take(index + 1).map(length).fold(0.0, f64::max);
@@ -132,17 +116,12 @@ impl Pair<'_> {
         let reaches = rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()));
         let continues = departures.map(|word| word.map(str::to_owned));
         [
-            row(Quantity::Origin, "from", vectors(|ray| ray.origin), amount(&origins)),
-            row(Quantity::Direction, "direction", vectors(|ray| ray.direction), amount(&directions)),
-            row(Quantity::Throughput, "throughput", vectors(|ray| ray.throughput), amount(&throughputs)),
-            row(Quantity::Object, "meets", meets, amount(&spheres)),
-            row(Quantity::Distance, "distance", reaches, amount(&distances)),
-            row(
-                Quantity::Departure,
-                "then",
-                continues,
-                amount(&|_, _| apart(departures[0] != departures[1])),
-            ),
+            row("origin", vectors(|ray| ray.origin), amount(&origins)),
+            row("direction", vectors(|ray| ray.direction), amount(&directions)),
+            row("throughput", vectors(|ray| ray.throughput), amount(&throughputs)),
+            row("object", meets, amount(&spheres)),
+            row("distance", reaches, amount(&distances)),
+            row("departure", continues, amount(&|_, _| apart(departures[0] != departures[1]))),
         ]
     }
 
@@ -188,42 +167,28 @@ impl Pair<'_> {
         }
     }
 
-    /// A difference as a sentence: `ray 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`. Rays count
-    /// from 1, as in the window.
+    /// A difference as a sentence: `ray 2: the paths part by object: cpu avx2 #7 glass (dielectric), gpu the sky`. Rays
+    /// count from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
-        let Difference { ray: index, quantity, amount } = *difference;
-        let number = index + 1;
-        let [a, b] = self.names;
-        let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(index));
-        let allowed = format!("differ by {amount:.1e}, but only {:.0e} is allowed", self.tolerance);
-        match quantity {
-            Quantity::Origin => format!("ray {number}: the origins of the rays {allowed}"),
-            Quantity::Direction => format!("ray {number}: the directions {allowed}"),
-            Quantity::Throughput => format!("ray {number}: the throughputs {allowed}"),
-            Quantity::Distance => format!("ray {number}: the distances {allowed}"),
-            Quantity::Radiance => format!("the radiances {allowed}, although the rays agree"),
-            Quantity::Object => {
-                let [meets_a, meets_b] = [ray_a, ray_b].map(|ray| self.object(ray));
-                format!("ray {number}: the paths part: {a} meets {meets_a}, {b} {meets_b}")
-            }
-            Quantity::Departure => {
-                let [word_a, word_b] = self.paths.map(|path| self.departure(path, index).unwrap_or("gone"));
-                let at = self.object(ray_a.or(ray_b));
-                format!("ray {number}: the paths part at {at}: {a} is {word_a}, {b} is {word_b}")
-            }
+        let Difference { ray, quantity, amount } = *difference;
+        if quantity == "radiance" {
+            return format!(
+                "the radiances differ by {amount:.1e}, but only {:.0e} is allowed, although the rays agree",
+                self.tolerance
+            );
         }
-    }
-
-    /// `sphere 7 (glass)`, or the sky.
-    fn object(&self, ray: Option<&RecordedRay>) -> String {
-        match ray.map(|ray| ray.hit) {
-            None => "nothing".to_owned(),
-            Some(None) => "the sky".to_owned(),
-            Some(Some(hit)) => match self.material(hit.sphere) {
-                Some((name, _)) => format!("sphere {} ({name})", hit.sphere),
-                None => format!("sphere {}", hit.sphere),
-            },
+        if amount.is_finite() {
+            return format!(
+                "ray {}: {quantity} differs by {amount:.1e}, but only {:.0e} is allowed",
+                ray + 1,
+                self.tolerance
+            );
         }
+        let row = self.rows(ray).into_iter().find(|row| row.label == quantity);
+        let values =
+            row.map_or([None, None], |row| row.values).map(|value| value.unwrap_or("nothing".to_owned()));
+        let ([a, b], [value_a, value_b]) = (self.names, values.map(|value| value.trim().to_owned()));
+        format!("ray {}: the paths part by {quantity}: {a} {value_a}, {b} {value_b}", ray + 1)
     }
 
     /// `#7 glass (dielectric)`, or the sky.

@@ -29,7 +29,7 @@ fn lines_of(row: &Row, index: usize, pair: &Pair, comparison: &PathComparison) -
         // The other side's object row explains the missing value.
         _ => " ",
     };
-    let is_here = |found: &Difference| (found.ray, found.quantity) == (index, row.quantity);
+    let is_here = |found: &Difference| (found.ray, found.quantity) == (index, row.label);
     let marked = [comparison.first, comparison.parting].into_iter().flatten().find(is_here);
     let mark = if marked.is_some() { "▶" } else { " " };
     let [a, b] = row.values.each_ref().map(|value| cut(value.as_deref().unwrap_or_default(), COLUMN));

@@ -2,15 +2,13 @@
 
 use crate::scene::Camera;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Default frames per turn: four seconds at 30 frames a second.
 pub const FRAMES_PER_TURN: u32 = 120;
 
 /// The speed of a turntable. Seen from above, the camera circles counterclockwise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
     /// Frames per turn, at least 1.
     FramesPerTurn(u32),

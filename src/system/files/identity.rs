@@ -19,10 +19,6 @@ impl FileIdentity {
         }
         Some(FileIdentity(resolved(path).unwrap_or_else(|_| path.to_owned())))
     }
-
-    pub fn is_same_as(&self, other: &FileIdentity) -> bool {
-        self == other
-    }
 }
 
 /// Resolves the links of a path. Components that do not exist yet stay as they are.

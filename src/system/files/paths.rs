@@ -1,10 +1,12 @@
 //! Paths: as text in messages and JSON, free names, and the user's directories.
 
 use crate::system::console::printable;
+use anyhow::{Context, Result};
 use serde::{Serialize, Serializer};
 use std::env;
 use std::ffi::{OsStr, OsString};
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// The path that stands for standard input or output.
 pub const STANDARD: &str = "-";
@@ -33,9 +35,20 @@ impl From<PathBuf> for JsonPath {
 }
 
 impl Serialize for JsonPath {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.0.to_string_lossy())
     }
+}
+
+/// Creates the directory of `--out`.
+///
+/// # Errors
+/// If it cannot be created.
+pub fn make_directory(directory: &Path) -> Result<()> {
+    let context = || format!("cannot create the directory {}; choose another with --out", directory.shown());
+    // A file's parent may be empty.
+    let created = if directory.as_os_str().is_empty() { Ok(()) } else { fs::create_dir_all(directory) };
+    created.with_context(context)
 }
 
 /// How many names are tried.

@@ -1,8 +1,6 @@
 //! Spheres at the same place, or almost.
 
-use super::build::{
-    Ball, around, grouped, in_front, matte, named, of_scene, one_ball, picture, scene, sized,
-};
+use super::build::{Ball, around, grouped, in_front, matte, named, of_scene, picture, scene, sized};
 use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::{Material, Scene, Sky};
@@ -41,8 +39,7 @@ pub fn copies() -> Vec<Case> {
             _ => ([12, 8], 4),
         };
         let recipe = sized(picture(balls, in_front()), size, samples);
-        let case = Case::new(&COPIES, count, stiff, recipe).every(0.5, WHY).quick_if(count <= 110);
-        if count > 1000 { case.beside(sized(spread(count), size, samples)) } else { case }
+        Case::new(&COPIES, count, stiff, recipe).every(0.5, WHY).quick_if(count <= 110)
     });
     let mut cases: Vec<Case> = identical.collect();
 
@@ -79,12 +76,6 @@ fn scattered(index: u32, half_width: f64) -> Ball {
     (half_width * place, 0.004 + 0.004 * d, matte(0.5))
 }
 
-/// The same number of balls, each in its own place.
-fn spread(count: usize) -> Recipe {
-    let balls = (0..count as u32).map(|index| scattered(index, 0.9));
-    named(picture(balls, in_front()), "as many apart")
-}
-
 /// Two balls, one of them shifted along the view or across it.
 pub fn shifts() -> Vec<Case> {
     let mut cases = Vec::new();
@@ -95,7 +86,7 @@ pub fn shifts() -> Vec<Case> {
             let stiff = format!("two balls {shift:e} apart along {axis}: too close for any threshold");
             let why = "the two balls are convex but for a crease as shallow as the shift";
             let case = Case::new(&SHIFTS, format!("1e-{exponent}-{axis}"), stiff, picture(balls, in_front()));
-            let case = case.expect(Expected::Mean(0.5), why, 1e-6 + shift).beside(one_ball());
+            let case = case.expect(Expected::Mean(0.5), why, 1e-6 + shift);
             cases.push(case.quick_if(exponent == 6 || exponent == 3));
         }
     }
@@ -168,8 +159,5 @@ pub fn odd_ones() -> Vec<Case> {
             }),
         ),
     ];
-    cases
-        .into_iter()
-        .map(|(name, stiff, recipe)| Case::new(&ODD, name, stiff, recipe).beside(field.clone()))
-        .collect()
+    cases.into_iter().map(|(name, stiff, recipe)| Case::new(&ODD, name, stiff, recipe)).collect()
 }

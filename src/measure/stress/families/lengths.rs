@@ -39,7 +39,7 @@ pub fn moved_scenes() -> Vec<Case> {
             let why = "a picture does not depend on where the origin is";
             let expected = Expected::Same(Box::new(tame()));
             let case = Case::new(&MOVED, format!("1e{exponent}"), stiff, moved(&tame(), 1.0, offset));
-            let case = case.expect(expected, why, tolerance).beside(tame()).quick_if(exponent == 1);
+            let case = case.expect(expected, why, tolerance).quick_if(exponent == 1);
             if exponent == 5 {
                 case.watched(
                     "A hundred thousand units from the origin",
@@ -64,7 +64,7 @@ pub fn scaled_scenes() -> Vec<Case> {
             let expected = Expected::Same(Box::new(tame()));
             let recipe = moved(&tame(), factor, DVec3::ZERO);
             let case = Case::new(&SCALED, format!("1e{exponent}"), stiff, recipe).of_unit(factor);
-            let case = case.expect(expected, why, 2e-6).beside(tame()).quick();
+            let case = case.expect(expected, why, 2e-6).quick();
             match exponent {
                 -3 => case.watched(
                     "Balls of half a millimetre",
@@ -121,7 +121,7 @@ pub fn lenses() -> Vec<Case> {
     ];
     let mut cases: Vec<Case> = cases
         .into_iter()
-        .map(|(name, stiff, recipe)| Case::new(&LENSES, name, stiff, recipe).beside(tame()).quick())
+        .map(|(name, stiff, recipe)| Case::new(&LENSES, name, stiff, recipe).quick())
         .collect();
     let balls = [
         (DVec3::new(0.0, -1e6, 0.0), 1e6, matte(0.5)),
