@@ -8,6 +8,8 @@ mod gpu_common;
 mod html;
 #[path = "../html_common/mod.rs"]
 mod html_common;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 
 use html::Html;
 use html_common::assert_valid;
@@ -113,9 +115,9 @@ fn page_is_complete_and_self_contained() {
 #[test]
 fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     let directory = TempDir::new().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.arg("companion").arg("--out").arg(directory.path()).args(["--progress", "on"]);
-    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut command =
+        program_common::weekender(directory.path(), &["companion", "--out", ".", "--progress", "on"]);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let mut said = BufReader::new(child.stderr.take().unwrap());
     // The first line of progress means that a figure is being rendered.
