@@ -3,6 +3,7 @@
 
 mod gpu_common;
 mod html_common;
+mod program_common;
 
 use serde_json::Value;
 use std::collections::HashSet;
@@ -16,9 +17,8 @@ use weekender::page::gallery::Figure;
 use weekender::stages::Stage;
 
 fn command(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.current_dir(at).args(["gallery", "--device", "cpu", "--threads", "2"]).args(arguments);
-    command.stdin(Stdio::null());
+    let mut command = program_common::weekender(at, &["gallery", "--device", "cpu", "--threads", "2"]);
+    command.args(arguments);
     command
 }
 
