@@ -71,6 +71,7 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
     } else {
         ui.spacing_mut().item_spacing.y = 4.0;
         (0..STEPS.len()).for_each(|number| step(ui, number, 20.0));
+        ui.add_space(4.0);
     }
     ui.horizontal(|ui| {
         if let Some(first) = Stage::ALL.first() {
