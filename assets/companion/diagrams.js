@@ -275,11 +275,11 @@ export const diagrams = {
   select: {
     title: "Mask and select on eight lanes",
     size: [560, 280],
-    state: Object.fromEntries(range(8, (i) => [`t${i}`, [78 + 60 * i, 40 + 110 * random(i, 9)]])),
-    handles: range(8, (i) => handle(`t in lane ${i}`, `t${i}`, [78 + 60 * i, 20, 0, 140])),
+    state: Object.fromEntries(range(8, (i) => [`t${i}`, [92 + 58 * i, 40 + 110 * random(i, 9)]])),
+    handles: range(8, (i) => handle(`t in lane ${i}`, `t${i}`, [92 + 58 * i, 20, 0, 140])),
     draw(s) {
-      const lanes = range(8, (i) => ({ x: 78 + 60 * i, t: (160 - s[`t${i}`][1]) / 20, nearest: 2 + 4 * random(i, 12) }));
-      const row = (y, name, kind, show) => label([44, y], name, kind, "end") + lanes.map((lane) => label([lane.x, y], show(lane), kind, "middle")).join("");
+      const lanes = range(8, (i) => ({ x: 92 + 58 * i, t: (160 - s[`t${i}`][1]) / 20, nearest: 2 + 4 * random(i, 12) }));
+      const row = (y, name, kind, show) => label([60, y], name, kind, "end") + lanes.map((lane) => label([lane.x, y], show(lane), kind, "middle")).join("");
       const bars = lanes.map(({ x, t, nearest }) => box([x - 21, 160 - 20 * nearest, 17, 20 * nearest], "q4 solid") + box([x + 4, 160 - 20 * t, 17, 20 * t], "q3 solid") + line([x, 160], [x, 20], "fine"));
       const less = ({ t, nearest }) => t < nearest;
       const cells = lanes.filter(less).map(({ x }) => box([x - 26, 211, 52, 20], "on"));

@@ -80,6 +80,7 @@
 
   // The current chapter's sections are in the list, and the address follows the reader.
   const sections = [...document.querySelectorAll(".chapter")];
+  sections.forEach((section) => section.style.setProperty("--text", section.textContent.length));
   const headingsOf = (section) => (section ? [...section.querySelectorAll(":is(h2, h3)[id]")] : []);
   const hasPassed = (element) => element.getBoundingClientRect().top < innerHeight * 0.3;
   const point = (link, isCurrent) => {

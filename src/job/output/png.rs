@@ -38,10 +38,13 @@ fn encoded(
     let mut file = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut file, width, height);
     encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_compression(match form {
-        PngForm::Fast => ::png::Compression::Fast,
-        PngForm::Small => ::png::Compression::Balanced,
-    });
+    match form {
+        PngForm::Fast => encoder.set_compression(::png::Compression::Fast),
+        PngForm::Small => {
+            encoder.set_compression(::png::Compression::High);
+            encoder.set_filter(::png::Filter::MinEntropy);
+        }
+    }
     let mut writer = begin(encoder, description)?;
     let mut rows = writer.stream_writer()?;
     write(&mut rows)?;

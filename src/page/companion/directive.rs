@@ -2,7 +2,7 @@
 
 use super::excerpt::{self, Excerpt};
 use super::library::FOLDER;
-use super::pictures;
+use super::pictures::{self, Picture};
 use super::prose::Place;
 use super::site::{Site, Uses};
 use super::timeline;
@@ -45,7 +45,11 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     };
     match words.as_slice() {
         ["figure", id] => figure(id, caption()?, None, uses),
-        ["figure", id, "crop", crop @ ..] => figure(id, caption()?, Some(&crop.join(" ")), uses),
+        ["figure", id, "crop", x, y, width, height] => {
+            let crop = [x, y, width, height].map(|number| number.parse().ok());
+            let [Some(x), Some(y), Some(width), Some(height)] = crop else { bail!("a crop is four numbers") };
+            figure(id, caption()?, Some([x, y, width, height]), uses)
+        }
         ["code"] => code(site, place, more),
         ["mistakes", stage] => pictures::mistakes(stage, more, uses),
         ["limits", stage] => pictures::limits(stage, more, uses),
@@ -64,17 +68,22 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     }
 }
 
-/// A panel's picture with the switch and the sliders that the script adds.
-pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<&str>, is_first: bool) -> Markup {
+/// A panel's picture with the switch and the sliders that the script adds. `small` is for narrow windows; the panel is
+/// then the page's first.
+pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<[f64; 4]>, small: Option<&Picture>) -> Markup {
     let (file, [width, height]) =
         (format!("figures/{}.png", stage.id), [stage.setup.width, stage.setup.height]);
     html! {
         div .panel data-stage=(stage.id) {
             img .pixels[is_about_pixels(stage)] src=(file) width=(width) height=(height) alt=(stage.alt)
-                loading=[(!is_first).then_some("lazy")] fetchpriority=[is_first.then_some("high")];
-            @if let Some(crop) = crop {
-                svg .crop viewBox=(crop) role="img" aria-label={ "A part of the picture, enlarged" } {
-                    image href=(file) width=(width) height=(height) {}
+                loading=[small.is_none().then_some("lazy")] fetchpriority=[small.map(|_| "high")]
+                srcset=[small.map(|small| format!("{}, {file} {width}w", small.candidate()))]
+                sizes=[small.map(|_| "(max-width: 40rem) 14rem, 70rem")];
+            @if let Some([x, y, w, h]) = crop {
+                @let [wide, left, top] = [f64::from(width) / w, -x / w, -y / h].map(|share| 100.0 * share);
+                div .crop style=(format!("aspect-ratio: {w} / {h}")) {
+                    img src=(file) width=(width) height=(height) alt="A part of the picture, enlarged" loading="lazy"
+                        style=(format!("width: {wide:.3}%; left: {left:.3}%; top: {top:.3}%"));
                 }
             }
             @if let Some(label) = label { p .label { (typographic(label)) } }
@@ -83,7 +92,7 @@ pub fn panel(stage: &Stage, label: Option<&str>, crop: Option<&str>, is_first: b
 }
 
 /// `crop` is a part to show enlarged: left, top, width and height in the stage's pixels.
-fn figure(id: &str, caption: Option<Markup>, crop: Option<&str>, uses: &mut Uses) -> Result<Markup> {
+fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut Uses) -> Result<Markup> {
     let figure = Figure::find(id).with_context(|| {
         let near = similar_names(id, Figure::all().iter().map(|figure| figure.id.as_str()));
         format!("there is no figure {id:?}; near: {}", near.join(", "))
@@ -96,7 +105,7 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<&str>, uses: &mut Uses
     Ok(html! {
         figure .figure .wide[is_wide] id={ "figure-" (id) } {
             div .panels .{ "of-" (figure.panels.len()) } {
-                @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, false)) }
+                @for shown in &figure.panels { (panel(shown.stage(), is_wide.then_some(shown.label.as_str()), crop, None)) }
             }
             (numbered(&html! {
                 strong { (typographic(&figure.title)) "." } " "

@@ -41,6 +41,7 @@ pub fn render(site: &Site) -> Result<Page> {
     stages.sort_by_key(|stage| stage.index());
     stages.dedup();
     let live = web::live_data(stages.iter().copied())?;
+    uses.pictures.push(Picture::small(cover_stage()));
     let page = document(site, &PreEscaped(chapters), &PreEscaped(live))?;
     Ok(Page { html: page.into_string(), stages, pictures: uses.pictures })
 }
@@ -110,7 +111,7 @@ fn cover() -> Markup {
                  every figure live in your browser. Then: lanes, threads and GPUs, measured."
             }
             figure .figure id="figure-cover" {
-                div .panels { (directive::panel(stage, None, None, true)) }
+                div .panels { (directive::panel(stage, None, None, Some(&Picture::small(stage)))) }
                 figcaption { "The book’s last picture. Press " em { "Run" } " and drag it: your own device then traces it, with the program’s shaders." }
             }
         }

@@ -72,6 +72,16 @@ impl Picture {
         format!("{FOLDER}/{}-{name}-{:.8}.png", self.stage.id, fingerprint(&self.recipe()))
     }
 
+    /// A smooth and small picture of a stage.
+    pub fn small(stage: &'static Stage) -> Self {
+        Picture { stage, subject: Subject::Denoised(64) }
+    }
+
+    /// Its file and width, as candidates for a place have it.
+    pub fn candidate(&self) -> String {
+        format!("{} {}w", self.file(), self.recipe().settings.width)
+    }
+
     /// Renders the picture unless it exists.
     pub fn render(&self, out: &Path) -> Result<()> {
         let path = out.join(self.file());

@@ -124,7 +124,10 @@ fn directives_render() {
         "{figure}"
     );
     let cropped = alone(&site, "{{figure antialiasing crop 1 2 3 4\nA *caption*.\n}}");
-    assert!(cropped.contains("viewBox=\"1 2 3 4\"") && cropped.contains("A <em>caption</em>."), "{cropped}");
+    assert!(
+        cropped.contains("aspect-ratio: 3 / 4\"") && cropped.contains("A <em>caption</em>."),
+        "{cropped}"
+    );
     let diagram = alone(&site, "{{diagram lanes}}");
     assert!(diagram.contains("<div class=\"scroll\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
 }
