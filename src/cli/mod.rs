@@ -242,7 +242,7 @@ fn recorded(arguments: &[OsString]) -> String {
         let (flag, value) = word.split_once('=').filter(|_| word.starts_with("--")).unwrap_or(("", &word));
         let path = Path::new(value);
         let is_in_directory = path.parent().is_some_and(|at| !at.as_os_str().is_empty() && at.is_dir());
-        match path.file_name().filter(|_| path.is_absolute() || is_in_directory) {
+        match path.file_name().filter(|_| path.has_root() || is_in_directory) {
             Some(name) if flag.is_empty() => name.to_string_lossy().into_owned(),
             Some(name) => format!("{flag}={}", name.to_string_lossy()),
             None => word.into_owned(),

@@ -60,7 +60,10 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
     ];
     assert_eq!(
         recorded(&words.map(OsString::from)),
-        "weekender --batch --scene 'my scene.toml' --out=a.png --json - --adapter a/b --log=run.log x.exr"
+        format!(
+            "weekender --batch --scene {} --out=a.png --json - --adapter a/b --log=run.log x.exr",
+            Shell::HERE.quoted("my scene.toml")
+        )
     );
 }
 

@@ -217,10 +217,11 @@ mod tests {
     #[test]
     fn the_newest_files_are_remembered_once() {
         let mut remembered = Remembered::default();
+        let path = |number: u32| std::env::temp_dir().join(format!("{number}.png"));
         for number in (0..10).chain([4]) {
-            remembered.note_recent(Path::new(&format!("/of/{number}.png")));
+            remembered.note_recent(&path(number));
         }
-        let expected = [4, 9, 8, 7, 6, 5, 3, 2].map(|number| PathBuf::from(format!("/of/{number}.png")));
+        let expected = [4, 9, 8, 7, 6, 5, 3, 2].map(path);
         assert_eq!(remembered.recent, expected);
     }
 }

@@ -150,7 +150,7 @@ mod tests {
             };
             let files = entries.map(|entry| entry.unwrap().path()).filter(is_text);
             found.extend(
-                files.map(|path| path.strip_prefix(checkout()).unwrap().to_str().unwrap().to_owned()),
+                files.map(|path| path.strip_prefix(checkout()).unwrap().to_str().unwrap().replace('\\', "/")),
             );
         }
         assert_eq!(embedded, found, "left: FILES in library.rs; right: {FOLDER}");

@@ -102,7 +102,7 @@ mod tests {
     fn a_report_says_what_ran_and_what_happened() {
         let text = report("weekender 1.2 (abc)", "weekender --batch", "it broke", "0.1 s INFO adapter X");
         for part in [
-            "\n\nversion    weekender 1.2 (abc)\ncommand    weekender --batch\ndirectory  /",
+            "\n\nversion    weekender 1.2 (abc)\ncommand    weekender --batch\ndirectory  ",
             "\n\nit broke\n\nLog (seconds since the start):\n0.1 s INFO adapter X\n",
         ] {
             assert!(text.contains(part), "{part} in {text}");
