@@ -87,6 +87,9 @@ pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
 pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.set_width(WIDTH);
+    // Tips stand beside what clips a column.
+    let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
+    ui.shrink_clip_rect(column);
     let mut finder: Finder = ui.data(|data| data.get_temp(place())).unwrap_or_default();
     if finder.has_text() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
         finder = Finder::at(0);
