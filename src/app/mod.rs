@@ -110,6 +110,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
+            bring_to_monitor(context);
             let mut window = Window::with(options, context.storage)?;
             (window.shell.interrupt, window.shell.dialogs.system.is_there) = (Some(heeded), true);
             // The first frame would have egui's own style otherwise.
@@ -129,6 +130,24 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
+}
+
+/// Moves the window to a monitor if it was last on one that is gone.
+fn bring_to_monitor(context: &eframe::CreationContext) {
+    /// Pixels of the window that must be visible in each direction.
+    const VISIBLE: i32 = 64;
+    let Some(window) = context.winit_window() else { return };
+    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
+    let meets = |from: i32, length: u32, begin: i32, extent: u32| {
+        from + VISIBLE <= begin + extent as i32 && begin + VISIBLE <= from + length as i32
+    };
+    let is_visible = window.available_monitors().any(|monitor| {
+        let (corner, area) = (monitor.position(), monitor.size());
+        meets(at.x, size.width, corner.x, area.width) && meets(at.y, size.height, corner.y, area.height)
+    });
+    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_visible) {
+        window.set_outer_position(monitor.position());
+    }
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
