@@ -49,7 +49,7 @@ wineserver -k
 
 # Root may write everywhere, unless it gives up that right.
 windows() {
-    timeout 120 capsh --drop=cap_dac_override,cap_dac_read_search,cap_fowner -- -c 'exec wine "$@"' wine "$@" \
+    timeout 400 capsh --drop=cap_dac_override,cap_dac_read_search,cap_fowner -- -c 'exec wine "$@"' wine "$@" \
         < /dev/null > "$work/out" 2>&1
 }
 # case_of NAME CODE TEXT ARGUMENTS...: the program ends with this code and says this
