@@ -27,9 +27,7 @@ const LEAST_PIXELS: usize = 64;
 pub enum DenoiseError {
     #[error("{0}, and denoising needs two halves with light: render more samples, with --estimate-error on")]
     Halves(&'static str),
-    #[error(
-        "a picture of {pixels} pixels has too few to tell the error of denoising, which needs {LEAST_PIXELS}"
-    )]
+    #[error("telling the error of denoising takes {LEAST_PIXELS} pixels, and the picture has {pixels}")]
     Small { pixels: usize },
     #[error(transparent)]
     Film(#[from] FilmError),

@@ -191,7 +191,8 @@ mistakes! {
         has_lens, Change::Recipe(|recipe| recipe.camera.focus_distance = Some(1.0));
     "same-seed", "9.1", "every pixel uses the same random numbers",
         "seed the generator once, before the loops, not for each pixel",
-        |recipe| recipe.rules.antialiasing && has_bounces(recipe), Change::InNoise(is_same_seed, &Change::Steps(|steps| steps.random = |_| 0));
+        |recipe| recipe.rules.antialiasing && has_bounces(recipe),
+        Change::InNoise(is_same_seed, &Change::Steps(|steps| steps.random = |_| 0));
 }
 
 pub fn applying_to(recipe: &Recipe) -> impl Iterator<Item = &'static Mistake> {
