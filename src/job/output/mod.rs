@@ -122,12 +122,25 @@ pub fn write_image_as(
     description: &Description,
 ) -> Result<(), OutputError> {
     replace_file(path, |writer| match format {
-        OutputFormat::Png => png::write(film, transfer, description, writer),
+        OutputFormat::Png => png::write(film, transfer, description, false, writer),
         OutputFormat::P6 => ppm::write(film, transfer, writer),
         OutputFormat::Exr => checkpoint::write(film, None, description, writer),
         OutputFormat::Pfm => netpbm::write_pfm(film, writer),
     })?;
     Ok(())
+}
+
+/// Writes a PNG for a page that should load quickly: smaller than that of [`write_image`], and slower to write.
+///
+/// # Errors
+/// As for [`write_image`].
+pub fn write_small_png(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+) -> Result<(), OutputError> {
+    Ok(replace_file(path, |writer| png::write(film, transfer, description, true, writer))?)
 }
 
 /// Reads the description of a picture. The first bytes of the file tell its format; the name does not matter.

@@ -6,21 +6,19 @@ use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Seek, Write};
 
-/// Pictures of up to this many pixels are compressed well, which takes a tenth of a second and saves a quarter; larger
-/// ones, which would take long, are compressed quickly.
-const WELL_COMPRESSED: u32 = 1 << 20;
-
+/// `is_small` makes the file a quarter smaller, which takes several times as long.
 pub(super) fn write(
     film: &Film,
     transfer: Transfer,
     description: &Description,
+    is_small: bool,
     writer: &mut impl Write,
 ) -> io::Result<()> {
     // Encoded in memory, because the encoder's stream would reduce a file system error to its text.
     let mut file = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut file, film.width(), film.height());
     encoder.set_color(::png::ColorType::Rgb);
-    if film.width() * film.height() <= WELL_COMPRESSED {
+    if is_small {
         encoder.set_compression(::png::Compression::High);
         encoder.set_filter(::png::Filter::MinEntropy);
     } else {

@@ -7,7 +7,7 @@ use crate::batch::{Event, Studio};
 use crate::cli::ProgressChoice;
 use crate::cli::terminal::{Display, print};
 use crate::film::key;
-use crate::job::output::write_image;
+use crate::job::output::write_small_png;
 use crate::job::recipe::Recipe;
 use crate::progressive::describe::{counted, describe};
 use crate::progressive::{Phase, Status};
@@ -171,7 +171,7 @@ impl Work<'_> {
         let path = self.order.directory.join(Still::file_name(task.stage));
         let _writing = self.interrupt.while_writing(path.display().to_string());
         let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
-        write_image(&path, &film, recipe.rules.transfer, &description)?;
+        write_small_png(&path, &film, recipe.rules.transfer, &description)?;
         let error = film.error();
         let settings = &recipe.settings;
         Ok(Some(Still {
