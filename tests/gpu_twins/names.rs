@@ -54,13 +54,9 @@ const PAIRS: &[Pair] = &[
         shader_alone: &[
             ("slope_of", "a thread knows in which direction its ray goes; the rays of a packet differ"),
             ("hit_bits", "`misses_box` for four boxes"),
-            ("bytes_of", "compressed boxes"),
-            ("floats_of", "compressed boxes"),
-            ("four_hits", "compressed boxes"),
-            ("compressed_hits", "eight children"),
             ("planes_at", "eight children"),
-            ("four_whole_hits", "eight children"),
-            ("whole_hits", "eight children"),
+            ("four_hits", "eight children"),
+            ("hits_of", "eight children"),
             ("in_order", "the order of eight children"),
         ],
         twin_alone: &[
