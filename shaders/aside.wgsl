@@ -40,8 +40,6 @@ fn take_up(path: ptr<function, Path>, tile: Tile, base: u32) {
     (*path).absorbed = (state & ABSORBED_BIT) != 0u;
     (*path).sine2 = bitcast<f32>(words[base + ASIDE_SINE2]);
     (*path).item = words[base + ASIDE_ITEM];
-    if (*path).item != NONE {
-        enter_block(path, tile, blocks[(*path).item / (tile.size.x * tile.size.y)].count - remaining);
-        (*path).sums = load_words(base + ASIDE_SUMS);
-    }
+    enter_block(path, tile, blocks[(*path).item / (tile.size.x * tile.size.y)].count - remaining);
+    (*path).sums = load_words(base + ASIDE_SUMS);
 }

@@ -1,5 +1,6 @@
-// The path loop. Each thread traces one pixel through blocks of its samples. When a path ends, the thread starts the
-// next sample immediately, so no thread waits for the longest path beside it.
+// The path loop. A thread traces blocks of a pixel's samples. When a path ends, it starts the next sample immediately, so
+// no thread waits for the longest path beside it. Where paths can be long, a thread that has finished its block takes the
+// next one of the workgroup's tile, so none waits for the longest pixel either.
 //
 // Twin: src/render_cpu/path
 
@@ -15,7 +16,7 @@ struct Path {
     step: u32,
     // Samples left in the block, including the current one.
     remaining: u32,
-    // Number of the block and the pixel among those of the tile, or NONE: see `enter_block`.
+    // Number of the block among those of the tile; NONE before the first.
     item: u32,
     // Key of the Sobol sampler.
     key: u32,
@@ -29,7 +30,7 @@ struct Path {
     rejected: u32,
 }
 
-// The pixels of a workgroup. Its work is the list of their blocks of samples, which its threads share.
+// The pixels of a workgroup. Their blocks of samples are numbered: first a block of every pixel, then the next.
 struct Tile {
     corner: vec2u,
     size: vec2u,
@@ -53,7 +54,7 @@ var<private> turns: u32;
 // Whether the current ray's traversal ended early: some drivers end loops that have many turns.
 var<private> ray_is_cut: bool;
 
-// The number of the next block of the workgroup that no thread has begun.
+// The number of the next block of the tile that no thread has begun.
 var<workgroup> queue: atomic<u32>;
 
 // Traces blocks of the dispatch in a tile, or continues them. After the number of loop turns that the dispatch allows,
@@ -98,11 +99,7 @@ fn trace(tile: Tile, thread: u32, aside: u32) -> Traced {
                 add_to_film(path);
                 traced.finished += blocks[path.item / pixels].count;
             }
-            if ASIDE {
-                path.item = atomicAdd(&queue, 1u);
-            } else {
-                path.item = select(path.item + pixels, thread, path.item == NONE);
-            }
+            path.item = next_item(path.item, thread, pixels);
             if path.item >= pixels * order.block_count {
                 is_done = true;
                 break;
@@ -120,6 +117,14 @@ fn trace(tile: Tile, thread: u32, aside: u32) -> Traced {
     }
     traced.rejected = path.rejected;
     return traced;
+}
+
+// The block after `item` that the thread traces: the next of the tile, or the next of the thread's own pixel.
+fn next_item(item: u32, thread: u32, pixels: u32) -> u32 {
+    if ASIDE {
+        return atomicAdd(&queue, 1u);
+    }
+    return select(item + pixels, thread, item == NONE);
 }
 
 // Turns of one ray's loops over lists: see `intersect`. Loops over a hierarchy count their own turns.
@@ -259,7 +264,7 @@ fn add_radiance(path: ptr<function, Path>, light: vec3f) {
     }
 }
 
-// Starts sample `place` of the path's block. Blocks are numbered pixel by pixel.
+// Starts sample `place` of the path's block.
 fn enter_block(path: ptr<function, Path>, tile: Tile, place: u32) {
     let pixels = tile.size.x * tile.size.y;
     let block = blocks[(*path).item / pixels];

@@ -1,4 +1,4 @@
-// Entry point: traces samples, with one thread per pixel and one workgroup per tile.
+// Entry point: traces samples, with one workgroup per tile of the picture.
 
 var<workgroup> group_rays: atomic<u32>;
 var<workgroup> group_rejected: atomic<u32>;

@@ -47,9 +47,9 @@ impl Way {
     fn source(self) -> anyhow::Result<String> {
         let mut text = shared();
         if matches!(self, Way::SamplesOfATile | Way::SamplesOfAPixel) {
-            let next = "select(path.item + pixels, thread, path.item == NONE)";
+            let next = "select(item + pixels, thread, item == NONE)";
             anyhow::ensure!(text.matches(next).count() == 1, "{next:?} is not in the shaders once");
-            text = text.replace(next, "select(NONE, own_item, path.item == NONE)");
+            text = text.replace(next, "select(NONE, own_item, item == NONE)");
         }
         Ok(text + ENTRIES)
     }

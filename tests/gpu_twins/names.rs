@@ -17,7 +17,10 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "path.wgsl",
         twins: &["path/mod.rs", "path/collect.rs", "path/arrive.rs", "path/draw.rs", "path/send.rs"],
-        shader_alone: &[("turns_over_lists", "no loop of the CPU is cut off")],
+        shader_alone: &[
+            ("next_item", "threads share a list of blocks, packets a list of pixels"),
+            ("turns_over_lists", "no loop of the CPU is cut off"),
+        ],
         twin_alone: &[
             ("idle", "a packet before its first work; the shader's path is made in `trace`"),
             ("shade", "packets take turns, a thread has one path"),
