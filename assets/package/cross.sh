@@ -4,7 +4,7 @@
 #   assets/package/cross.sh arm        an archive for 64-bit ARM Linux, without the window
 #   assets/package/cross.sh macos      a bundle for macOS: all but the program, which is type-checked only, because
 #                                      linking needs Apple's libraries
-#   assets/package/cross.sh check      type-checks macOS; build-windows and build-arm make the programs alone
+#   assets/package/cross.sh check      type-checks Windows and macOS; build-windows and build-arm make the programs alone
 # On a Mac, `macos` builds the program, too. Where rustup cannot add a target, its standard library is built from
 # Debian's sources. The archives need cargo-about.
 set -euo pipefail
@@ -46,6 +46,8 @@ texts() {
 for what in "${@:-check}"; do
     case $what in
     check)
+        need x86_64-w64-mingw32-windres binutils-mingw-w64-x86-64
+        cargo_for "$windows" check
         cargo_for "$mac" check
         ;;
     build-windows)
