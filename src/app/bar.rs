@@ -30,7 +30,7 @@ const SAVE: f32 = 61.0;
 const RIGHT: f32 = 3.0 * DEVICE + 24.0 + PAUSE + 8.0 + SAVE;
 
 /// Draws the bar.
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let has_one_row = ui.available_width() >= ONE_ROW;
     let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
     let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
@@ -42,7 +42,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
             egui::containers::menu::menu_style(ui.style_mut());
             ui.spacing_mut().item_spacing.x = 0.0;
             ui.spacing_mut().button_padding = vec2(8.0, 4.0);
-            menus(ui, facts, commands);
+            menus(ui, facts);
         });
         let (row_rect, after_menus) = match has_one_row {
             true => (first, menus.response.rect.right() + 16.0),
@@ -55,14 +55,14 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         let middle = ui.ctx().content_rect().center().x - 0.5 * width;
         let left = middle.min(right - 16.0 - width).max(after_menus);
         let place = Rect::from_min_size(pos2(left, row_rect.top()), vec2(width, 24.0));
-        ui.scope_builder(row(place), |ui| stage(ui, facts, commands));
+        ui.scope_builder(row(place), |ui| stage(ui, facts));
         let place = Rect::from_min_max(pos2(right, row_rect.top()), pos2(room.right(), row_rect.bottom()));
         ui.scope_builder(row(place), |ui| {
-            device(ui, facts, commands);
+            device(ui, facts);
             ui.add_space(16.0);
-            pause(ui, facts, commands);
+            pause(ui, facts);
             let save = Button::new("Save…").min_size(vec2(SAVE, 0.0));
-            add_command(ui, facts, Command::Save, save, commands);
+            add_command(ui, facts, Command::Save, save);
         });
     });
 }
@@ -89,10 +89,10 @@ fn title_of(document: &Document) -> String {
 }
 
 /// The stage between the arrows to its neighbours.
-fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage(ui: &mut Ui, facts: &Facts) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let width = ui.available_width() - 56.0;
-    step(ui, facts, commands, Command::PreviousStage, Sign::Previous);
+    step(ui, facts, Command::PreviousStage, Sign::Previous);
     let document = facts.document();
     let title = match document.stage() {
         Some(stage) if width < 140.0 => stage.section.to_owned(),
@@ -124,22 +124,22 @@ fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         .width(stage_list::WIDTH)
         .align(egui::RectAlign::BOTTOM)
         .gap(4.0)
-        .show(|ui| stage_list::ui(ui, commands));
+        .show(|ui| stage_list::ui(ui, facts));
     let help = "All pictures of the book, to choose from; type to search";
     tip(ui, response, &with_keys(ui, help, Command::Stages), None);
-    step(ui, facts, commands, Command::NextStage, Sign::Next);
+    step(ui, facts, Command::NextStage, Sign::Next);
 }
 
-fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, sign: Sign) {
+fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: Sign) {
     let button = Button::new("").min_size(vec2(24.0, 24.0));
-    let response = add_command(ui, facts, command, button, commands);
+    let response = add_command(ui, facts, command, button);
     let fade = if response.enabled() { 1.0 } else { ui.visuals().disabled_alpha };
     let color = ui.style().interact(&response).text_color().gamma_multiply(fade);
     paint_sign(ui.painter(), response.rect, sign, color);
     named(&response, &command.name());
 }
 
-fn device(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn device(ui: &mut Ui, facts: &Facts) {
     const DEVICES: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Both];
     let described = DEVICES.map(|device| (device.unavailable(), device_help(device)));
     let mut options = Vec::new();
@@ -147,7 +147,7 @@ fn device(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         options.push((device, About::new(device.label(), help).disabled_if(reason.as_deref())));
     }
     if let Some(device) = switch(ui, DEVICE, facts.model.remembered.device, &options) {
-        commands.push(Command::Device(device));
+        facts.send(Command::Device(device));
     }
 }
 
@@ -161,7 +161,7 @@ fn device_help(device: Device) -> String {
     }
 }
 
-fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn pause(ui: &mut Ui, facts: &Facts) {
     let (label, help) = if facts.further().is_some() {
         ("Go on", "Go on to half the error, which takes about four times as long")
     } else if facts.model.is_paused {
@@ -172,6 +172,6 @@ fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let reason = facts.disabled_reason(Command::Pause);
     let response = ui.add_enabled(reason.is_none(), Button::new(label).min_size(vec2(PAUSE, 0.0)));
     if tip(ui, response, &with_keys(ui, help, Command::Pause), reason.as_deref()).clicked() {
-        commands.push(Command::Pause);
+        facts.send(Command::Pause);
     }
 }

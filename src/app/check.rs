@@ -2,6 +2,7 @@
 
 use super::answers::Answers;
 use super::command::Command;
+use super::facts::Facts;
 use super::right::scrolling;
 use super::stage_panel::paragraph;
 use super::texture::Texture;
@@ -112,7 +113,7 @@ impl Check {
     }
 
     /// Draws the answer, or that it is awaited.
-    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) {
         let name = self.name();
         let Some((answer, pictures)) = &self.shown else {
             scrolling(ui, |ui| {
@@ -132,7 +133,7 @@ impl Check {
                 ui.set_height(32.0);
                 is_again = ui.button("Check again").clicked();
                 if ui.button("Another picture…").clicked() {
-                    commands.push(Command::CheckPicture);
+                    facts.send(Command::CheckPicture);
                 }
             });
         });
@@ -149,7 +150,7 @@ impl Check {
             for Damage { title, remedy } in &answer.damages {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
             }
-            links(ui, answer, commands);
+            links(ui, answer, facts);
             if pictures.is_some() {
                 ui.add_space(4.0);
                 small(ui, "Compare");
@@ -263,20 +264,20 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
 }
 
 /// Buttons that lead to the section of the mistake, or on.
-fn links(ui: &mut Ui, answer: &Answer, commands: &mut Vec<Command>) {
+fn links(ui: &mut Ui, answer: &Answer, facts: &Facts) {
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
         if let Some(next) = next
             && primary(ui, format!("Next: {}", next.section)).clicked()
         {
-            commands.push(Command::Stage(next));
+            facts.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
             let go = primary(ui, format!("Go to {}", stage.section));
             if tip(ui, go, stage.title, None).clicked() {
-                commands.push(Command::Stage(stage));
+                facts.send(Command::Stage(stage));
             }
             let read = ui.button(format!("Read {} in the book", section.number));
             if tip(ui, read, &section.url, None).clicked() {

@@ -32,19 +32,18 @@ pub fn ui(
     (document, selected): (&mut Document, Option<&Selected>),
     remembered: &mut Remembered,
     facts: &Facts,
-    (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
 ) {
     let has_rays = document.no_rays().is_none();
     if has_rays {
         camera(ui, document);
         lens(ui, document);
-        sphere(ui, (document, selected), facts, (edits, commands));
+        sphere(ui, (document, selected), facts);
         panel_line(ui);
     }
     ui.scope(|ui| {
         let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
         let within = |ui: &mut Ui| ui.spacing_mut().item_spacing.y = spacing;
-        size_and_samples(ui, document, remembered, commands, within);
+        size_and_samples(ui, document, facts, within);
         if has_rays {
             tracer(ui, document, remembered, facts, within);
         }
@@ -125,12 +124,7 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     }
 }
 
-fn sphere(
-    ui: &mut Ui,
-    (document, selected): (&mut Document, Option<&Selected>),
-    facts: &Facts,
-    (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
-) {
+fn sphere(ui: &mut Ui, (document, selected): (&mut Document, Option<&Selected>), facts: &Facts) {
     let title = selected.map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
     let reset = document.has_changed_scene().then_some("Reset spheres");
     let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
@@ -140,7 +134,7 @@ fn sphere(
         };
         let body = body(ui, selected, document);
         if body != selected.body {
-            edits.push(Edit::Change(selected.sphere, body));
+            facts.edit(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
             for (name, command) in [
@@ -148,7 +142,7 @@ fn sphere(
                 ("Copy", Command::DuplicateSphere),
                 ("Delete", Command::DeleteSphere),
             ] {
-                command_button(ui, facts, command, name, commands);
+                command_button(ui, facts, command, name);
             }
         });
     });
@@ -211,13 +205,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(
-    ui: &mut Ui,
-    document: &mut Document,
-    remembered: &Remembered,
-    commands: &mut Vec<Command>,
-    within: impl FnOnce(&mut Ui),
-) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts, within: impl FnOnce(&mut Ui)) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -227,7 +215,7 @@ fn size_and_samples(
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
         within(ui);
-        sizing(ui, document, remembered, commands);
+        sizing(ui, document, facts);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
     });
@@ -239,20 +227,20 @@ fn size_and_samples(
     }
 }
 
-fn sizing(ui: &mut Ui, document: &mut Document, remembered: &Remembered, commands: &mut Vec<Command>) {
+fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let names = [
         ("Fill the window", Some(Sizing::Viewport)),
         ("As in the book", Some(Sizing::Book)),
         ("Other", None),
     ];
-    let chosen = (!document.has_own_size).then_some(remembered.sizing);
+    let chosen = (!document.has_own_size).then_some(facts.model.remembered.sizing);
     let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
     ui.spacing_mut().combo_width = 136.0;
     list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
         for (name, sizing) in names {
             if entry(ui, sizing == chosen, About::new(name, "")) {
                 match sizing {
-                    Some(sizing) => commands.push(Command::Size(sizing)),
+                    Some(sizing) => facts.send(Command::Size(sizing)),
                     None => document.has_own_size = true,
                 }
             }

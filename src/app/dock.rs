@@ -43,14 +43,7 @@ impl Cards {
 }
 
 /// Draws the dock.
-pub fn ui(
-    ui: &mut Ui,
-    model: &mut Model,
-    tools: &mut Tools,
-    kept: &mut KeptActions,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, facts: &Facts) {
     let Some(dock) = model.remembered.dock else { return };
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
@@ -62,13 +55,13 @@ pub fn ui(
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
-            row.show(ui, |ui| tabs(ui, dock, model, facts, commands));
+            row.show(ui, |ui| tabs(ui, dock, model, facts));
             panel_line(ui);
             Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 8.0;
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
-                    Dock::Kept => kept_ui(ui, model, kept, facts, commands),
+                    Dock::Kept => kept_ui(ui, model, kept, facts),
                     Dock::Lanes => tools.lanes.ui(ui, facts),
                     Dock::Error => plot::ui(ui, facts),
                 }
@@ -77,7 +70,7 @@ pub fn ui(
         });
 }
 
-fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mut Vec<Command>) {
+fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let shown = &mut model.remembered.dock;
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
@@ -99,13 +92,13 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mu
     let right = |ui: &mut Ui| {
         let close = sign_button(ui, Sign::Close, 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            commands.push(match dock {
+            facts.send(match dock {
                 Dock::Path if facts.has_paths => Command::ClearPaths,
                 _ => Command::Dock(dock),
             });
         }
         if dock == Dock::Kept {
-            actions(ui, facts, commands);
+            actions(ui, facts);
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
@@ -125,9 +118,9 @@ pub const MENU: [Command; 5] =
     [Command::Flip, Command::KeptWipe, Command::KeptDifference, Command::OnlyNoise, Command::DeleteKept];
 
 /// The actions, from right to left. The first three are a switch.
-fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn actions(ui: &mut Ui, facts: &Facts) {
     for (name, command) in ACTIONS[3..].iter().rev() {
-        command_button(ui, facts, *command, name, commands);
+        command_button(ui, facts, *command, name);
     }
     let reasons = [0, 1, 2].map(|place| facts.disabled_reason(ACTIONS[place].1));
     let about = |place: usize| {
@@ -140,16 +133,12 @@ fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         _ => facts.is_on(*command),
     };
     let chosen = ACTIONS[..3].iter().map(|(_, command)| *command).find(is_on);
-    commands.extend(switch(ui, 0.0, chosen, &[0, 1, 2].map(about)).flatten());
+    if let Some(Some(command)) = switch(ui, 0.0, chosen, &[0, 1, 2].map(about)) {
+        facts.send(command);
+    }
 }
 
-fn kept_ui(
-    ui: &mut Ui,
-    model: &mut Model,
-    kept: &mut KeptActions,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
     let list = &model.view.kept;
     let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
@@ -165,7 +154,7 @@ fn kept_ui(
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
             for place in 0..model.view.kept.iter().count() {
-                card(ui, place, &mut model.view, &mut kept.cards, facts, commands);
+                card(ui, place, &mut model.view, &mut kept.cards, facts);
             }
         });
     });
@@ -173,14 +162,7 @@ fn kept_ui(
     kept.cards.0.retain(|(number, _)| is_there(*number));
 }
 
-fn card(
-    ui: &mut Ui,
-    place: usize,
-    view: &mut ViewState,
-    cards: &mut Cards,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cards: &mut Cards, facts: &Facts) {
     let Some(named) = view.kept.get(place).cloned() else { return };
     let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
     let (picture, below) = rect.split_top_bottom_at_y(rect.top() + PICTURE.y);
@@ -197,7 +179,7 @@ fn card(
     } else if response.secondary_clicked() {
         view.kept.choose(place);
     }
-    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, commands, *command)));
+    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
     let kept = &named.kept;
     let ([width, height], samples) = (kept.size(), kept.samples());
     let memory = words(kept.bytes());

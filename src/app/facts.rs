@@ -1,9 +1,11 @@
-//! What panels show but do not change: a snapshot of the window at the start of the frame.
+//! What panels show but do not change: a snapshot of the window at the start of the frame, which also takes what they ask
+//! for.
 
 use super::command::Command;
-use super::model::{Device, Document, Mode, Model, Show, partner};
+use super::model::{Device, Document, Edit, Mode, Model, Show, partner};
 use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,9 +39,22 @@ pub struct Facts {
     pub has_sight: bool,
     /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
+    /// What panels have asked for.
+    pub commands: RefCell<Vec<Command>>,
+    pub edits: RefCell<Vec<Edit>>,
 }
 
 impl Facts {
+    /// Asks for a command, which is carried out once all is drawn.
+    pub fn send(&self, command: Command) {
+        self.commands.borrow_mut().push(command);
+    }
+
+    /// Asks for a change of the scene, which is part of a move if there is one.
+    pub fn edit(&self, edit: Edit) {
+        self.edits.borrow_mut().push(edit);
+    }
+
     /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document

@@ -17,7 +17,7 @@ const STEPS: [&str; 3] = [
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     if !facts.model.has_first_steps {
         return;
     }
@@ -39,12 +39,12 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     panel.frame(around).show(ui, |ui| {
         card.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            content(ui, has_columns, facts, commands);
+            content(ui, has_columns, facts);
         });
     });
 }
 
-fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
+fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
     ui.allocate_ui_with_layout(
         vec2(ui.available_width(), 20.0),
         Layout::left_to_right(Align::Center),
@@ -57,7 +57,7 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let close = sign_button(ui, Sign::Close, 20.0, "Close first steps");
                 if tip(ui, close, "Help > First steps brings this back", None).clicked() {
-                    commands.push(Command::FirstSteps);
+                    facts.send(Command::FirstSteps);
                 }
             });
         },
@@ -77,10 +77,10 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Com
         if let Some(first) = Stage::ALL.first() {
             let response = primary(ui, format!("Start the book at {}", first.section));
             if tip(ui, response, first.what_is_new, None).clicked() {
-                commands.push(Command::Stage(first));
+                facts.send(Command::Stage(first));
             }
         }
-        command_button(ui, facts, Command::CheckPicture, "Check my picture…", commands);
+        command_button(ui, facts, Command::CheckPicture, "Check my picture…");
     });
 }
 

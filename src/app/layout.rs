@@ -1,6 +1,5 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
-use super::command::Command;
 use super::display::Display;
 use super::facts::Facts;
 use super::inspector::Inspector;
@@ -31,25 +30,24 @@ impl Window {
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
-        let mut edits = Vec::new();
-        let outcome = self.shell.dialogs.ui(ui, &facts, (&mut edits, &mut self.commands));
-        edits.into_iter().for_each(|edit| self.edit(edit));
+        let outcome = self.shell.dialogs.ui(ui, &facts);
         self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
         }
+        facts.edits.take().into_iter().for_each(|edit| self.edit(edit));
+        self.commands.append(&mut facts.commands.take());
     }
 
     /// The panels around the picture.
     fn panels(&mut self, ui: &mut Ui, facts: &Facts) {
-        let Window { model, tracing, display, tools, commands, .. } = self;
+        let Window { model, tracing, display, tools, .. } = self;
         let selected = Selected::of(model);
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
-        bar::ui(ui, facts, commands);
-        status::ui(ui, facts, tracing.sizer.offer(), commands);
-        let mut edits = Vec::new();
+        bar::ui(ui, facts);
+        status::ui(ui, facts, tracing.sizer.offer());
         let mut tabs = Vec::new();
         if has.has_info {
             tabs.extend([Tab::Stage, Tab::Code]);
@@ -59,12 +57,12 @@ impl Window {
             tabs.push(Tab::Controls);
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
-        let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
-            controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
+        let mut controls = |ui: &mut Ui, remembered: &mut Remembered| {
+            controls::ui(ui, (document, selected.as_ref()), remembered, facts);
         };
         if has.has_controls && !is_narrow {
             let panel = egui::Panel::left("controls").exact_size(232.0);
-            scrolling(ui, panel, |ui| controls(ui, remembered, commands));
+            scrolling(ui, panel, |ui| controls(ui, remembered));
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
@@ -75,29 +73,28 @@ impl Window {
                 match tab {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
-                            display.tone.ui(ui, view, facts, commands);
+                            display.tone.ui(ui, view, facts);
                             numbers(ui, view, facts, display, &tracing.second, &tools.inspector);
                         });
-                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts, commands));
+                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts));
                     }
                     Tab::Code => tools.code.ui(ui, facts),
                     Tab::Check if is_closed => tools.check.close(),
-                    Tab::Check => tools.check.ui(ui, commands),
-                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered, commands)),
+                    Tab::Check => tools.check.ui(ui, facts),
+                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered)),
                 }
             });
         }
-        edits.into_iter().for_each(|edit| self.edit(edit));
     }
 
     /// The picture, with the dock and the card of first steps below.
     fn middle(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         if facts.model.has_panels() {
-            let Window { model, tools, display, commands, .. } = self;
-            dock::ui(ui, model, tools, &mut display.kept, facts, commands);
+            let Window { model, tools, display, .. } = self;
+            dock::ui(ui, model, tools, &mut display.kept, facts);
         }
         if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
-            first_steps::ui(ui, facts, &mut self.commands);
+            first_steps::ui(ui, facts);
         }
         if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
@@ -112,7 +109,7 @@ impl Window {
     }
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
-        let Window { model, tracing, display, tools, commands, .. } = self;
+        let Window { model, tracing, display, tools, .. } = self;
         let selected = Selected::of(model);
         let Model { document, view, .. } = model;
         let layer = view.show().layer();
@@ -140,7 +137,7 @@ impl Window {
         };
         let handle =
             Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
-        display.viewport.ui(ui, handle, pictures, facts, commands)
+        display.viewport.ui(ui, handle, pictures, facts)
     }
 
     /// Does what the pointer did in the picture.

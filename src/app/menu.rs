@@ -11,48 +11,48 @@ use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
 pub const MENU_WIDTH: f32 = 248.0;
 
 /// All menus of the bar.
-pub fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn menus(ui: &mut Ui, facts: &Facts) {
     for menu in Menu::BAR {
-        ui.menu_button(menu.name(), |ui| entries(ui, menu, facts, commands));
+        ui.menu_button(menu.name(), |ui| entries(ui, menu, facts));
     }
 }
 
 /// The entries of a menu, with its submenus where they belong.
-fn entries(ui: &mut Ui, menu: Menu, facts: &Facts, commands: &mut Vec<Command>) {
+fn entries(ui: &mut Ui, menu: Menu, facts: &Facts) {
     ui.set_width(MENU_WIDTH);
     if menu == Menu::View {
-        submenu(ui, Menu::Show.name(), |ui| entries(ui, Menu::Show, facts, commands));
+        submenu(ui, Menu::Show.name(), |ui| entries(ui, Menu::Show, facts));
     }
     for row in ROWS.iter().filter(|row| row.menu == Some(menu)) {
         if row.has_line {
             ui.separator();
         }
-        item(ui, facts, commands, row.command);
+        item(ui, facts, row.command);
         match row.command {
             Command::Open => {
                 ui.add_enabled_ui(facts.recent().next().is_some(), |ui| {
-                    submenu(ui, "Open recent", |ui| places(ui, facts, facts.recent(), commands));
+                    submenu(ui, "Open recent", |ui| places(ui, facts, facts.recent()));
                 });
             }
             Command::ActualSize => {
-                submenu(ui, Menu::Bookmarks.name(), |ui| entries(ui, Menu::Bookmarks, facts, commands));
+                submenu(ui, Menu::Bookmarks.name(), |ui| entries(ui, Menu::Bookmarks, facts));
             }
             Command::FullScreen => {
                 ui.separator();
-                submenu(ui, Menu::Theme.name(), |ui| entries(ui, Menu::Theme, facts, commands));
+                submenu(ui, Menu::Theme.name(), |ui| entries(ui, Menu::Theme, facts));
             }
             _ => {}
         }
     }
     if menu == Menu::Bookmarks {
-        places(ui, facts, facts.bookmarks(), commands);
+        places(ui, facts, facts.bookmarks());
     }
 }
 
-fn places(ui: &mut Ui, facts: &Facts, all: impl Iterator<Item = Command>, commands: &mut Vec<Command>) {
+fn places(ui: &mut Ui, facts: &Facts, all: impl Iterator<Item = Command>) {
     ui.set_width(MENU_WIDTH);
     for command in all {
-        item(ui, facts, commands, command);
+        item(ui, facts, command);
     }
 }
 
@@ -69,7 +69,7 @@ fn submenu(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 }
 
 /// A menu entry for a command.
-pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> Response {
+pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
     let (reason, name) = (facts.disabled_reason(command), facts.name(command));
     let response = ui
         .scope(|ui| {
@@ -90,7 +90,7 @@ pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Co
     let path = facts.path(command).map(|path| path.display().to_string());
     let response = tip(ui, response, path.as_deref().unwrap_or(command.help()), reason.as_deref());
     if response.clicked() {
-        commands.push(command);
+        facts.send(command);
         ui.close();
     }
     response

@@ -85,7 +85,7 @@ pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
-pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     ui.set_width(WIDTH);
     // Tips stand beside what clips a column.
     let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
@@ -111,7 +111,7 @@ pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let (found, run) = finder.ui(ui, words, height, found, draw);
     ui.data_mut(|data| data.insert_temp(place(), finder));
     if let Some(run) = run {
-        commands.push(found[run].command());
+        facts.send(found[run].command());
         ui.close();
     }
 }

@@ -8,20 +8,20 @@ use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Button, Label, Link, RichText, Ui};
 
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let document = facts.document();
     match (document.stage(), document.case()) {
-        (Some(stage), _) => stage_ui(ui, stage, facts, commands),
-        (None, Some(case)) => case_ui(ui, case, facts, commands),
+        (Some(stage), _) => stage_ui(ui, stage, facts),
+        (None, Some(case)) => case_ui(ui, case, facts),
         (None, None) => recipe_ui(ui, document),
     }
-    compare_ui(ui, facts, commands);
+    compare_ui(ui, facts);
     // At the end, so that it moves nothing.
     if document.has_changed_scene() || document.camera != document.origin.recipe.camera {
         ui.add_space(8.0);
         let what = if document.stage().is_some() { "stage" } else { "picture" };
         hint(ui, &format!("You changed this {what}."));
-        command_button(ui, facts, Command::ResetAll, "Reset all", commands);
+        command_button(ui, facts, Command::ResetAll, "Reset all");
     }
 }
 
@@ -40,13 +40,13 @@ pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
     ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
 }
 
-fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts) {
     title(ui, &format!("{} {}", stage.chapter(), stage.chapter_title), stage.title);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
         let book = format!("{} in the book", stage.section);
         for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
-            add_command(ui, facts, command, Link::new(name), commands);
+            add_command(ui, facts, command, Link::new(name));
         }
     });
     for (heading, text) in
@@ -54,11 +54,11 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
     {
         paragraph(ui, heading, text);
     }
-    show_me(ui, stage, facts, commands);
+    show_me(ui, stage, facts);
 }
 
 /// A button that shows what to look for, and then says what is seen.
-fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts) {
     let command = Command::ShowMe;
     let reason = facts.disabled_reason(command);
     ui.add_space(4.0);
@@ -75,7 +75,7 @@ fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command
         false => "Shows you where to look: sets zoom, view or wipe; again returns (H)",
     };
     if tip(ui, response, help, reason.as_deref()).clicked() {
-        commands.push(command);
+        facts.send(command);
     }
     if facts.has_sight {
         let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));
@@ -84,7 +84,7 @@ fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command
 }
 
 /// The picture to compare with and how, if there is one that teaches something.
-fn compare_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn compare_ui(ui: &mut Ui, facts: &Facts) {
     let is_book = facts.model.view.with() == With::Book;
     let other = match facts.document().stage().and_then(partner) {
         _ if is_book => "The book\u{2019}s arithmetic".to_owned(),
@@ -105,7 +105,9 @@ fn compare_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     ];
     let chosen = [wipe, Command::Difference].into_iter().find(|command| facts.is_on(*command));
     let options = [(Some(wipe), about[0]), (Some(Command::Difference), about[1])];
-    commands.extend(switch(ui, 0.0, chosen, &options).flatten());
+    if let Some(Some(command)) = switch(ui, 0.0, chosen, &options) {
+        facts.send(command);
+    }
 }
 
 /// Text about a scene that is not a stage.
@@ -116,7 +118,7 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
-fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>) {
+fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts) {
     title(ui, case.family.title, case.title());
     let watch = case.watch.map_or("", |watch| watch.look_for);
     for (heading, text) in [
@@ -129,7 +131,7 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     ui.add_space(4.0);
     let command = Command::BookArithmetic;
     let button = choice(ui, facts.is_on(command), command.name());
-    add_command(ui, facts, command, button, commands);
+    add_command(ui, facts, command, button);
 }
 
 #[cfg(test)]
@@ -141,28 +143,22 @@ mod tests {
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
 
-    struct Panel {
-        facts: Facts,
-        commands: Vec<Command>,
-    }
-
-    fn panel(words: &str) -> Harness<'static, Panel> {
-        let panel = Panel { facts: facts_of(words), commands: Vec::new() };
-        let draw = |ui: &mut Ui, Panel { facts, commands }: &mut Panel| super::ui(ui, facts, commands);
-        dressed([270.0, 900.0]).build_ui_state(draw, panel)
+    fn panel(words: &str) -> Harness<'static, Facts> {
+        let draw = |ui: &mut Ui, facts: &mut Facts| super::ui(ui, facts);
+        dressed([270.0, 900.0]).build_ui_state(draw, facts_of(words))
     }
 
     #[test]
     fn spheres_and_materials_are_counted_as_edited() {
         let mut harness = panel("--scene field:20 --size 32x18");
-        let shown = |harness: &Harness<'_, Panel>| {
-            let scene = harness.state().facts.document().scene();
+        let shown = |harness: &Harness<'_, Facts>| {
+            let scene = harness.state().document().scene();
             let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
             assert!(harness.query_by_label(&words).is_some(), "{words}");
             words
         };
         let before = shown(&harness);
-        let document = &mut harness.state_mut().facts.model.document;
+        let document = &mut harness.state_mut().model.document;
         let mut scene = document.scene().clone();
         let material = scene.materials[0].clone();
         scene.materials.extend([material.clone(), material]);

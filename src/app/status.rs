@@ -31,7 +31,7 @@ const TERMS: &str = "A path is one random way of light, followed back from the c
                      finished picture, in per cent of white.";
 
 /// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
-pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
     let panel =
         egui::Panel::bottom("status").exact_size(HEIGHT).frame(theme::panel(Margin::symmetric(16, 4)));
     let shown = panel.show(ui, |ui| {
@@ -54,11 +54,11 @@ pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut 
                             true => "The camera is inside a sphere.",
                             false => "Nothing but sky or ground is in sight.",
                         });
-                        command_button(ui, facts, Command::Home, "Home", commands);
+                        command_button(ui, facts, Command::Home, "Home");
                     } else if let Some([width, height]) = offered {
                         ui.label("This picture is scaled.");
                         let name = format!("Render at {width} × {height}");
-                        command_button(ui, facts, Command::Size(Sizing::Viewport), &name, commands);
+                        command_button(ui, facts, Command::Size(Sizing::Viewport), &name);
                     }
                 });
             });

@@ -47,7 +47,7 @@ impl ToneUi {
     }
 
     /// Draws what is shown and how bright, and the histogram.
-    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts) {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
@@ -65,7 +65,7 @@ impl ToneUi {
                     let (command, reason) = (Command::Show(show), facts.useless_show(show));
                     let about = About::new(show.name(), command.help()).disabled_if(reason.as_deref());
                     if entry(ui, facts.is_on(command), about) {
-                        commands.push(command);
+                        facts.send(command);
                     }
                 }
             });
@@ -74,7 +74,7 @@ impl ToneUi {
             let (name, help) = (Command::Denoise.name(), Command::Denoise.help());
             let about = About::new(&name, help);
             if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
-                commands.push(Command::Denoise);
+                facts.send(Command::Denoise);
             }
             let reason = facts.no_exposure();
             brightness_ui(ui, &mut view.tone, reason.as_deref());

@@ -159,23 +159,17 @@ pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
 }
 
 /// A button for a command, under this name.
-pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str, commands: &mut Vec<Command>) {
-    add_command(ui, facts, command, Button::new(name), commands);
+pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str) {
+    add_command(ui, facts, command, Button::new(name));
 }
 
 /// A control for a command, with its help and keys as tooltip.
-pub fn add_command(
-    ui: &mut Ui,
-    facts: &Facts,
-    command: Command,
-    control: impl Widget,
-    commands: &mut Vec<Command>,
-) -> Response {
+pub fn add_command(ui: &mut Ui, facts: &Facts, command: Command, control: impl Widget) -> Response {
     let reason = facts.disabled_reason(command);
     let response = ui.add_enabled(reason.is_none(), control);
     let response = tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref());
     if response.clicked() {
-        commands.push(command);
+        facts.send(command);
     }
     response
 }

@@ -18,6 +18,7 @@ use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 /// The window of the program.
@@ -124,6 +125,8 @@ impl Window {
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
             model: self.model.clone(),
+            commands: RefCell::default(),
+            edits: RefCell::default(),
         }
     }
 

@@ -94,13 +94,7 @@ fn found(text: &str, facts: &Facts) -> Vec<Found> {
 }
 
 /// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
-pub(super) fn ui(
-    finder: &mut Finder,
-    ui: &mut Ui,
-    height: f32,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) -> Outcome {
+pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
     ui.set_width(ui.available_width());
     let words = (
         "Command",
@@ -122,7 +116,7 @@ pub(super) fn ui(
     about(ui, facts, hovered.or(finder.chosen(&found).map(|found| found.command)));
     match run {
         Some(run) => {
-            commands.push(found[run].command);
+            facts.send(found[run].command);
             Outcome::Close
         }
         None => Outcome::Stay,

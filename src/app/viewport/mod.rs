@@ -93,14 +93,7 @@ impl Viewport {
     }
 
     /// Draws the picture and handles input on it.
-    pub fn ui(
-        &mut self,
-        ui: &mut Ui,
-        handle: Handle<'_>,
-        pictures: Pictures<'_>,
-        facts: &Facts,
-        commands: &mut Vec<Command>,
-    ) -> Touch {
+    pub fn ui(&mut self, ui: &mut Ui, handle: Handle<'_>, pictures: Pictures<'_>, facts: &Facts) -> Touch {
         let Handle { camera, divider, selected } = handle;
         let (view, live) = (&facts.model.view, facts.document());
         let is_kept = view.kept.looked().is_some();
@@ -147,7 +140,7 @@ impl Viewport {
                 touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
             }
         }
-        if response.context_menu(|ui| context_menu(ui, facts, commands)).is_some() {
+        if response.context_menu(|ui| context_menu(ui, facts)).is_some() {
             // The entries mean the pixel where the menu was opened.
             touch.hovered = self.menu_at;
         }
@@ -244,7 +237,7 @@ fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
 }
 
 /// The menu of a right click.
-fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn context_menu(ui: &mut Ui, facts: &Facts) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
     let is_kept = facts.model.view.kept.looked().is_some();
@@ -257,13 +250,13 @@ fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         false => &[C::ListPaths, C::CopyPicture, C::Keep],
     };
     for command in of_sphere {
-        menu::item(ui, facts, commands, *command);
+        menu::item(ui, facts, *command);
     }
     if !of_sphere.is_empty() {
         ui.separator();
     }
     for command in of_picture {
-        menu::item(ui, facts, commands, *command);
+        menu::item(ui, facts, *command);
     }
 }
 
