@@ -64,9 +64,8 @@ impl Display {
             self.judged = Some((document.camera, Arc::clone(&document.checked)));
             self.is_lost = is_lost(document);
         }
-        let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
-        if let Some(kept) = view.kept.shown().or_else(other) {
-            let shown = view.of_shown(FilmId::Kept(kept.number()), tracing.second.film());
+        if let Some(kept) = view.kept.shown().or(view.kept.meant()) {
+            let shown = view.of_shown(FilmId::Kept(kept.number), tracing.second.film());
             self.kept.picture.follow(context, kept, &shown);
         }
         let live = (document, &tracing.main);

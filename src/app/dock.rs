@@ -4,14 +4,14 @@ use super::command::Command;
 use super::facts::Facts;
 use super::kept::KeptActions;
 use super::menu::item;
-use super::model::{Dock, Kept, Model, ViewState, With};
+use super::model::{Dock, Model, ViewState, With};
 use super::tools::Tools;
 use super::widgets::{About, Sign, TABS, command_button, hint, panel_line, sign_button, small, switch, tip};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
-    self, Align, Align2, Color32, ColorImage, Frame, Label, Margin, Rect, RichText, Role, ScrollArea, Sense,
-    Sides, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
+    self, Align, Align2, Color32, Frame, Label, Margin, Rect, RichText, Role, ScrollArea, Sense, Sides,
+    Stroke, StrokeKind, TextStyle, TextureHandle, Ui, Vec2, WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
@@ -22,25 +22,6 @@ const LOW: f32 = 200.0;
 /// A card: its picture, and its height with the name.
 const PICTURE: Vec2 = vec2(132.0, 74.0);
 const CARD: f32 = 94.0;
-
-/// The small pictures of the cards, by [`Kept::number`].
-#[derive(Default)]
-pub struct Cards(Vec<(u64, TextureHandle)>);
-
-impl Cards {
-    fn texture(&mut self, ui: &Ui, kept: &Kept) -> &TextureHandle {
-        let place = self.0.iter().position(|(number, _)| *number == kept.number());
-        let place = place.unwrap_or_else(|| {
-            let small = &kept.thumbnail;
-            let size = [small.width(), small.height()].map(|length| length as usize);
-            let image = ColorImage::from_rgb(size, small);
-            let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
-            self.0.push((kept.number(), texture));
-            self.0.len() - 1
-        });
-        &self.0[place].1
-    }
-}
 
 /// Draws the dock.
 pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, facts: &Facts) {
@@ -140,12 +121,12 @@ fn actions(ui: &mut Ui, facts: &Facts) {
 
 fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
     let list = &model.view.kept;
-    let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else {
+    let Some(chosen) = list.meant() else {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        if !kept.verdict.ui(ui, chosen.kept.number(), facts.status.run) {
+        if !kept.verdict.ui(ui, chosen.number, facts.status.run) {
             let memory = words(list.bytes());
             small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
         }
@@ -154,23 +135,21 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
             for place in 0..model.view.kept.iter().count() {
-                card(ui, place, &mut model.view, &mut kept.cards, facts);
+                card(ui, place, &mut model.view, facts);
             }
         });
     });
-    let is_there = |number: u64| model.view.kept.iter().any(|named| named.kept.number() == number);
-    kept.cards.0.retain(|(number, _)| is_there(*number));
 }
 
-fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cards: &mut Cards, facts: &Facts) {
-    let Some(named) = view.kept.get(place).cloned() else { return };
+fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
+    let Some(kept) = view.kept.get(place).cloned() else { return };
     let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
     let (picture, below) = rect.split_top_bottom_at_y(rect.top() + PICTURE.y);
     let is_chosen = view.kept.chosen() == Some(place);
     let title = view.kept.title(place);
     response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
-    paint_card(ui, picture, place, cards.texture(ui, &named.kept), is_chosen);
-    let name = Label::new(RichText::new(&named.name).small()).truncate();
+    paint_card(ui, picture, place, kept.thumbnail(ui.ctx()), is_chosen);
+    let name = Label::new(RichText::new(kept.document.title()).small()).truncate();
     ui.put(below.with_min_y(below.bottom() - 16.0), name.halign(Align::Min));
     if response.double_clicked() {
         view.look(Some(place));
@@ -180,7 +159,6 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, cards: &mut Cards, fact
         view.kept.choose(place);
     }
     response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
-    let kept = &named.kept;
     let ([width, height], samples) = (kept.size(), kept.samples());
     let memory = words(kept.bytes());
     let help =

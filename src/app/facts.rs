@@ -110,7 +110,7 @@ impl Facts {
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
-            Command::Kept(place) => view.kept.get(place).map(|named| named.name.clone()),
+            Command::Kept(place) => view.kept.get(place).map(|kept| kept.document.title()),
             Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
@@ -132,11 +132,10 @@ impl Facts {
 
     /// Why the chosen kept picture cannot be subtracted from the picture, if so.
     pub fn not_subtractable(&self) -> Option<String> {
-        let kept = &self.model.view.kept;
-        let Some(named) = kept.chosen().and_then(|place| kept.get(place)) else {
+        let Some(kept) = self.model.view.kept.meant() else {
             return Some("No picture is kept; M keeps this one".to_owned());
         };
-        let ([a, b], [x, y]) = (named.kept.size(), self.document().size());
+        let ([a, b], [x, y]) = (kept.size(), self.document().size());
         ([a, b] != [x, y]).then(|| format!("The kept picture is {a} × {b} and this one {x} × {y}"))
     }
 

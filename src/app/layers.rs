@@ -57,11 +57,6 @@ impl Layers {
         self.shown.as_ref().filter(|shown| shown.layer == layer)
     }
 
-    /// The newest version of a layer.
-    pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
-        self.shown.as_mut().filter(|shown| shown.layer == layer)
-    }
-
     /// The layer and its mean at a pixel of the full-size picture.
     pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3])> {
         let shown = self.shown.as_ref()?;

@@ -115,20 +115,20 @@ impl Window {
         let layer = view.show().layer();
         let kept = view.kept.shown();
         let shown = match kept {
-            Some(kept) => display.kept.picture.shown_mut(kept),
-            None => tracing.main.shown_mut(),
+            Some(kept) => display.kept.picture.shown(kept),
+            None => tracing.main.shown(),
         };
         let has_film = shown.is_some();
         let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
         let pictures = Pictures {
-            main: match layer.and_then(|layer| display.layers.shown_mut(layer)) {
-                Some(layer) => Some((&mut layer.texture, layer.divisor)),
-                None => shown.map(|shown| (&mut shown.texture, shown.divisor)),
+            main: match layer.and_then(|layer| display.layers.shown(layer)) {
+                Some(layer) => Some((&layer.texture, layer.divisor)),
+                None => shown.map(|shown| (&shown.texture, shown.divisor)),
             },
             has_film,
             titles: titles(facts, &tracing.second),
-            second: tracing.second.shown_mut().map(|shown| SecondPicture {
-                texture: &mut shown.texture,
+            second: tracing.second.shown().map(|shown| SecondPicture {
+                texture: &shown.texture,
                 divisor: shown.divisor,
                 is_scaled,
             }),

@@ -15,7 +15,6 @@ use super::spheres::grip::new_body;
 use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
-use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::stages::Stage;
 use crate::system::files::home_directory;
@@ -322,31 +321,11 @@ impl Window {
 
     // Kept pictures
 
-    /// Keeps the picture once it has samples.
-    pub(super) fn keep_wanted(&mut self, context: &Context) {
-        let Window { model, tracing, display, shell, .. } = self;
-        if !display.kept.is_wanted || !tracing.main.has_samples(&model.document) {
-            return;
-        }
-        let settings = &model.document.settings;
-        let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
-        match model.view.kept.check_room(bytes) {
-            Ok(()) => {
-                display.kept.copy(context, (&model.document, &tracing.main), tracing.seconds_before);
-            }
-            Err(reason) => {
-                display.kept.is_wanted = false;
-                shell.toasts.bad(format!("Not kept: {reason}"));
-            }
-        }
-    }
-
     /// Tests whether the shown picture and the chosen kept one differ by noise alone.
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
-        let kept = &model.view.kept;
-        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
-            display.kept.verdict.ask(context, &named.kept, (&model.document, &tracing.main));
+        if let Some(kept) = model.view.kept.meant() {
+            display.kept.verdict.ask(context, kept, (&model.document, &tracing.main));
             model.remembered.dock = Some(Dock::Kept);
         }
     }

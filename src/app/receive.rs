@@ -2,12 +2,11 @@
 
 use super::command::Command;
 use super::files::Resumed;
-use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
+use super::model::{Dock, Document, Kept, Origin, Source};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
 use crate::progressive::Stop;
 use eframe::egui::Context;
-use std::sync::Arc;
 
 impl Window {
     /// Takes all answers that have arrived.
@@ -34,12 +33,7 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        if let Some(path) = self.tools.check.follow() {
-            self.model.remembered.note_recent(&path);
-        }
-        if self.tools.check.take_news() {
-            (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
-        }
+        self.tools.check.follow(&mut self.model.remembered);
         while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);
@@ -112,8 +106,7 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let name = kept.document.title();
-        let place = self.model.view.kept.add(Named { name, kept: Arc::new(kept) });
+        let place = self.model.view.kept.add(kept);
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }

@@ -24,14 +24,6 @@ pub struct Second {
 
 impl Second {
     /// The newest second picture.
-    pub fn shown_mut(&mut self) -> Option<&mut Shown> {
-        match &self.of {
-            Some((Other::Kept(kept), _)) => self.picture.shown_mut(kept),
-            _ => self.tracer.as_mut().and_then(Tracer::shown_mut),
-        }
-    }
-
-    /// The newest second picture.
     pub fn shown(&self) -> Option<&Shown> {
         match &self.of {
             Some((Other::Kept(kept), _)) => self.picture.shown(kept),

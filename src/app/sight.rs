@@ -82,7 +82,7 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{Kept, Named, Tone};
+    use crate::app::model::{Kept, Tone};
     use crate::film::Film;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
@@ -172,8 +172,7 @@ mod tests {
         other.toggle(Mode::Difference, With::Kept(0));
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        let kept = Arc::new(kept(&document));
-        other.kept.add(Named { name: String::new(), kept });
+        other.kept.add(kept(&document));
         other.look(None);
         assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
         other.look(Some(0));

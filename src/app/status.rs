@@ -105,13 +105,9 @@ pub fn sentence(facts: &Facts) -> String {
         return format!("Not rendered: {reason}");
     }
     let kept = &facts.model.view.kept;
-    if let Some((place, named)) = kept.looked().and_then(|place| Some((place, kept.get(place)?))) {
-        let samples = grouped(named.kept.samples());
-        let name = &named.name;
-        return format!(
-            "Kept {}: {name}, {samples} samples per pixel. Escape returns to the picture",
-            place + 1
-        );
+    if let Some((place, shown)) = kept.looked().zip(kept.shown()) {
+        let (title, samples) = (kept.title(place), grouped(shown.samples()));
+        return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {
         return checked.clone();

@@ -265,7 +265,7 @@ impl Window {
         if !has_second {
             model.view.end_comparison();
         }
-        self.keep_wanted(context);
+        display.kept.follow(context, (&model.document, &tracing.main), tracing.seconds_before);
     }
 }
 

@@ -31,7 +31,7 @@ pub trait Ask {
     fn is_up_to_date(&self) -> bool;
 
     /// The kept pictures by name, with their samples per pixel.
-    fn kept(&self) -> Vec<(&str, u64)>;
+    fn kept(&self) -> Vec<(String, u64)>;
 
     /// The place of the kept picture that is shown.
     fn looked(&self) -> Option<usize>;
@@ -117,8 +117,8 @@ impl Ask for Window {
         self.tracing.main.shown().is_some_and(|shown| shown.document.has_same_film(self.shown_document()))
     }
 
-    fn kept(&self) -> Vec<(&str, u64)> {
-        self.model.view.kept.iter().map(|named| (named.name.as_str(), named.kept.samples())).collect()
+    fn kept(&self) -> Vec<(String, u64)> {
+        self.model.view.kept.iter().map(|kept| (kept.document.title(), kept.samples())).collect()
     }
 
     fn looked(&self) -> Option<usize> {

@@ -64,7 +64,7 @@ impl<'a> Subject<'a> {
 
     /// Which film it is, denoised or not.
     pub fn raw_id(&self) -> FilmId {
-        self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number()))
+        self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number))
     }
 
     /// The status of its render.
@@ -165,7 +165,7 @@ impl<K: PartialEq, T: Send + 'static> Query<K, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{Named, Origin};
+    use crate::app::model::Origin;
     use crate::stages::Stage;
     use std::sync::mpsc::channel;
 
@@ -177,8 +177,8 @@ mod tests {
         let mut film = Film::new(4, 2, 1);
         film.record(0..7, 0).unwrap();
         let status = Status { run: 3, ..Status::default() };
-        let kept = Arc::new(Kept::new(document, film, Arc::new(status), Some(5.0)));
-        let place = view.kept.add(Named { name: String::new(), kept: Arc::clone(&kept) });
+        let place = view.kept.add(Kept::new(document, film, Arc::new(status), Some(5.0)));
+        let kept = Arc::clone(view.kept.get(place).unwrap());
         let subject = Subject::new(&view, (&live, &main), Some(2.0));
         assert!(std::ptr::eq(subject.document(), &live) && !subject.is_kept() && !subject.has_samples());
         assert_eq!((subject.film_id(), subject.seconds_before()), (FilmId::Live(0), Some(2.0)));
@@ -186,7 +186,7 @@ mod tests {
         let subject = Subject::new(&view, (&live, &main), Some(2.0));
         assert!(std::ptr::eq(subject.document(), &kept.document));
         assert!(subject.is_kept() && subject.is_full() && subject.has_samples());
-        assert_eq!((subject.film_id(), subject.status().run), (FilmId::Kept(kept.number()), 3));
+        assert_eq!((subject.film_id(), subject.status().run), (FilmId::Kept(kept.number), 3));
         assert_eq!((subject.samples(), subject.shown_samples(), subject.seconds_before()), (7, 7, Some(5.0)));
         let (answer, answers) = channel();
         subject.inspect(move |film| answer.send(film.sample_count()).unwrap());

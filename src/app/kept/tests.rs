@@ -1,7 +1,7 @@
 //! A kept film on the screen, for tests of what asks films.
 
 use super::{Subject, run};
-use crate::app::model::{Document, Kept, Named, Origin, ViewState};
+use crate::app::model::{Document, Kept, Origin, ViewState};
 use crate::app::tracer::Tracer;
 use crate::film::{Film, PixelSum};
 use crate::stages::Stage;
@@ -23,9 +23,8 @@ impl OnScreen {
 
     /// Shows a kept film of a document.
     pub fn of(document: Document, film: Film) -> Self {
-        let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
         let mut view = ViewState::default();
-        let place = view.kept.add(Named { name: String::new(), kept });
+        let place = view.kept.add(Kept::new(document, film, Arc::default(), None));
         view.look(Some(place));
         let live = Document::new(Origin::usual());
         OnScreen { live, main: Tracer::new().unwrap(), view }

@@ -31,7 +31,7 @@ pub struct Verdict {
 impl Verdict {
     /// Compares a kept picture with the one that `main` traces for `live`. An earlier question is forgotten.
     pub fn ask(&mut self, context: &egui::Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
-        let of = Some((kept.number(), main.status().run));
+        let of = Some((kept.number, main.status().run));
         *self = Verdict { of, ..Verdict::default() };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
         let answer = self.answers.promise(context);

@@ -22,7 +22,7 @@ pub use companion::file_url;
 pub use device::{Device, DeviceOptions, adapter, core_count, lane_counts};
 pub use document::Document;
 pub use edit::{Body, Edit, first_difference};
-pub use kept::{Kept, KeptList, Named};
+pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab, Theme};
 pub use show::Show;

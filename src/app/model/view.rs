@@ -224,7 +224,7 @@ impl ViewState {
     /// The picture with which `document` can be compared, if any.
     fn other(&self, document: &Document) -> Option<Other> {
         if let With::Kept(place) = self.with {
-            let kept = &self.kept.get(place)?.kept;
+            let kept = self.kept.get(place)?;
             // A difference of scaled pictures would show the scaling.
             let is_possible =
                 self.mode == Some(Mode::Wipe) || kept.size() == self.shown_document(document).size();
@@ -243,7 +243,7 @@ impl ViewState {
     /// The kept picture at the other side of a wipe, which is as large as the shown one.
     pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        self.kept.get(place).map(|named| &named.kept)
+        self.kept.get(place)
     }
 }
 

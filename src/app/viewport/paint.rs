@@ -12,11 +12,12 @@ use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
-    vec2,
+    self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureId, TextureOptions,
+    Ui, pos2, vec2,
 };
 
-const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
+/// All of a texture.
+pub const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
@@ -30,7 +31,7 @@ const CORNER: f32 = 8.0;
 /// The pictures to draw.
 pub struct Pictures<'a> {
     /// The picture or a layer of it, and the factor by which it is smaller.
-    pub main: Option<(&'a mut Texture, u32)>,
+    pub main: Option<(&'a Texture, u32)>,
     /// Whether there is a picture of the film.
     pub has_film: bool,
     /// The second picture.
@@ -45,7 +46,7 @@ pub struct Pictures<'a> {
 
 /// The picture at the other side of a wipe.
 pub struct SecondPicture<'a> {
-    pub texture: &'a mut Texture,
+    pub texture: &'a Texture,
     /// The factor by which it is smaller than its full size.
     pub divisor: u32,
     /// Its full size is another than that of the first picture.
@@ -87,12 +88,7 @@ pub(super) fn paint(
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some(second)) => {
             let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
-            let x = rect.lerp_inside(vec2(divider, 0.0)).x;
-            let side = Rect { max: pos2(x, rect.bottom()), ..rect };
-            painter.image(texture, side, Rect { max: pos2(divider, 1.0), ..WHOLE }, Color32::WHITE);
-            self::divider(&painter, corners, x);
-            title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
-            title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
+            wipe(ui, &painter, rect, divider, texture, [theirs, mine]);
         }
         (Some(Mode::Difference), _) => {
             let text = format!("Difference from {theirs}");
@@ -137,8 +133,18 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
+/// Draws a picture over another one, left of a divider, and the titles of both.
+pub fn wipe(ui: &Ui, painter: &Painter, rect: Rect, divider: f32, left: TextureId, titles: [&str; 2]) {
+    let x = rect.lerp_inside(vec2(divider, 0.0)).x;
+    painter.image(left, rect.with_max_x(x), WHOLE.with_max_x(divider), Color32::WHITE);
+    let seen = rect.intersect(painter.clip_rect());
+    paint_divider(painter, seen, x);
+    title(ui, painter, seen.with_max_x(x), Align2::LEFT_TOP, titles[0]);
+    title(ui, painter, seen.with_min_x(x), Align2::RIGHT_TOP, titles[1]);
+}
+
 /// The divider of a wipe, with a round handle.
-pub fn divider(painter: &Painter, rect: Rect, x: f32) {
+fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     const HANDLE: f32 = 24.0;
     painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
