@@ -8,8 +8,7 @@ use super::stage_list;
 use super::theme;
 use super::widgets::{About, Sign, add_command, named, paint_sign, switch, tip, with_keys};
 use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder,
-    ViewportCommand, pos2, vec2,
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
 };
 
 const HEIGHT: f32 = 48.0;
@@ -20,14 +19,11 @@ const ONE_ROW: f32 = 780.0;
 /// Narrower windows show only the section of the stage, points.
 const WITH_TITLE: f32 = 1000.0;
 
+/// Widths of the stage, of a device, and of the button that pauses: "Resume", "Go on" and "Pause" have the same, so that
+/// nothing moves.
 const STAGE: f32 = 288.0;
 const DEVICE: f32 = 45.0;
-/// For "Resume", "Go on" and "Pause" alike, so that nothing moves.
 const PAUSE: f32 = 72.0;
-const SAVE: f32 = 61.0;
-
-/// Width of what stands at the right, points.
-const RIGHT: f32 = 3.0 * DEVICE + 24.0 + PAUSE + 8.0 + SAVE;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, facts: &Facts) {
@@ -35,34 +31,40 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
     let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
     let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
     panel.show(ui, |ui| {
-        let room = ui.max_rect().with_max_x(ui.max_rect().right() - 8.0);
-        let row = |rect: Rect| UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center));
-        let first = Rect::from_min_size(room.min, vec2(room.width(), 24.0));
-        let menus = ui.scope_builder(row(first), |ui| {
-            egui::containers::menu::menu_style(ui.style_mut());
-            ui.spacing_mut().item_spacing.x = 0.0;
-            ui.spacing_mut().button_padding = vec2(8.0, 4.0);
-            menus(ui, facts);
+        ui.horizontal(|ui| {
+            ui.scope(|ui| {
+                egui::containers::menu::menu_style(ui.style_mut());
+                ui.spacing_mut().item_spacing.x = 0.0;
+                ui.spacing_mut().button_padding = vec2(8.0, 4.0);
+                menus(ui, facts);
+            });
+            if has_one_row {
+                actions(ui, facts);
+            }
         });
-        let (row_rect, after_menus) = match has_one_row {
-            true => (first, menus.response.rect.right() + 16.0),
-            false => (first.translate(vec2(0.0, 32.0)), room.left() + 8.0),
-        };
-        let right = room.right() - RIGHT;
-        let most = right - 16.0 - after_menus;
-        let wanted = if ui.ctx().content_rect().width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
-        let width = wanted.min(most).max(96.0);
-        let middle = ui.ctx().content_rect().center().x - 0.5 * width;
-        let left = middle.min(right - 16.0 - width).max(after_menus);
-        let place = Rect::from_min_size(pos2(left, row_rect.top()), vec2(width, 24.0));
-        ui.scope_builder(row(place), |ui| stage(ui, facts));
-        let place = Rect::from_min_max(pos2(right, row_rect.top()), pos2(room.right(), row_rect.bottom()));
-        ui.scope_builder(row(place), |ui| {
-            device(ui, facts);
-            ui.add_space(16.0);
-            pause(ui, facts);
-            let save = Button::new("Save…").min_size(vec2(SAVE, 0.0));
-            add_command(ui, facts, Command::Save, save);
+        if !has_one_row {
+            ui.horizontal(|ui| actions(ui, facts));
+        }
+    });
+}
+
+/// The stage in the middle of the window; device, pause and save at the right.
+fn actions(ui: &mut Ui, facts: &Facts) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.add_space(8.0);
+        add_command(ui, facts, Command::Save, Button::new("Save…"));
+        pause(ui, facts);
+        ui.add_space(8.0);
+        device(ui, facts);
+        ui.add_space(8.0);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let window = ui.ctx().content_rect();
+            let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
+            let width = wanted.min(ui.available_width() - 8.0).max(96.0);
+            let indent = window.center().x - 0.5 * width - ui.cursor().left();
+            ui.add_space(indent.min(ui.available_width() - width).max(8.0));
+            ui.set_max_width(width);
+            stage(ui, facts);
         });
     });
 }

@@ -4,14 +4,15 @@ use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With};
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Tone, With};
 use super::spheres::neighbour;
-use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::{BOOK_URL, Stage};
-use eframe::egui::{Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+use eframe::egui::{
+    Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ThemePreference, ViewportCommand,
+};
 use std::sync::LazyLock;
 
 /// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
@@ -49,7 +50,7 @@ pub enum Command {
     Panels,
     Present,
     FullScreen,
-    Theme(Theme),
+    Theme(ThemePreference),
     Pause,
     Restart,
     SwitchDevice,
@@ -336,10 +337,13 @@ fn rows() -> Vec<Row> {
         |w, c| w.fill_screen(c, !w.model.is_full_screen),
         key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
-    for theme in Theme::ALL {
-        let [name, help, synonyms] = theme.words();
-        row! {C::Theme(theme), name, help, 
-            move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
+    for (theme, name, help, synonyms) in [
+        (ThemePreference::System, "As the system", "Follows the system", "theme"),
+        (ThemePreference::Dark, "Dark", "Light text on dark panels", "theme night"),
+        (ThemePreference::Light, "Light", "Dark text on light panels", "theme bright"),
+    ] {
+        row! {C::Theme(theme), name, help,
+            move |w, c| (w.model.remembered.theme, _) = (theme, c.set_theme(theme)),
             on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
 
@@ -423,7 +427,7 @@ fn rows() -> Vec<Row> {
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
             let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
-            w.open_or_tell(c, url);
+            w.open_url(c, url);
         },
         also("web section")}
     row! {C::Companion, "Read in the companion",
@@ -483,6 +487,7 @@ fn rows() -> Vec<Row> {
         needs(has_selection, NO_SPHERE), also("sharp depth of field")}
     row! {C::Flip, "Flip between the two", "Shows the traced picture and the kept one in turn",
         |w, _| w.model.view.flip(), key(Key::J), needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.kept.looked().is_some()),
         also("kept slot compare blink")}
     row! {C::KeptWipe, "Wipe with the kept picture", "Drag a divider between it and the picture",
         |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),

@@ -40,14 +40,11 @@ pub fn ui(
         sphere(ui, (document, selected), facts);
         panel_line(ui);
     }
-    ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let within = |ui: &mut Ui| ui.spacing_mut().item_spacing.y = spacing;
-        size_and_samples(ui, document, facts, within);
-        if has_rays {
-            tracer(ui, document, remembered, facts, within);
-        }
-    });
+    ui.spacing_mut().item_spacing.y = 0.0;
+    size_and_samples(ui, document, facts);
+    if has_rays {
+        tracer(ui, document, remembered, facts);
+    }
 }
 
 /// Whether the picture is a stage before the chapters about the camera.
@@ -205,7 +202,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts, within: impl FnOnce(&mut Ui)) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -214,7 +211,6 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts, within:
     let reset = is_changed.then_some("Reset size and samples");
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
-        within(ui);
         sizing(ui, document, facts);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
@@ -307,13 +303,7 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     }
 }
 
-fn tracer(
-    ui: &mut Ui,
-    document: &mut Document,
-    remembered: &mut Remembered,
-    facts: &Facts,
-    within: impl FnOnce(&mut Ui),
-) {
+fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let RenderSettings { width, height, .. } = document.settings;
     let original = RenderSettings { width, height, ..document.origin.recipe.settings };
     let is_changed = document.settings != original;
@@ -329,7 +319,6 @@ fn tracer(
     let header = Header { title: "Tracer", summary: &summary, reset, ..Header::default() };
     let (rules, is_random) = (*document.rules(), document.is_random());
     let is_reset = fold(ui, header, false, |ui| {
-        within(ui);
         let settings = &mut document.settings;
         if rules.shading == Shading::Path {
             let help = "A path that has not ended by then brings back no light (max_depth)";

@@ -65,7 +65,7 @@ impl Display {
             self.is_lost = is_lost(document);
         }
         if let Some(kept) = view.kept.shown().or(view.kept.meant()) {
-            let shown = view.of_shown(FilmId::Kept(kept.number), tracing.second.film());
+            let shown = view.of_shown(FilmId::Kept(kept.number), tracing.second.film.as_ref());
             self.kept.picture.follow(context, kept, &shown);
         }
         let live = (document, &tracing.main);
@@ -77,7 +77,7 @@ impl Display {
         }
         self.tone.follow(&subject, view.tone.white(), context);
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
-        let area = self.viewport.room().filter(|_| is_picture);
-        self.values.follow(&subject, self.viewport.placement.rect(), area, context);
+        let area = self.viewport.room.filter(|_| is_picture);
+        self.values.follow(&subject, self.viewport.placement.rect, area, context);
     }
 }

@@ -6,7 +6,7 @@ use super::kept::KeptActions;
 use super::menu::item;
 use super::model::{Dock, Model, ViewState, With};
 use super::tools::Tools;
-use super::widgets::{About, Sign, TABS, command_button, hint, panel_line, sign_button, small, switch, tip};
+use super::widgets::{Sign, TABS, command_button, command_switch, hint, panel_line, sign_button, small, tip};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
@@ -103,20 +103,7 @@ fn actions(ui: &mut Ui, facts: &Facts) {
     for (name, command) in ACTIONS[3..].iter().rev() {
         command_button(ui, facts, *command, name);
     }
-    let reasons = [0, 1, 2].map(|place| facts.disabled_reason(ACTIONS[place].1));
-    let about = |place: usize| {
-        let (name, command) = ACTIONS[place];
-        (Some(command), About::new(name, command.help()).disabled_if(reasons[place].as_deref()))
-    };
-    let is_looked = facts.model.view.kept.looked().is_some();
-    let is_on = |command: &Command| match command {
-        Command::Flip => is_looked,
-        _ => facts.is_on(*command),
-    };
-    let chosen = ACTIONS[..3].iter().map(|(_, command)| *command).find(is_on);
-    if let Some(Some(command)) = switch(ui, 0.0, chosen, &[0, 1, 2].map(about)) {
-        facts.send(command);
-    }
+    command_switch(ui, facts, &ACTIONS[..3]);
 }
 
 fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {

@@ -209,7 +209,7 @@ impl Files {
         let document = subject.document().clone();
         let describe = describer(&document, subject.status(), subject.seconds_before());
         let answer = self.saved.promise(context);
-        let denoised = subject.denoised().map(Arc::clone);
+        let denoised = subject.denoised.map(Arc::clone);
         subject
             .inspect(move |film| answer.give(write(film, denoised.as_deref(), &document, describe, named)));
     }

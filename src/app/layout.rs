@@ -47,7 +47,7 @@ impl Window {
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
         bar::ui(ui, facts);
-        status::ui(ui, facts, tracing.sizer.offer());
+        status::ui(ui, facts, tracing.sizer.offer);
         let mut tabs = Vec::new();
         if has.has_info {
             tabs.extend([Tab::Stage, Tab::Code]);
@@ -62,7 +62,8 @@ impl Window {
         };
         if has.has_controls && !is_narrow {
             let panel = egui::Panel::left("controls").exact_size(232.0);
-            scrolling(ui, panel, |ui| controls(ui, remembered));
+            let panel = panel.frame(theme::panel(egui::Margin::ZERO));
+            panel.show(ui, |ui| right::scrolling(ui, |ui| controls(ui, remembered)));
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
@@ -194,7 +195,7 @@ fn numbers(
     second: &Second,
     inspector: &Inspector,
 ) {
-    let at = inspector.pixel().map(|pixel| pixel.at);
+    let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let other = at.and_then(|at| other_pixel(view, second, facts.document(), at));
     inspector.ui(ui, facts.shown(), value, other);
@@ -204,15 +205,6 @@ fn numbers(
 fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
     match view.wiped() {
         Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
-        None => second.film()?.mean(at),
+        None => second.film.as_ref()?.mean(at),
     }
-}
-
-/// A panel whose content scrolls.
-fn scrolling(ui: &mut Ui, panel: egui::Panel, content: impl FnOnce(&mut Ui)) {
-    panel.frame(theme::panel(egui::Margin::ZERO)).show(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            egui::Frame::new().inner_margin(egui::Margin::same(16)).show(ui, content);
-        });
-    });
 }

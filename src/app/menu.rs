@@ -83,10 +83,7 @@ pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
         let mark = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
         ui.painter().line(mark.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
     }
-    if let Some(is_on) = facts.switch(command) {
-        let toggled = if is_on { Toggled::True } else { Toggled::False };
-        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(toggled));
-    }
+    name_state(&response, facts.switch(command));
     let path = facts.path(command).map(|path| path.display().to_string());
     let response = tip(ui, response, path.as_deref().unwrap_or(command.help()), reason.as_deref());
     if response.clicked() {
@@ -94,6 +91,13 @@ pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
         ui.close();
     }
     response
+}
+
+/// Tells assistive technology whether a switch is on.
+pub fn name_state(response: &Response, switch: Option<bool>) {
+    if let Some(is_on) = switch {
+        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(Toggled::from(is_on)));
+    }
 }
 
 /// A line with a command's name, and its keys at the right.

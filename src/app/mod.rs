@@ -63,7 +63,8 @@ mod window;
 mod wording;
 
 pub use command::{Command, Menu, ROWS};
-pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab, Theme};
+pub use eframe::egui::ThemePreference as Theme;
+pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};

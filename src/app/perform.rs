@@ -17,7 +17,6 @@ use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::job::output::OutputFormat;
 use crate::stages::Stage;
-use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -244,7 +243,7 @@ impl Window {
     }
 
     pub(super) fn list_paths(&mut self, context: &Context) {
-        if let Some(pixel) = self.tools.inspector.hovered() {
+        if let Some(pixel) = self.tools.inspector.hovered {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }
@@ -339,25 +338,18 @@ impl Window {
 
     /// Opens the dialog of saving with this format chosen.
     pub(super) fn ask_save(&mut self, format: OutputFormat) {
-        let folder = self.folder();
-        let folder = if self.model.remembered.directory.as_ref() == Some(&folder) {
-            folder
-        } else {
-            default_folder().unwrap_or(folder)
-        };
         let subject = self.display.subject(&self.model, &self.tracing);
         let document = subject.document();
-        let save = SaveBox::new(&file_name(document), folder, What::Picture(format), document.size());
+        let (name, what) = (file_name(document), What::Picture(format));
+        let save = SaveBox::new(&name, self.folder(), what, document.size());
         self.shell.dialogs.open(Dialog::Save(save));
     }
 
     /// The folder in which the user is at work.
     fn folder(&self) -> PathBuf {
-        let last = self.model.remembered.directory.clone().filter(|folder| folder.is_dir());
-        last.or_else(|| default_folder().filter(|folder| folder.is_dir()))
-            .or_else(|| std::env::current_dir().ok())
-            .or_else(home_directory)
-            .unwrap_or_default()
+        let last = self.model.remembered.recent.first().and_then(|path| path.parent());
+        let last = last.filter(|folder| folder.is_dir()).map(Path::to_owned);
+        last.or_else(default_folder).or_else(|| std::env::current_dir().ok()).unwrap_or_default()
     }
 
     pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
@@ -405,14 +397,14 @@ impl Window {
 
     /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
     pub(super) fn ask_about_size(&mut self) {
-        let (size, before) = (self.document().size(), self.changes.last());
+        let (size, before) = (self.document().size(), &self.changes.last);
         if size == before.size() || self.tracing.film.is_some() || self.tracing.sizer.accepted == Some(size) {
             return;
         }
         let before = if Arc::ptr_eq(&before.origin, &self.document().origin) {
             (before.size(), before.has_own_size)
         } else {
-            let room = self.display.viewport.room_pixels();
+            let room = self.display.viewport.room_pixels;
             (self.document().origin.size_in(room).unwrap_or(before.size()), true)
         };
         if let Some(large) = LargeSize::of(&self.facts(), size, before.0) {
@@ -456,21 +448,29 @@ impl Window {
     }
 
     pub(super) fn show_in_folder(&mut self, context: &Context) {
-        let Some(path) = self.model.remembered.recent.first() else { return };
-        if self.shell.dialogs.system.is_there
-            && file_manager(path).is_some_and(|mut command| command.spawn().is_ok())
-        {
+        let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) else {
             return;
-        }
-        if let Some(url) = path.parent().map(companion::file_url) {
-            self.open_or_tell(context, url);
+        };
+        let manager = match std::env::consts::OS {
+            "windows" => "explorer",
+            "macos" => "open",
+            _ => "xdg-open",
+        };
+        let has_desktop = self.shell.dialogs.system.is_there;
+        if !has_desktop || process::Command::new(manager).arg(folder).spawn().is_err() {
+            self.open_url(context, companion::file_url(folder));
         }
     }
 
-    pub(super) fn open_or_tell(&mut self, context: &Context, url: String) {
-        if !self.open_page(context, url.clone()) {
+    /// Opens a page in the browser, or tells its address. Returns whether there is a browser.
+    pub(super) fn open_url(&mut self, context: &Context, url: String) -> bool {
+        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
+        if has_browser {
+            context.open_url(egui::OpenUrl::new_tab(url));
+        } else {
             self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
+        has_browser
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
@@ -494,26 +494,13 @@ impl Window {
             Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
             Ok(false) => {
                 let url = companion::url(&folder.join("index.html"), self.document().stage());
-                if self.open_page(context, url) {
+                if self.open_url(context, url) {
                     let words = "The companion is open in your browser";
                     self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
-                } else {
-                    let folder = folder.display();
-                    let words = format!("No browser could be started. The companion is in {folder}");
-                    self.shell.toasts.good(words);
                 }
             }
             Err(reason) => self.shell.toasts.bad(format!("The companion was not written: {reason}")),
         }
-    }
-
-    /// Whether there is a browser to open the page with.
-    fn open_page(&mut self, context: &Context, url: String) -> bool {
-        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
-        if has_browser {
-            context.open_url(egui::OpenUrl::new_tab(url));
-        }
-        has_browser
     }
 
     /// Copies the command that renders the picture, and says what it needs.
@@ -537,34 +524,5 @@ impl Window {
         } else {
             "Copied: the command line that renders this picture"
         });
-    }
-
-    pub(super) fn remember_directory(&mut self, path: &Path) {
-        if let Some(directory) = std::path::absolute(path).ok().as_deref().and_then(Path::parent) {
-            self.model.remembered.directory = Some(directory.to_owned());
-        }
-    }
-}
-
-/// The command that opens the system's file manager with this file selected, on systems that have one of their own.
-fn file_manager(path: &Path) -> Option<process::Command> {
-    #[cfg(windows)]
-    {
-        use std::os::windows::process::CommandExt;
-        let mut command = process::Command::new("explorer");
-        // Explorer wants quotes around the path alone.
-        command.raw_arg(format!("/select,\"{}\"", path.display()));
-        Some(command)
-    }
-    #[cfg(target_os = "macos")]
-    {
-        let mut command = process::Command::new("open");
-        command.arg("-R").arg(path);
-        Some(command)
-    }
-    #[cfg(not(any(windows, target_os = "macos")))]
-    {
-        let _ = path;
-        None
     }
 }

@@ -14,7 +14,6 @@ impl Window {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
                 Ok(path) => {
-                    self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
                     self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
@@ -65,7 +64,6 @@ impl Window {
 
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, stage, content, .. } = opened;
-        self.remember_directory(&path);
         self.model.remembered.note_recent(&path);
         let mut document = match content {
             Content::Scene => Document::new(Origin::new(recipe, Source::File(path.clone()))),
@@ -81,7 +79,7 @@ impl Window {
         self.shell.toasts.good(words);
         if let Content::Film(film) = content {
             self.tracing.adopt(film);
-            self.changes.adopt(&self.model.document);
+            self.changes.last = self.model.document.clone();
         }
     }
 
@@ -97,7 +95,7 @@ impl Window {
                 self.model.remembered.note_recent(&resumed.path);
             }
             self.tracing.adopt(resumed.film);
-            self.changes.adopt(&self.model.document);
+            self.changes.last = self.model.document.clone();
         } else if !self.files.is_restoring {
             self.shell.toasts.bad(format!(
                 "Not resumed: the picture was changed before {path} had been read; open the file to continue it"

@@ -18,7 +18,7 @@ pub struct Second {
     /// The picture, if it was kept.
     picture: KeptPicture,
     /// Its film when it was last read.
-    film: Option<Arc<ReferenceMeans>>,
+    pub film: Option<Arc<ReferenceMeans>>,
     films: Answers<(Arc<Origin>, Arc<ReferenceMeans>)>,
 }
 
@@ -29,11 +29,6 @@ impl Second {
             Some((Other::Kept(kept), _)) => self.picture.shown(kept),
             _ => self.tracer.as_ref().and_then(Tracer::shown),
         }
-    }
-
-    /// Its film, while the difference is shown.
-    pub fn film(&self) -> Option<&Arc<ReferenceMeans>> {
-        self.film.as_ref()
     }
 
     /// Whether a picture of the current comparison is available.
@@ -166,7 +161,7 @@ mod tests {
         let answer = |second: &mut Second, origin: &Arc<Origin>| {
             second.films.answer(&context).give(Ok((Arc::clone(origin), Arc::new(film()))));
             second.receive();
-            second.film().is_some()
+            second.film.as_ref().is_some()
         };
         assert!(!answer(&mut second, &mine), "the comparison is over");
         second.of = Some((Other::Stage(stage), Arc::clone(&mine)));

@@ -122,7 +122,7 @@ mod tests {
             view.tone.expose(1.0);
             let (range, mut placement) = (view.tone.range, Placement::default());
             placement.actual_size();
-            let before = placement.zoom();
+            let before = placement.zoom;
             let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
             assert!(document.camera == home && sight.lasts(&document, &view));
             assert_eq!(view.show(), Show::of_means(stage.sight.means));
@@ -133,10 +133,10 @@ mod tests {
                 }
                 _ => {}
             }
-            assert_ne!(placement.zoom(), before);
+            assert_ne!(placement.zoom, before);
             view.tone.expose(1.0);
             sight.end(&mut document, &mut view, &mut placement);
-            assert_eq!((document.camera, placement.zoom()), (moved, before));
+            assert_eq!((document.camera, placement.zoom), (moved, before));
             assert_eq!((view.show(), view.mode()), (Show::Picture, None));
             assert_eq!(
                 view.tone,

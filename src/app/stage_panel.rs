@@ -3,7 +3,7 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Document, With, partner};
-use super::widgets::{About, add_command, choice, command_button, hint, primary, small, switch, tip};
+use super::widgets::{add_command, choice, command_button, command_switch, hint, primary, small, tip};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Button, Label, Link, RichText, Ui};
@@ -96,18 +96,7 @@ fn compare_ui(ui: &mut Ui, facts: &Facts) {
     ui.add_space(-4.0);
     ui.add(Label::new(other).wrap());
     let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
-    let commanded = [wipe, Command::Difference].map(|command| (command, facts.disabled_reason(command)));
-    let [(_, no_wipe), (_, no_difference)] = &commanded;
-    let about = [
-        About::new("Wipe", "Drag a divider between the two (C)").disabled_if(no_wipe.as_deref()),
-        About::new("Difference", "Where the two differ, and by how much (X)")
-            .disabled_if(no_difference.as_deref()),
-    ];
-    let chosen = [wipe, Command::Difference].into_iter().find(|command| facts.is_on(*command));
-    let options = [(Some(wipe), about[0]), (Some(Command::Difference), about[1])];
-    if let Some(Some(command)) = switch(ui, 0.0, chosen, &options) {
-        facts.send(command);
-    }
+    command_switch(ui, facts, &[("Wipe", wipe), ("Difference", Command::Difference)]);
 }
 
 /// Text about a scene that is not a stage.

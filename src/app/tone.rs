@@ -36,8 +36,7 @@ impl ToneUi {
             return;
         }
         let key = (subject.film_id(), white, subject.samples());
-        let is_same =
-            self.query.asked().is_some_and(|(film, of_white, _)| (*film, *of_white) == (key.0, white));
+        let is_same = self.query.asked.is_some_and(|(film, of_white, _)| (film, of_white) == (key.0, white));
         let wait = self.asked_at.map_or(Duration::ZERO, |at| INTERVAL.saturating_sub(at.elapsed()));
         if is_same && !wait.is_zero() {
             context.request_repaint_after(wait);

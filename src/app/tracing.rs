@@ -106,7 +106,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film()),
+            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film.as_ref()),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };

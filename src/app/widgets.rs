@@ -15,6 +15,9 @@ use std::ops::RangeInclusive;
 /// Width of a field for a number, points.
 pub const FIELD: f32 = 64.0;
 
+/// Space between the controls of a group, points.
+const SPACING: f32 = 8.0;
+
 /// Height of a row of tabs, points.
 pub const TABS: f32 = 40.0;
 
@@ -174,6 +177,21 @@ pub fn add_command(ui: &mut Ui, facts: &Facts, command: Command, control: impl W
     response
 }
 
+/// Buttons of commands, of which at most one is on.
+pub fn command_switch(ui: &mut Ui, facts: &Facts, named: &[(&str, Command)]) {
+    let words = |(_, command): &(&str, Command)| {
+        (with_keys(ui, command.help(), *command), facts.disabled_reason(*command))
+    };
+    let words: Vec<_> = named.iter().map(words).collect();
+    let options = named.iter().zip(&words).map(|((name, command), (help, reason))| {
+        (Some(*command), About::new(name, help).disabled_if(reason.as_deref()))
+    });
+    let on = named.iter().map(|(_, command)| *command).find(|command| facts.is_on(*command));
+    if let Some(Some(command)) = switch(ui, 0.0, on, &options.collect::<Vec<_>>()) {
+        facts.send(command);
+    }
+}
+
 /// A help with the keys of a command.
 pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
     match command.keys(ui.ctx()) {
@@ -252,13 +270,14 @@ pub struct Number<'a> {
     limits: RangeInclusive<f64>,
     suffix: &'a str,
     speed: Option<f64>,
-    scale: Option<f64>,
+    /// The largest of the numbers that it belongs to: beside that, rounding noise is 0.
+    scale: f64,
     is_whole: bool,
 }
 
 impl<'a> Number<'a> {
     pub fn new(about: About<'a>, limits: RangeInclusive<f64>) -> Self {
-        Number { about, limits, suffix: "", speed: None, scale: None, is_whole: false }
+        Number { about, limits, suffix: "", speed: None, scale: 0.0, is_whole: false }
     }
 
     /// What stands after the number.
@@ -353,11 +372,8 @@ impl<'a> Number<'a> {
     }
 
     fn text(&self, n: f64) -> String {
-        match self.scale {
-            _ if self.is_whole => with_minus(&format!("{n:.0}")),
-            Some(scale) => compact(rounded(n, scale, 5)),
-            None => compact(n),
-        }
+        let scale = self.scale.max(n.abs());
+        if self.is_whole { with_minus(&format!("{n:.0}")) } else { compact(rounded(n, scale, 5)) }
     }
 }
 
@@ -379,7 +395,7 @@ fn fields(
 ) {
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 16.0) / 3.0).floor();
-        let scale = Some(value.abs().max_element());
+        let scale = value.abs().max_element();
         for (component, name) in names.into_iter().enumerate() {
             let name = format!("{}, {name}", about.name);
             let about = About { name: &name, ..about };
@@ -430,9 +446,9 @@ fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// A number with so many digits of `scale`, so that rounding noise beside a large number is 0.
+/// A number with so many digits of `scale`.
 fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
-    let step = 10_f64.powi(scale.abs().log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
+    let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
     let rounded = (n / step).round() * step;
     if rounded.is_finite() { rounded } else { n }
 }
@@ -458,10 +474,10 @@ pub struct Header<'a> {
 /// A group of controls that is always open. Returns whether the button that resets it was clicked.
 pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> bool {
     ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        ui.spacing_mut().item_spacing.y = 0.0;
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
         let is_reset = header_row(ui, rect, header, true);
-        ui.spacing_mut().item_spacing.y = spacing;
+        ui.spacing_mut().item_spacing.y = SPACING;
         ui.scope(body);
         is_reset
     })
@@ -471,7 +487,7 @@ pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> boo
 /// A group of controls that folds when its header is clicked. Returns whether the button that resets it was clicked.
 pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&mut Ui)) -> bool {
     ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        ui.spacing_mut().item_spacing.y = 0.0;
         let id = ui.make_persistent_id(header.title);
         let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::click());
@@ -486,10 +502,9 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
         let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));
         paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
         let is_reset = header_row(ui, rect.with_min_x(rect.left() + 16.0), header, state.is_open());
-        ui.spacing_mut().item_spacing.y = spacing;
+        ui.spacing_mut().item_spacing.y = SPACING;
         state.show_body_unindented(ui, |ui| {
             body(ui);
-            ui.add_space(8.0 - spacing);
         });
         is_reset
     })

@@ -112,15 +112,15 @@ impl Window {
         Facts {
             status: self.tracing.main.status().clone(),
             seconds_before: self.tracing.seconds_before,
-            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
-            redo: self.changes.later().map(|other| self.document().difference(other)),
+            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(&other)),
+            redo: self.changes.later(self.document()).map(|other| self.document().difference(&other)),
             is_coarse: self.tracing.main.is_coarse(),
             has_picture: self.tracing.main.has_picture(self.document()),
-            is_moving: self.changes.is_in_gesture(),
+            is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost,
             checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
-            has_pixel: self.tools.inspector.hovered().is_some(),
+            has_pixel: self.tools.inspector.hovered.is_some(),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
@@ -153,7 +153,7 @@ impl Window {
             return;
         }
         theme::install(context);
-        theme::choose(context, self.model.remembered.theme);
+        context.set_theme(self.model.remembered.theme);
         // A frame can take long while the device prepares a large scene.
         context.options_mut(|options| options.input_options.max_click_duration = 5.0);
         self.tracing.main.wake(context);
@@ -222,7 +222,7 @@ impl Window {
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         if let Err(error) = self.document().camera.validate() {
             self.shell.toasts.bad(error.to_string());
-            self.model.document.camera = self.changes.last().camera;
+            self.model.document.camera = self.changes.last.camera;
         }
         self.ask_about_size();
         let document = &self.model.document;
@@ -230,7 +230,7 @@ impl Window {
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
             self.model.own_stop = document.own_stop();
         }
-        let room = self.display.viewport.room_pixels();
+        let room = self.display.viewport.room_pixels;
         self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);

@@ -162,11 +162,11 @@ impl Ask for Window {
     }
 
     fn picture_rect(&self) -> egui::Rect {
-        self.display.viewport.placement.rect()
+        self.display.viewport.placement.rect
     }
 
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
+        self.tools.inspector.pixel.as_ref().map(|pixel| (pixel.at, pixel.mean))
     }
 
     fn is_presenting(&self) -> bool {

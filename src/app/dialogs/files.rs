@@ -6,7 +6,7 @@ use crate::app::facts::Facts;
 use crate::app::model::Document;
 use crate::app::status::time;
 use crate::app::theme;
-use crate::app::widgets::{About, Number, hint, named, primary, small};
+use crate::app::widgets::{About, Number, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
@@ -166,16 +166,6 @@ fn missing_folder(path: &Path) -> Option<String> {
     (!is_default).then(|| format!("The folder {} is not there: choose another", folder.display()))
 }
 
-/// Says why a path cannot be used, or that its file would be replaced.
-fn note(ui: &mut Ui, reason: Option<&str>, is_replaced: bool) {
-    let [bad, warn] = [ui.visuals().error_fg_color, ui.visuals().warn_fg_color];
-    match reason {
-        Some(reason) => ui.colored_label(bad, reason),
-        None if is_replaced => ui.colored_label(warn, "A file of this name is there already."),
-        None => ui.label(""),
-    };
-}
-
 /// Focuses a field of text, all of which is selected, until something else takes the focus.
 fn focus(ui: &Ui, field: &egui::Response, text: &str) {
     // Enter, which takes the focus, is still to be seen.
@@ -277,19 +267,17 @@ impl SaveBox {
         let (path, shown) = (self.path(), facts.shown());
         let size = self.pixels(self.size, shown);
         let (reason, is_replaced) = (missing_folder(&path), path.exists());
-        if reason.is_none() && !is_replaced && self.what != What::Scene && shown.size() != size {
-            hint(ui, "Renders first, and you can go on meanwhile.");
-        } else {
-            note(ui, reason.as_deref(), is_replaced);
-        }
-        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
-        let pressed = ui.horizontal(|ui| {
-            if let What::Picture(format) = self.what {
-                ui.weak(format!("About {}", memory::words(file_bytes(format, size, shown))));
+        let colours = theme::colours(ui);
+        match &reason {
+            Some(reason) => ui.colored_label(colours.bad, reason),
+            None if is_replaced => ui.colored_label(colours.warn, "A file of this name is there already."),
+            None if self.what != What::Scene && shown.size() != size => {
+                ui.weak("Renders first, and you can go on meanwhile.")
             }
-            buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable)
-        });
-        match pressed.inner {
+            None => ui.label(""),
+        };
+        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
+        match buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable) {
             Some(true) => Outcome::Save(self.what, size, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
@@ -365,17 +353,6 @@ pub fn file_name(document: &Document) -> String {
         _ => return plain_name(&document.name()),
     };
     title.replace(['/', '\\', ':', '?', '*', '"', '<', '>', '|'], "")
-}
-
-/// Roughly.
-fn file_bytes(format: OutputFormat, [width, height]: [u32; 2], document: &Document) -> u64 {
-    let pixels = u64::from(width) * u64::from(height);
-    match format {
-        OutputFormat::Png => pixels,
-        OutputFormat::P6 => 3 * pixels,
-        OutputFormat::Pfm => 12 * pixels,
-        OutputFormat::Exr => Film::bytes(width, height, document.settings.half_count()) / 2,
-    }
 }
 
 /// Samples per pixel that the picture has when it is done, as far as is known.

@@ -26,7 +26,7 @@ pub struct Subject<'a> {
     live: &'a Document,
     main: &'a Tracer,
     kept: Option<&'a Arc<Kept>>,
-    denoised: Option<&'a Arc<Denoised>>,
+    pub denoised: Option<&'a Arc<Denoised>>,
     seconds_before: Option<f64>,
 }
 
@@ -40,11 +40,6 @@ impl<'a> Subject<'a> {
     ) -> Self {
         let subject = Subject { live, main, kept: view.kept.shown(), denoised: None, seconds_before };
         Subject { denoised: view.denoised_of(subject.raw_id()), ..subject }
-    }
-
-    /// The denoised picture that is shown instead of the film.
-    pub fn denoised(&self) -> Option<&'a Arc<Denoised>> {
-        self.denoised
     }
 
     /// Whether it is a kept film.
@@ -121,7 +116,7 @@ impl<'a> Subject<'a> {
 
 /// A question about the film on the screen, which is asked again when `K` has changed, one at a time.
 pub struct Query<K, T> {
-    asked: Option<K>,
+    pub asked: Option<K>,
     answers: Answers<T>,
 }
 
@@ -132,11 +127,6 @@ impl<K, T> Default for Query<K, T> {
 }
 
 impl<K: PartialEq, T: Send + 'static> Query<K, T> {
-    /// What was asked last.
-    pub fn asked(&self) -> Option<&K> {
-        self.asked.as_ref()
-    }
-
     /// Takes the newest answer.
     pub fn take(&mut self) -> Option<T> {
         std::iter::from_fn(|| self.answers.take()).last().and_then(Result::ok)

@@ -39,8 +39,8 @@ pub struct Viewport {
     is_dragging_divider: bool,
     /// The pixel where the context menu was opened.
     menu_at: Option<[u32; 2]>,
-    room: Option<Rect>,
-    room_pixels: [u32; 2],
+    pub room: Option<Rect>,
+    pub room_pixels: [u32; 2],
     selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
@@ -76,16 +76,6 @@ pub struct Touch {
 }
 
 impl Viewport {
-    /// The area of the viewport when it was last drawn.
-    pub fn room(&self) -> Option<Rect> {
-        self.room
-    }
-
-    /// The room for the picture when it was last drawn, pixels of the screen.
-    pub fn room_pixels(&self) -> [u32; 2] {
-        self.room_pixels
-    }
-
     /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
     pub fn aim(&self) -> [f64; 2] {
         const FOREGROUND: [f64; 2] = [0.5, 0.7];
@@ -158,7 +148,7 @@ impl Viewport {
             (false, Some(parked)) => self.placement = parked,
             (_, parked) => self.parked = parked,
         }
-        let is_of_sight = matches!(self.placement.zoom(), Zoom::Part(_));
+        let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
         if !facts.has_sight && (is_presenting || is_of_sight) {
             self.placement.fit();
         }
@@ -174,7 +164,7 @@ impl Viewport {
             self.is_dragging_divider = false;
             return false;
         }
-        let rect = self.placement.rect();
+        let rect = self.placement.rect;
         let is_near = |at: Pos2| (at.x - rect.lerp_inside(vec2(*divider, 0.0)).x).abs() < GRIP;
         if response.drag_started_by(PointerButton::Primary) {
             self.is_dragging_divider = ui.input(|input| input.pointer.press_origin()).is_some_and(is_near);
@@ -201,7 +191,7 @@ impl Viewport {
         camera: &mut Camera,
         touch: &mut Touch,
     ) {
-        let rect = self.placement.rect();
+        let rect = self.placement.rect;
         let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         let Some(at) = at.filter(|_| response.clicked()) else { return };
         if live.no_rays().is_some() {

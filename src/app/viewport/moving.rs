@@ -38,7 +38,7 @@ impl Moving {
             let scroll = input.smooth_scroll_delta().y;
             (input.modifiers, scroll, input.zoom_delta(), input.pointer.press_origin())
         });
-        let (rect, delta) = (placement.rect(), response.drag_delta());
+        let (rect, delta) = (placement.rect, response.drag_delta());
         let point = |camera: &Camera, at: Pos2| {
             let pick = rect.contains(at).then(|| document.pick(camera, place_at(rect, at)));
             Some(pick??.point)

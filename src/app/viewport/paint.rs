@@ -63,7 +63,7 @@ pub(super) fn paint(
     facts: &Facts,
 ) {
     let painter = ui.painter().with_clip_rect(room);
-    let times = placement.times();
+    let times = placement.times;
     let options = |divisor: u32, is_scaled: bool| {
         // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
         // are always smooth.
