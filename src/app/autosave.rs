@@ -138,6 +138,8 @@ pub struct Autosave {
     begun: Instant,
     outcomes: Answers<()>,
     has_failed: bool,
+    /// The film of the last window is read, and must not be replaced before.
+    pub is_restoring: bool,
 }
 
 impl Autosave {
@@ -151,6 +153,7 @@ impl Autosave {
             begun: Instant::now(),
             outcomes: Answers::default(),
             has_failed: false,
+            is_restoring: false,
         }
     }
 
@@ -199,11 +202,11 @@ impl Autosave {
     }
 
     /// Saves the film at the end of the window. Where it has no place of its own, a panic saves it elsewhere.
-    pub fn end(&mut self, model: &Model, tracing: &mut Tracing, is_restoring: bool) {
+    pub fn end(&mut self, model: &Model, tracing: &mut Tracing) {
         let _ = self.outcomes.wait();
         let is_panic = std::thread::panicking();
         let is_kept = self.place.is_some() || is_panic;
-        if is_kept && !is_restoring && tracing.main.has_samples(&model.document) {
+        if is_kept && !self.is_restoring && tracing.main.has_samples(&model.document) {
             let describe = describe(&model.document, tracing);
             if let Some(film) = tracing.main.take_film().filter(|film| film.sample_count() > 0) {
                 self.save_last(&film, &describe(&film), &model.document.name());

@@ -409,7 +409,7 @@ fn rows() -> Vec<Row> {
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision")}
     row! {C::ListPaths, "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
-        |w, c| w.list_paths(c), key(Key::T), line(),
+        |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if f.model.view.kept.looked().is_some() =>

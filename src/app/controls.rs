@@ -253,10 +253,8 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts) {
 
 /// A row for a whole number.
 fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<u32>, width: f32) {
-    let mut number = f64::from(*value);
     let limits = f64::from(*limits.start())..=f64::from(*limits.end());
-    row(ui, about, |ui| Number::new(about, limits).whole().field(ui, width, &mut number));
-    *value = number as u32;
+    row(ui, about, |ui| Number::new(about, limits).whole_field(ui, width, value));
 }
 
 /// What ends the render. A choice replaces what the command line has set.

@@ -1,13 +1,13 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use super::answers::{Answer, Answers};
-use super::model::Document;
+use super::model::{Document, best_isa};
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
 use crate::job::render::{RenderJob, RenderSettings};
 use crate::numbers::heat::HeatScale;
-use crate::render_cpu::{Isa, PathRecorder};
+use crate::render_cpu::PathRecorder;
 use crate::stages::Transfer;
 use eframe::egui::Context;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -175,9 +175,8 @@ impl Order {
         if self.cancel.load(Ordering::Relaxed) {
             return false;
         }
-        let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
         let earlier = recorder.take();
-        let paths = recorder.insert(PathRecorder::new(job, isa, earlier));
+        let paths = recorder.insert(PathRecorder::new(job, best_isa(), earlier));
         let mut image = LayerImage::new(self.layer, job);
         for index in 0..samples {
             if !image.add_sample(paths, &self.cancel) {

@@ -3,11 +3,11 @@
 use super::display::Display;
 use super::facts::Facts;
 use super::inspector::Inspector;
-use super::model::{Dock, Document, Model, Remembered, Tab, ViewState};
+use super::model::{Document, Model, Remembered, Tab, ViewState};
 use super::paths::at_same_place;
 use super::second::Second;
 use super::spheres::Selected;
-use super::viewport::{Handle, Pictures, SecondPicture, Touch};
+use super::viewport::{Handle, Pictures, Touch};
 use super::window::Window;
 use super::{bar, controls, dock, first_steps, present, right, stage_panel, status, theme};
 use eframe::egui::{self, Ui};
@@ -123,16 +123,12 @@ impl Window {
         let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown(layer)) {
-                Some(layer) => Some((&layer.texture, layer.divisor)),
-                None => shown.map(|shown| (&shown.texture, shown.divisor)),
+                Some(layer) => Some((&layer.texture, layer.divisor > 1)),
+                None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
             },
             has_film,
             titles: titles(facts, &tracing.second),
-            second: tracing.second.shown().map(|shown| SecondPicture {
-                texture: &shown.texture,
-                divisor: shown.divisor,
-                is_scaled,
-            }),
+            second: tracing.second.shown().map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
             paths: kept.is_none().then_some(&tools.paths),
             values: &display.values,
         };
@@ -153,23 +149,16 @@ impl Window {
             present::magnify(ui, room, at, numbers);
         }
         self.tools.inspector.hover(touch.hovered);
-        if let Some(pixel) = touch.listed {
-            self.tools.paths.list(&self.model.document, pixel, ui.ctx());
-            self.model.remembered.dock = Some(Dock::Path);
-        }
+        self.list_paths(ui.ctx(), touch.listed);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
-        if let Some(reason) = facts.no_rays().filter(|_| touch.is_refused) {
-            self.shell.toasts.good(reason);
-        }
-        if touch.is_move || touch.edit.is_some() {
+        if touch.is_move {
             self.changes.note_move();
         }
         if let Some(sphere) = touch.select {
             self.model.selected = sphere;
         }
-        touch.edit.into_iter().for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }

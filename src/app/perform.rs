@@ -5,6 +5,7 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
+use super::kept::Subject;
 use super::model::{
     Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source, ViewState,
     With, companion, device,
@@ -242,8 +243,8 @@ impl Window {
         }
     }
 
-    pub(super) fn list_paths(&mut self, context: &Context) {
-        if let Some(pixel) = self.tools.inspector.hovered {
+    pub(super) fn list_paths(&mut self, context: &Context, pixel: Option<[u32; 2]>) {
+        if let Some(pixel) = pixel {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }
@@ -338,7 +339,7 @@ impl Window {
 
     /// Opens the dialog of saving with this format chosen.
     pub(super) fn ask_save(&mut self, format: OutputFormat) {
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
         let (name, what) = (file_name(document), What::Picture(format));
         let save = SaveBox::new(&name, self.folder(), what, document.size());
@@ -374,7 +375,7 @@ impl Window {
     }
 
     fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
         match what {
             What::Scene => self.files.save_scene(context, path, document),
@@ -416,7 +417,7 @@ impl Window {
 
     /// Offers the film of a window that ended early.
     pub(super) fn offer_left(&mut self) {
-        let Some((document, samples)) = self.files.autosave.left().and_then(|path| picture_of(&path)) else {
+        let Some((document, samples)) = self.autosave.left().and_then(|path| picture_of(&path)) else {
             return;
         };
         let (name, samples) = (document.place(), grouped(samples));
@@ -426,7 +427,7 @@ impl Window {
     }
 
     pub(super) fn recover(&mut self, context: &Context) {
-        let Some(path) = self.files.autosave.left() else { return };
+        let Some(path) = self.autosave.left() else { return };
         match picture_of(&path).map(|(document, _)| (document.job(1), document)) {
             Some((Ok(job), document)) => {
                 self.show_document(document);
@@ -488,7 +489,7 @@ impl Window {
     pub(super) fn show_companion(&mut self, context: &Context, written: Result<bool, String>) {
         let is_stopped = self.files.end_companion();
         self.shell.toasts.withdraw(Command::StopCompanion);
-        let Some(folder) = self.files.companion.clone() else { return };
+        let Some(folder) = self.files.companion_folder() else { return };
         match written {
             Ok(_) if is_stopped => {}
             Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
@@ -505,7 +506,7 @@ impl Window {
 
     /// Copies the command that renders the picture, and says what it needs.
     pub(super) fn copy_command(&mut self, context: &Context) {
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
         let samples = match subject.samples() {
             samples @ 1.. if subject.is_full() => samples,

@@ -49,7 +49,7 @@ impl Window {
                 Ok(resumed) => self.go_on(resumed),
                 Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
             }
-            self.files.is_restoring = false;
+            self.autosave.is_restoring = false;
         }
         while let Some(outcome) = self.files.companions.take() {
             self.show_companion(context, outcome);
@@ -83,23 +83,23 @@ impl Window {
         }
     }
 
-    /// Goes on with the film of the command line, unless the picture has been changed meanwhile.
-    pub(super) fn go_on(&mut self, resumed: Resumed) {
-        let path = resumed.path.display();
-        if self.document().has_same_film(&resumed.begun) {
-            if self.files.autosave.left().as_ref() == Some(&resumed.path) {
-                self.shell.toasts.good(format!("Going on with {}", self.document().place()));
-            } else if !self.files.is_restoring {
-                let name = resumed.path.file_name().unwrap_or(resumed.path.as_os_str()).display();
-                self.shell.toasts.good(format!("Going on with {name}"));
-                self.model.remembered.note_recent(&resumed.path);
+    /// Goes on with a film, unless the picture has been changed meanwhile.
+    fn go_on(&mut self, Resumed { path, begun, film }: Resumed) {
+        let is_quiet = self.autosave.is_restoring;
+        if !self.document().has_same_film(&begun) {
+            if !is_quiet {
+                let words = "the picture was changed before it had been read; open the file to continue it";
+                self.shell.toasts.bad(format!("Not resumed from {}: {words}", path.display()));
             }
-            self.tracing.adopt(resumed.film);
-            self.changes.last = self.model.document.clone();
-        } else if !self.files.is_restoring {
-            self.shell.toasts.bad(format!(
-                "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
-            ));
+            return;
+        }
+        self.tracing.adopt(film);
+        self.changes.last = self.model.document.clone();
+        if !is_quiet {
+            self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+        }
+        if !is_quiet && self.autosave.left().as_ref() != Some(&path) {
+            self.model.remembered.note_recent(&path);
         }
     }
 

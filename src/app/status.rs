@@ -228,13 +228,6 @@ fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
         ("Processor", processors(status).unwrap_or_else(unknown)),
         ("Lanes", lanes.unwrap_or_else(unknown)),
-        (
-            "Samples left out",
-            match status.rejected_samples {
-                0 => "none".to_owned(),
-                count => grouped(count),
-            },
-        ),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
     ]
 }

@@ -331,6 +331,14 @@ impl<'a> Number<'a> {
         tip(ui, response, self.about.help, self.about.disabled_reason)
     }
 
+    /// The field alone, for a whole number.
+    pub fn whole_field(self, ui: &mut Ui, width: f32, value: &mut u32) -> Response {
+        let mut number = f64::from(*value);
+        let response = Number { is_whole: true, ..self }.field(ui, width, &mut number);
+        *value = number as u32;
+        response
+    }
+
     /// A label at the left and the field at the right.
     pub fn row(&self, ui: &mut Ui, value: &mut f64) -> Response {
         row(ui, self.about, |ui| self.field(ui, FIELD, value))

@@ -7,6 +7,7 @@ use super::command::Command;
 use super::display::Display;
 use super::facts::Facts;
 use super::files::Files;
+use super::frame_log::FrameLog;
 use super::input;
 use super::kept::Subject;
 use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
@@ -19,6 +20,7 @@ use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use std::cell::RefCell;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// The window of the program.
@@ -32,6 +34,7 @@ pub struct Window {
     pub display: Display,
     pub tools: Tools,
     pub files: Files,
+    pub autosave: Autosave,
     pub shell: Shell,
     /// What is to be done in this frame.
     pub commands: Vec<Command>,
@@ -59,8 +62,8 @@ impl Window {
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
-        let mut files = Files::new(Autosave::new(options.state_directory.as_deref(), options.autosave_every));
-        let last = files.autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
+        let mut autosave = Autosave::new(options.state_directory.as_deref(), options.autosave_every);
+        let last = autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
         let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
         let mut document = match &last {
             Some((document, _)) => document.clone(),
@@ -68,12 +71,17 @@ impl Window {
             None => Document::new(Origin::usual()),
         };
         document.stop = options.stop.unwrap_or(document.stop);
-        files.is_restoring = last.is_some();
+        autosave.is_restoring = last.is_some();
+        let mut files = Files::default();
         files.pending_resume = match (options.resume, last) {
             (Some(path), _) => Some((path, options.recipe.job()?)),
             (None, Some((document, path))) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
+        let create = |path: &PathBuf| {
+            FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
+        };
+        let frame_log = options.frame_log.as_ref().map(create).transpose()?;
         let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
             changes: Changes::new(document.clone()),
@@ -93,7 +101,8 @@ impl Window {
             display: Display::default(),
             tools: Tools::default(),
             files,
-            shell: Shell::new(options.frame_log.as_deref(), options.crashes_at)?,
+            autosave,
+            shell: Shell { frame_log, crashes_at: options.crashes_at, ..Shell::default() },
             commands: Vec::new(),
         })
     }
@@ -231,7 +240,8 @@ impl Window {
             self.model.own_stop = document.own_stop();
         }
         let room = self.display.viewport.room_pixels;
-        self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
+        let needs_film = self.files.needs_film() || self.autosave.is_restoring;
+        self.tracing.follow_size(context, &mut self.model, room, needs_film);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.look(None);
@@ -245,17 +255,17 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, tracing, display, tools, files, shell, .. } = self;
+        let Window { model, tracing, display, tools, files, autosave, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
-        let subject = Subject::new(&model.view, (&model.document, &tracing.main), None);
+        let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
             model.view.denoised = Some(found);
         }
-        let subject = display.subject(model, tracing);
+        let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
-        if !files.is_restoring
-            && let Some(reason) = files.autosave.follow(context, &model.document, tracing)
+        if !autosave.is_restoring
+            && let Some(reason) = autosave.follow(context, &model.document, tracing)
         {
             let words =
                 format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
@@ -265,7 +275,7 @@ impl Window {
         if !has_second {
             model.view.end_comparison();
         }
-        display.kept.follow(context, (&model.document, &tracing.main), tracing.seconds_before);
+        display.kept.follow(context, &model.document, tracing);
     }
 }
 
@@ -298,7 +308,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
-        self.files.autosave.end(&self.model, &mut self.tracing, self.files.is_restoring);
+        self.autosave.end(&self.model, &mut self.tracing);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::app::facts::Facts;
 use crate::app::model::Document;
 use crate::app::status::time;
 use crate::app::theme;
-use crate::app::widgets::{About, Number, named, primary, small};
+use crate::app::widgets::{About, FIELD, Number, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
@@ -307,10 +307,8 @@ impl SaveBox {
         if self.size == Size::Other {
             ui.horizontal(|ui| {
                 for (name, side) in ["Width", "Height"].into_iter().zip(&mut self.other) {
-                    let mut value = f64::from(*side);
-                    let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT)).whole();
-                    number.field(ui, 64.0, &mut value);
-                    *side = value as u32;
+                    let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT));
+                    number.whole_field(ui, FIELD, side);
                 }
             });
         }

@@ -12,7 +12,8 @@ pub use verdict::Verdict;
 use super::answers::{Answers, caught};
 use super::model::{Document, Kept};
 use super::texture::Texture;
-use super::tracer::{Shown, Tracer};
+use super::tracer::Shown;
+use super::tracing::Tracing;
 use crate::progressive::View;
 use eframe::egui::Context;
 use std::sync::mpsc::{SendError, Sender, channel};
@@ -47,17 +48,14 @@ pub struct KeptActions {
 
 impl KeptActions {
     /// Copies the traced film if that was asked for and it has samples. The answer arrives in `copied`.
-    pub fn follow(
-        &mut self,
-        context: &Context,
-        (document, main): (&Document, &Tracer),
-        seconds_before: Option<f64>,
-    ) {
+    pub fn follow(&mut self, context: &Context, document: &Document, tracing: &Tracing) {
+        let Tracing { main, seconds_before, .. } = tracing;
         if !self.is_wanted || !main.has_samples(document) {
             return;
         }
         self.is_wanted = false;
-        let (document, status) = (document.clone(), Arc::clone(main.status()));
+        let (document, status, seconds_before) =
+            (document.clone(), Arc::clone(main.status()), *seconds_before);
         let answer = self.copied.promise(context);
         main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());

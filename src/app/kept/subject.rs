@@ -2,7 +2,7 @@
 
 use crate::app::answers::Answers;
 use crate::app::model::{Document, Kept, ViewState};
-use crate::app::tracer::Tracer;
+use crate::app::tracing::Tracing;
 use crate::denoise::Denoised;
 use crate::film::Film;
 use crate::progressive::Status;
@@ -24,21 +24,15 @@ pub enum FilmId {
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     live: &'a Document,
-    main: &'a Tracer,
+    tracing: &'a Tracing,
     kept: Option<&'a Arc<Kept>>,
     pub denoised: Option<&'a Arc<Denoised>>,
-    seconds_before: Option<f64>,
 }
 
 impl<'a> Subject<'a> {
-    /// What `view` looks at: the film that `main` traces for `live`, or a kept one. `seconds_before` is the tracing time of
-    /// the live film's samples from before its render, if known.
-    pub fn new(
-        view: &'a ViewState,
-        (live, main): (&'a Document, &'a Tracer),
-        seconds_before: Option<f64>,
-    ) -> Self {
-        let subject = Subject { live, main, kept: view.kept.shown(), denoised: None, seconds_before };
+    /// What `view` looks at: the film that is traced for `live`, or a kept one.
+    pub fn new(view: &'a ViewState, live: &'a Document, tracing: &'a Tracing) -> Self {
+        let subject = Subject { live, tracing, kept: view.kept.shown(), denoised: None };
         Subject { denoised: view.denoised_of(subject.raw_id()), ..subject }
     }
 
@@ -59,39 +53,40 @@ impl<'a> Subject<'a> {
 
     /// Which film it is, denoised or not.
     pub fn raw_id(&self) -> FilmId {
-        self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number))
+        self.kept.map_or(FilmId::Live(self.tracing.main.status().run), |kept| FilmId::Kept(kept.number))
     }
 
     /// The status of its render.
     pub fn status(&self) -> &'a Arc<Status> {
-        self.kept.map_or(self.main.status(), |kept| &kept.status)
+        self.kept.map_or(self.tracing.main.status(), |kept| &kept.status)
     }
 
     /// Tracing time of its samples from before that render, if known.
     pub fn seconds_before(&self) -> Option<f64> {
-        self.kept.map_or(self.seconds_before, |kept| kept.seconds_before)
+        self.kept.map_or(self.tracing.seconds_before, |kept| kept.seconds_before)
     }
 
     /// Samples per pixel of the film.
     pub fn samples(&self) -> u64 {
-        self.kept.map_or(self.main.status().samples_per_pixel, |kept| kept.samples())
+        self.kept.map_or(self.tracing.main.status().samples_per_pixel, |kept| kept.samples())
     }
 
     /// Samples per pixel of the film's newest picture; 0 as long as only that of an earlier film is there.
     pub fn shown_samples(&self) -> u64 {
-        let run = self.main.status().run;
-        let of_live = || self.main.shown().filter(|shown| shown.run == run).map_or(0, |shown| shown.samples);
+        let run = self.tracing.main.status().run;
+        let of_live =
+            || self.tracing.main.shown().filter(|shown| shown.run == run).map_or(0, |shown| shown.samples);
         self.kept.map_or_else(of_live, |kept| kept.samples())
     }
 
     /// Whether it is the film of its document at full size.
     pub fn is_full(&self) -> bool {
-        self.kept.is_some() || self.main.is_full(self.live)
+        self.kept.is_some() || self.tracing.main.is_full(self.live)
     }
 
     /// Whether it is the film of its document at full size, and has samples.
     pub fn has_samples(&self) -> bool {
-        self.kept.is_some() || self.main.has_samples(self.live)
+        self.kept.is_some() || self.tracing.main.has_samples(self.live)
     }
 
     /// Runs `look` with what is shown, the film or its denoised picture, on another thread.
@@ -109,7 +104,7 @@ impl<'a> Subject<'a> {
                 let film = Arc::clone(&kept.film);
                 super::run(move || look(&film));
             }
-            None => self.main.inspect(look),
+            None => self.tracing.main.inspect(look),
         }
     }
 }
@@ -161,7 +156,8 @@ mod tests {
 
     #[test]
     fn a_kept_film_takes_the_place_of_the_live_one() {
-        let main = Tracer::new().unwrap();
+        let mut tracing = Tracing::new().unwrap();
+        tracing.seconds_before = Some(2.0);
         let (live, mut view) = (Document::new(Origin::usual()), ViewState::default());
         let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         let mut film = Film::new(4, 2, 1);
@@ -169,11 +165,11 @@ mod tests {
         let status = Status { run: 3, ..Status::default() };
         let place = view.kept.add(Kept::new(document, film, Arc::new(status), Some(5.0)));
         let kept = Arc::clone(view.kept.get(place).unwrap());
-        let subject = Subject::new(&view, (&live, &main), Some(2.0));
+        let subject = Subject::new(&view, &live, &tracing);
         assert!(std::ptr::eq(subject.document(), &live) && !subject.is_kept() && !subject.has_samples());
         assert_eq!((subject.film_id(), subject.seconds_before()), (FilmId::Live(0), Some(2.0)));
         view.look(Some(place));
-        let subject = Subject::new(&view, (&live, &main), Some(2.0));
+        let subject = Subject::new(&view, &live, &tracing);
         assert!(std::ptr::eq(subject.document(), &kept.document));
         assert!(subject.is_kept() && subject.is_full() && subject.has_samples());
         assert_eq!((subject.film_id(), subject.status().run), (FilmId::Kept(kept.number), 3));

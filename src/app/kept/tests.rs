@@ -2,7 +2,7 @@
 
 use super::{Subject, run};
 use crate::app::model::{Document, Kept, Origin, ViewState};
-use crate::app::tracer::Tracer;
+use crate::app::tracing::Tracing;
 use crate::film::{Film, PixelSum};
 use crate::stages::Stage;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::mpsc::channel;
 /// Everything that a film on the screen needs.
 pub struct OnScreen {
     live: Document,
-    main: Tracer,
+    tracing: Tracing,
     view: ViewState,
 }
 
@@ -27,12 +27,12 @@ impl OnScreen {
         let place = view.kept.add(Kept::new(document, film, Arc::default(), None));
         view.look(Some(place));
         let live = Document::new(Origin::usual());
-        OnScreen { live, main: Tracer::new().unwrap(), view }
+        OnScreen { live, tracing: Tracing::new().unwrap(), view }
     }
 
     /// The film.
     pub fn subject(&self) -> Subject<'_> {
-        Subject::new(&self.view, (&self.live, &self.main), None)
+        Subject::new(&self.view, &self.live, &self.tracing)
     }
 
     /// Does this before the film answers anything, and waits until everything that it asks has been answered.

@@ -141,6 +141,11 @@ fn threads_of_window() -> Option<usize> {
     (cores > 2).then(|| cores - 1)
 }
 
+/// The best level of this processor.
+pub fn best_isa() -> Isa {
+    Isa::available().into_iter().max().unwrap_or(Isa::Portable)
+}
+
 /// The lane counts for which this processor has kernels.
 pub fn lane_counts() -> Vec<usize> {
     Isa::available().last().map_or_else(Vec::new, |isa| isa.lane_counts().to_vec())

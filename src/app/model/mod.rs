@@ -17,7 +17,7 @@ mod view;
 
 pub use checked::{CheckedScene, stamp_of};
 pub use companion::file_url;
-pub use device::{Device, DeviceOptions, adapter, core_count, lane_counts};
+pub use device::{Device, DeviceOptions, adapter, best_isa, core_count, lane_counts};
 pub use document::Document;
 pub use edit::{Body, Edit, first_difference};
 pub use kept::{Kept, KeptList};

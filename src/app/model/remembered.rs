@@ -2,7 +2,6 @@
 
 use super::Model;
 use super::{Device, Sizing, ViewState, device};
-use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;
 use eframe::egui::ThemePreference;
@@ -120,8 +119,7 @@ impl Stored {
 impl Remembered {
     /// Lanes per packet: the chosen number, or as many as a register holds.
     pub fn lanes_in_use(&self) -> usize {
-        let best = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
-        self.lanes.unwrap_or_else(|| best.native_lanes())
+        self.lanes.unwrap_or_else(|| device::best_isa().native_lanes())
     }
 
     /// Remembers a file that was opened or saved. A path that is not Unicode is not remembered: it could not be stored.

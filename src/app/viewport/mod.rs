@@ -5,14 +5,14 @@ pub mod paint;
 mod placement;
 mod selection;
 
-pub use paint::{Pictures, SecondPicture};
+pub use paint::Pictures;
 pub use placement::Placement;
 
 use super::command::Command;
 use super::dock::MENU;
 use super::facts::Facts;
 use super::menu;
-use super::model::{Document, Edit, Mode};
+use super::model::{Document, Mode};
 use super::navigation;
 use super::spheres::Selected;
 use super::widgets::compact;
@@ -58,19 +58,16 @@ pub struct Handle<'a> {
 /// What the user does in a frame.
 #[derive(Default)]
 pub struct Touch {
-    /// The camera was moved.
+    /// The camera or a sphere was moved.
     pub is_move: bool,
-    /// The camera would have moved, but the stage traces no rays.
-    pub is_refused: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
     pub listed: Option<[u32; 2]>,
-    /// What a click has done, in words.
+    /// What a click has done, or why it does nothing, in words.
     pub said: Option<String>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
-    pub edit: Option<Edit>,
     /// The area of the viewport.
     pub room: Option<Rect>,
 }
@@ -100,7 +97,9 @@ impl Viewport {
             is_held = true;
         }
         if !is_held {
-            (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, live);
+            let (is_dragged, edit) = self.selection.handle(ui, &response, rect, selected, live);
+            (is_held, touch.is_move) = (is_dragged, edit.is_some());
+            edit.into_iter().for_each(|edit| facts.edit(edit));
         }
         if is_held {
             self.moving = Moving::default();
@@ -194,8 +193,8 @@ impl Viewport {
         let rect = self.placement.rect;
         let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         let Some(at) = at.filter(|_| response.clicked()) else { return };
-        if live.no_rays().is_some() {
-            touch.is_refused = true;
+        if let Some(reason) = live.no_rays() {
+            touch.said = Some(reason.to_owned());
             return;
         }
         let place = place_at(rect, at);

@@ -75,9 +75,9 @@ impl Moving {
                 moved = navigation::dolly(&moved, towards, (-f64::from(scroll) * DOLLY_PER_POINT).exp());
             }
         }
-        if document.no_rays().is_some() {
+        if let Some(reason) = document.no_rays() {
             self.pivot = None;
-            touch.is_refused |= moved != *camera;
+            touch.said = (moved != *camera).then(|| reason.to_owned());
         } else if moved != *camera {
             *camera = moved;
             touch.is_move = true;

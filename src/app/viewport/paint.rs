@@ -22,35 +22,23 @@ pub const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
 
-/// From this many screen pixels per pixel on, a grid parts the pixels.
-const GRID: f32 = 16.0;
-
 /// From an edge of the picture to the words in its corner, in points.
 const CORNER: f32 = 8.0;
 
 /// The pictures to draw.
 pub struct Pictures<'a> {
-    /// The picture or a layer of it, and the factor by which it is smaller.
-    pub main: Option<(&'a Texture, u32)>,
+    /// The picture or a layer of it, and whether it is always smooth: previews and pictures of another size are.
+    pub main: Option<(&'a Texture, bool)>,
     /// Whether there is a picture of the film.
     pub has_film: bool,
-    /// The second picture.
-    pub second: Option<SecondPicture<'a>>,
+    /// The picture at the other side of a wipe.
+    pub second: Option<(&'a Texture, bool)>,
     /// Paths to draw over the picture, if it is the traced one.
     pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
     pub titles: [String; 2],
-}
-
-/// The picture at the other side of a wipe.
-pub struct SecondPicture<'a> {
-    pub texture: &'a Texture,
-    /// The factor by which it is smaller than its full size.
-    pub divisor: u32,
-    /// Its full size is another than that of the first picture.
-    pub is_scaled: bool,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -64,35 +52,28 @@ pub(super) fn paint(
 ) {
     let painter = ui.painter().with_clip_rect(room);
     let times = placement.times;
-    let options = |divisor: u32, is_scaled: bool| {
-        // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
-        // are always smooth.
-        let is_exact = (times - 1.0).abs() < 1e-4;
-        let is_square = divisor == 1 && !is_scaled && (is_exact || times >= SQUARES);
-        if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
+    let id = |texture: &Texture, is_smooth: bool| {
+        // Smooth until pixels are large, except where each is one of the screen's.
+        let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
+        texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
     let Pictures { main, has_film, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
     let view = &facts.model.view;
-    if let Some((texture, divisor)) = main {
-        painter.image(texture.id(ui.ctx(), options(divisor, false)), rect, WHOLE, Color32::WHITE);
-        if times >= GRID && divisor == 1 {
-            paint_grid(&painter, rect, document.size());
-        }
+    if let Some((texture, is_smooth)) = main {
+        painter.image(id(texture, is_smooth), rect, WHOLE, Color32::WHITE);
         values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
     let [theirs, mine] = &titles;
     match (view.mode(), second) {
-        (Some(Mode::Wipe), Some(second)) => {
-            let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
-            wipe(ui, &painter, rect, divider, texture, [theirs, mine]);
+        (Some(Mode::Wipe), Some((texture, is_smooth))) => {
+            wipe(ui, &painter, rect, divider, id(texture, is_smooth), [theirs, mine]);
         }
         (Some(Mode::Difference), _) => {
-            let text = format!("Difference from {theirs}");
-            title(ui, &painter, corners, Align2::LEFT_TOP, &text);
+            title(ui, &painter, corners, Align2::LEFT_TOP, &format!("Difference from {theirs}"));
         }
         _ => {}
     }
@@ -153,24 +134,6 @@ fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     for (sign, along) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
         let place = Rect::from_center_size(knob + vec2(along, 0.0), vec2(10.0, 10.0));
         paint_sign(painter, place, sign, Color32::from_gray(30));
-    }
-}
-
-/// A line of 1 point between pixels.
-fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
-    let (clip, stroke) =
-        (rect.intersect(painter.clip_rect()), Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.5)));
-    for (count, axis) in [(width, 0), (height, 1)] {
-        for line in 1..count {
-            let at = rect.min[axis] + rect.size()[axis] * line as f32 / count as f32;
-            if clip.min[axis] < at && at < clip.max[axis] {
-                if axis == 0 {
-                    painter.vline(at, clip.y_range(), stroke)
-                } else {
-                    painter.hline(clip.x_range(), at, stroke)
-                };
-            }
-        }
     }
 }
 
