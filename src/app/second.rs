@@ -42,15 +42,11 @@ impl Second {
     }
 
     pub fn pause(&self) {
-        if let Some(tracer) = &self.tracer {
-            tracer.pause();
-        }
+        self.tracer.iter().for_each(Tracer::pause);
     }
 
     pub fn resume(&self) {
-        if let Some(tracer) = &self.tracer {
-            tracer.resume();
-        }
+        self.tracer.iter().for_each(Tracer::resume);
     }
 
     /// Takes the film if it has been read.

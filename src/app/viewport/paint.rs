@@ -143,12 +143,8 @@ pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str)
     plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
 }
 
-/// Words on a plate, readable on any picture and within the painter's area.
-pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
-    plate(ui, painter, at, anchor, text, f32::INFINITY);
-}
-
-fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
+/// Words on a plate, readable on any picture, within the painter's area, and cut to this width.
+pub(super) fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
     let font = TextStyle::Small.resolve(ui.style());
     let pad = vec2(0.65, 0.35) * font.size;
     let mut job = LayoutJob::simple_singleline(text.to_owned(), font, ui.visuals().strong_text_color());
