@@ -6,9 +6,9 @@ use super::menu::menus;
 use super::model::{Device, Document, Source, adapter};
 use super::stage_list;
 use super::theme;
-use super::widgets::{About, Sign, add_command, named, paint_sign, switch, tip, with_keys};
+use super::widgets::{About, add_command, named, switch, tip, with_keys};
 use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, RichText, Ui, ViewportCommand, vec2,
 };
 
 const HEIGHT: f32 = 48.0;
@@ -94,7 +94,7 @@ fn title_of(document: &Document) -> String {
 fn stage(ui: &mut Ui, facts: &Facts) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let width = ui.available_width() - 56.0;
-    step(ui, facts, Command::PreviousStage, Sign::Previous);
+    step(ui, facts, Command::PreviousStage, "‹");
     let document = facts.document();
     let title = match document.stage() {
         Some(stage) if width < 140.0 => stage.section.to_owned(),
@@ -102,17 +102,13 @@ fn stage(ui: &mut Ui, facts: &Facts) {
     };
     let changed = if document.is_changed() && width >= 140.0 { " · changed" } else { "" };
     // The title is cut before "changed" is.
-    let room_for_triangle = Atom::custom(egui::IdSalt::new("triangle"), vec2(12.0, 8.0));
-    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), room_for_triangle);
+    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), "⏷");
     let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
         ui.add(button)
     });
     let response = sized.inner;
-    let corner = response.rect.right_center() - vec2(14.0, 0.0);
-    let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
-    egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
     named(&response, "Choose a stage");
     if let Some(is_at_end) = stage_list::take_open(ui) {
         stage_list::begin(ui.ctx(), facts, is_at_end);
@@ -129,16 +125,13 @@ fn stage(ui: &mut Ui, facts: &Facts) {
         .show(|ui| stage_list::ui(ui, facts));
     let help = "All pictures of the book, to choose from; type to search";
     tip(ui, response, &with_keys(ui, help, Command::Stages), None);
-    step(ui, facts, Command::NextStage, Sign::Next);
+    step(ui, facts, Command::NextStage, "›");
 }
 
-fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: Sign) {
-    let button = Button::new("").min_size(vec2(24.0, 24.0));
-    let response = add_command(ui, facts, command, button);
-    let fade = if response.enabled() { 1.0 } else { ui.visuals().disabled_alpha };
-    let color = ui.style().interact(&response).text_color().gamma_multiply(fade);
-    paint_sign(ui.painter(), response.rect, sign, color);
-    named(&response, &command.name());
+fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: &str) {
+    let text = RichText::new(sign).size(18.0);
+    let button = Button::new((Atom::grow(), text, Atom::grow())).gap(0.0).min_size(vec2(24.0, 24.0));
+    named(&add_command(ui, facts, command, button), &command.name());
 }
 
 fn device(ui: &mut Ui, facts: &Facts) {

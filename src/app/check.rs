@@ -9,11 +9,11 @@ use super::stage_panel::paragraph;
 use super::texture::Texture;
 use super::theme;
 use super::viewport::paint;
-use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, small, switch, tip};
+use super::widgets::{About, Header, fold, hint, panel_line, primary, small, switch, tip};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align2, Color32, Label, Rect, RichText, Sense, Stroke, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
+    self, Align2, Color32, Label, Rect, RichText, Sense, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::path::{Path, PathBuf};
 
@@ -237,13 +237,8 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
         AnswerKind::CannotCheck => colours.bad,
     };
     ui.horizontal_top(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
-        if answer.kind == AnswerKind::Right {
-            let tick = [[-8.0, 0.0], [-2.0, 6.0], [8.0, -7.0]].map(|[x, y]| rect.center() + vec2(x, y));
-            ui.painter().line(tick.to_vec(), Stroke::new(2.5, color));
-        } else {
-            paint_sign(ui.painter(), rect, Sign::Alert, color);
-        }
+        let sign = if answer.kind == AnswerKind::Right { "✔" } else { "⚠" };
+        ui.label(RichText::new(sign).size(20.0).color(color));
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = 4.0;
             ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());

@@ -6,12 +6,14 @@ use super::kept::KeptActions;
 use super::menu::item;
 use super::model::{Dock, Model, ViewState, With};
 use super::tools::Tools;
-use super::widgets::{Sign, TABS, command_button, command_switch, hint, panel_line, sign_button, small, tip};
+use super::widgets::{
+    TABS, choice, command_button, command_switch, hint, panel_line, sign_button, small, tip,
+};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
-    self, Align, Align2, Color32, Frame, Label, Margin, Rect, RichText, Role, ScrollArea, Sense, Sides,
-    Stroke, StrokeKind, TextStyle, TextureHandle, Ui, Vec2, WidgetInfo, vec2,
+    self, Align, Atom, Frame, Image, Label, Layout, Margin, RichText, Role, ScrollArea, Sides, Ui, Vec2,
+    WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
@@ -21,7 +23,7 @@ const LOW: f32 = 200.0;
 
 /// A card: its picture, and its height with the name.
 const PICTURE: Vec2 = vec2(132.0, 74.0);
-const CARD: f32 = 94.0;
+const CARD: f32 = 102.0;
 
 /// Draws the dock.
 pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, facts: &Facts) {
@@ -71,7 +73,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
         }
     };
     let right = |ui: &mut Ui| {
-        let close = sign_button(ui, Sign::Close, 24.0, "Close dock");
+        let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
             facts.send(match dock {
                 Dock::Path if facts.has_paths => Command::ClearPaths,
@@ -130,14 +132,18 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
 
 fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     let Some(kept) = view.kept.get(place).cloned() else { return };
-    let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
-    let (picture, below) = rect.split_top_bottom_at_y(rect.top() + PICTURE.y);
-    let is_chosen = view.kept.chosen() == Some(place);
-    let title = view.kept.title(place);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
-    paint_card(ui, picture, place, kept.thumbnail(ui.ctx()), is_chosen);
-    let name = Label::new(RichText::new(kept.document.title()).small()).truncate();
-    ui.put(below.with_min_y(below.bottom() - 16.0), name.halign(Align::Min));
+    let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(place));
+    let layout = Layout::top_down(Align::Min);
+    let added = ui.allocate_ui_with_layout(vec2(PICTURE.x + 16.0, CARD), layout, |ui| {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        let picture = Image::new(kept.thumbnail(ui.ctx())).fit_to_exact_size(PICTURE);
+        let button = choice(ui, is_chosen, (Atom::grow(), picture, Atom::grow()));
+        let response = ui.add(button.min_size(PICTURE + vec2(16.0, 8.0)));
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
+        ui.add(Label::new(RichText::new(&title).small()).truncate());
+        response
+    });
+    let response = added.inner;
     if response.double_clicked() {
         view.look(Some(place));
     } else if response.clicked() {
@@ -146,10 +152,9 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
         view.kept.choose(place);
     }
     response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
-    let ([width, height], samples) = (kept.size(), kept.samples());
-    let memory = words(kept.bytes());
-    let help =
-        format!("{}, {samples} samples per pixel, {width} × {height}, {memory}", kept.document.title());
+    let ([width, height], samples, memory) = (kept.size(), kept.samples(), words(kept.bytes()));
+    let title = kept.document.title();
+    let help = format!("{title}, {samples} samples per pixel, {width} × {height}, {memory}");
     tip(ui, response, &help, None);
 }
 
@@ -162,31 +167,4 @@ fn choose(view: &mut ViewState, place: usize) {
         (None, _) if looked.is_some() => view.look(Some(place)),
         _ => {}
     }
-}
-
-fn paint_card(ui: &Ui, rect: Rect, place: usize, texture: &TextureHandle, is_chosen: bool) {
-    let colours = theme::colours(ui);
-    let painter = ui.painter();
-    let size = texture.size_vec2();
-    let scale = (rect.size() / size).min_elem();
-    painter.rect_filled(rect, 4, colours.surround);
-    let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-    painter.image(texture.id(), Rect::from_center_size(rect.center(), size * scale), whole, Color32::WHITE);
-    if is_chosen {
-        painter.rect_stroke(rect, 4, Stroke::new(2.0, colours.accent), StrokeKind::Outside);
-    }
-    let badge = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(18.0, 16.0));
-    painter.rect_filled(badge, 4, colours.panel.gamma_multiply(0.9));
-    let font = TextStyle::Small.resolve(ui.style());
-    painter.text(badge.center(), Align2::CENTER_CENTER, (place + 1).to_string(), font, colours.strong);
-}
-
-/// An entry of a legend.
-pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
-    let font = TextStyle::Small.resolve(ui.style());
-    let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().weak_text_color());
-    let (rect, response) = ui.allocate_exact_size(text.size() + vec2(16.0, 0.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-    ui.painter().rect_filled(Align2::LEFT_CENTER.align_size_within_rect(vec2(10.0, 10.0), rect), 2, colour);
-    ui.painter().galley(rect.min + vec2(16.0, 0.0), text, colour);
 }

@@ -3,7 +3,7 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::theme;
-use super::widgets::{Sign, command_button, primary, sign_button, tip};
+use super::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
 use eframe::egui::{self, Align, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
 
@@ -55,7 +55,7 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
                 ui.label(RichText::new(about).color(theme::colours(ui).weak));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let close = sign_button(ui, Sign::Close, 20.0, "Close first steps");
+                let close = sign_button(ui, "×", 20.0, "Close first steps");
                 if tip(ui, close, "Help > First steps brings this back", None).clicked() {
                     facts.send(Command::FirstSteps);
                 }

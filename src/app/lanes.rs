@@ -2,11 +2,10 @@
 //! tracer's.
 
 use super::answers::Answers;
-use super::dock::swatch;
 use super::facts::Facts;
 use super::model::{Device, Document, best_isa};
 use super::theme;
-use super::widgets::{hint, small};
+use super::widgets::{hint, small, swatch};
 use crate::backends::explain::{Activity, Timeline, timeline};
 use crate::render_cpu::PathRecorder;
 use crate::stages::Shading;

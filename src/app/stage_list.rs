@@ -3,13 +3,13 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::finder::Finder;
-use super::theme;
-use super::widgets::{caption, tip};
+use super::widgets::{caption, choice, tip};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
+use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    self, ColorImage, Context, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextStyle,
-    TextureHandle, Ui, WidgetInfo, vec2,
+    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Rect, Response,
+    RichText, TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
@@ -100,43 +100,20 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
 }
 
 fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool) -> Response {
-    let picture = match row {
-        Command::Stage(stage) => thumbnail(ui.ctx(), stage),
-        _ => None,
-    };
-    let height = if picture.is_some() { 52.0 } else { 28.0 };
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    let name = row.name();
-    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, &name));
-    if !ui.is_rect_visible(rect) {
-        return response;
-    }
-    let colours = theme::colours(ui);
-    let painter = ui.painter();
-    if is_chosen || response.hovered() {
-        painter.rect_filled(rect, 4, if is_chosen { colours.tint } else { colours.hovered });
-    }
-    if is_chosen {
-        painter.rect_stroke(rect, 4, Stroke::new(1.0, colours.accent), StrokeKind::Inside);
-    }
-    let [small, body] = [TextStyle::Small, TextStyle::Body].map(|style| style.resolve(ui.style()));
-    let text_at = |x: f32, y: f32| rect.left_center() + vec2(x, y);
-    match (row, picture) {
-        (Command::Stage(stage), Some(picture)) => {
-            let place = Rect::from_min_size(rect.left_top() + vec2(8.0, 6.0), PICTURE);
-            painter.image(
-                picture.id(),
-                place,
-                Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0)),
-                egui::Color32::WHITE,
-            );
-            let color = if is_chosen { colours.text } else { colours.weak };
-            let left = egui::Align2::LEFT_CENTER;
-            painter.text(text_at(92.0, -9.0), left, stage.section, small, color);
-            painter.text(text_at(92.0, 8.0), left, stage.title, body, colours.strong);
+    let button = match row {
+        Command::Stage(stage) if let Some(picture) = thumbnail(ui.ctx(), stage) => {
+            let mut words = LayoutJob::default();
+            let number = RichText::new(format!("{}\n", stage.section)).small().weak();
+            for text in [number, RichText::new(stage.title).strong()] {
+                text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);
+            }
+            let picture = Image::new((picture.id(), PICTURE));
+            choice(ui, is_chosen, (picture, words, Atom::grow())).min_size(vec2(ui.available_width(), 52.0))
         }
-        _ => _ = painter.text(text_at(8.0, 0.0), egui::Align2::LEFT_CENTER, name, body, colours.strong),
-    }
+        _ => choice(ui, is_chosen, (row.name(), Atom::grow())).min_size(vec2(ui.available_width(), 28.0)),
+    };
+    let response = ui.add(button.frame_when_inactive(is_chosen));
+    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, row.name()));
     tip(ui, response, row.help(), None)
 }
 

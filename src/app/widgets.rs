@@ -5,9 +5,9 @@ use super::facts::Facts;
 use super::theme;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
-    self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Key, Label, Layout, Painter, Pos2,
+    self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
     Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, Tooltip, Ui,
-    UiBuilder, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    UiBuilder, Vec2, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -201,9 +201,9 @@ pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
 }
 
 /// A button that is tinted while it is on.
-pub fn choice<'a>(ui: &Ui, is_on: bool, text: impl Into<WidgetText>) -> Button<'a> {
+pub fn choice<'a>(ui: &Ui, is_on: bool, content: impl IntoAtoms<'a>) -> Button<'a> {
     let stroke = if is_on { Stroke::new(1.0, theme::colours(ui).accent) } else { Stroke::NONE };
-    Button::new(text.into()).selected(is_on).stroke(stroke)
+    Button::new(content).selected(is_on).stroke(stroke)
 }
 
 /// Buttons of which one is on, side by side, each at least `width` wide. Returns the one that was clicked.
@@ -531,7 +531,7 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
         },
         |ui| {
             if let Some(name) = header.reset {
-                let response = sign_button(ui, Sign::Reset, 16.0, name);
+                let response = sign_button(ui, "↺", 16.0, name);
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
             if !is_open && !header.summary.is_empty() {
@@ -569,63 +569,22 @@ pub fn panel_line(ui: &mut Ui) {
     );
 }
 
-/// A sign that is painted, because the font doesn't have it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    Reset,
-    Close,
-    Previous,
-    Next,
-    Alert,
+/// A button without a frame that shows a sign of the font. `name` is for assistive technology.
+pub fn sign_button(ui: &mut Ui, sign: &str, size: f32, name: &str) -> Response {
+    let text = RichText::new(sign).size(0.75 * size);
+    let button = Button::new((Atom::grow(), text, Atom::grow())).frame_when_inactive(false).gap(0.0);
+    let added = ui.scope(|ui| {
+        ui.spacing_mut().button_padding = Vec2::ZERO;
+        ui.add_sized([size, size], button)
+    });
+    named(&added.inner, name);
+    added.inner
 }
 
-/// A button without a frame that shows a sign. `name` is for assistive technology.
-pub fn sign_button(ui: &mut Ui, sign: Sign, size: f32, name: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(size), Sense::click());
-    let enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, name));
-    let colours = theme::colours(ui);
-    if response.hovered() {
-        ui.painter().rect_filled(rect, 4, colours.hovered);
-    }
-    let color = match sign {
-        Sign::Reset => colours.accent,
-        _ if response.hovered() => colours.strong,
-        _ => colours.text,
-    };
-    paint_sign(ui.painter(), rect, sign, color);
-    response
-}
-
-/// Paints a sign of 16 points into the middle of `rect`.
-pub fn paint_sign(painter: &Painter, rect: Rect, sign: Sign, color: Color32) {
-    let middle = rect.center();
-    let at = |x: f32, y: f32| middle + vec2(x, y);
-    let stroke = Stroke::new(1.5, color);
-    let lines = |points: Vec<Pos2>| painter.line(points, stroke);
-    match sign {
-        Sign::Reset => {
-            // Counterclockwise round the right side, from the lower left to the arrowhead at the upper left.
-            let arc = (0..=24).map(|step| {
-                let (sine, cosine) = (150.0 - 12.5 * step as f32).to_radians().sin_cos();
-                at(5.0 * cosine, 5.0 * sine)
-            });
-            lines(arc.collect());
-            lines(vec![at(-5.0, -6.0), at(-5.0, -2.5), at(-1.5, -2.5)]);
-        }
-        Sign::Close => {
-            lines(vec![at(-4.0, -4.0), at(4.0, 4.0)]);
-            lines(vec![at(-4.0, 4.0), at(4.0, -4.0)]);
-        }
-        Sign::Previous => _ = lines(vec![at(2.0, -4.0), at(-2.0, 0.0), at(2.0, 4.0)]),
-        Sign::Next => _ = lines(vec![at(-2.0, -4.0), at(2.0, 0.0), at(-2.0, 4.0)]),
-        Sign::Alert => {
-            painter.circle_filled(middle, 8.0, color);
-            let ground = painter.ctx().global_style().visuals.panel_fill;
-            painter.line_segment([at(0.0, -4.5), at(0.0, 1.0)], Stroke::new(1.5, ground));
-            painter.circle_filled(at(0.0, 4.0), 1.0, ground);
-        }
-    }
+/// An entry of a legend.
+pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
+    ui.label(RichText::new("■").small().color(colour));
+    small(ui, name);
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{Path, Paths, is_ground, side};
 use crate::app::theme;
-use crate::app::widgets::{Sign, compact, hint, point_words, sign_button, small, tip};
+use crate::app::widgets::{compact, hint, point_words, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::scene::Scene;
 use eframe::egui::{
@@ -45,8 +45,8 @@ impl Paths {
                     |ui| {
                         let last = listed.paths.len() - 1;
                         for (sign, name, to) in [
-                            (Sign::Next, "Next path", (self.selected + 1).min(last)),
-                            (Sign::Previous, "Previous path", self.selected.saturating_sub(1)),
+                            ("›", "Next path", (self.selected + 1).min(last)),
+                            ("‹", "Previous path", self.selected.saturating_sub(1)),
                         ] {
                             let response = ui
                                 .add_enabled_ui(to != self.selected, |ui| sign_button(ui, sign, 24.0, name));

@@ -7,13 +7,12 @@ use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::app::widgets::{Sign, paint_sign};
 use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureId, TextureOptions,
-    Ui, pos2, vec2,
+    self, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, TextStyle, TextureId,
+    TextureOptions, Ui, pos2, vec2,
 };
 
 /// All of a texture.
@@ -131,10 +130,7 @@ fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
     let knob = pos2(x, rect.center().y);
     painter.circle(knob, 0.5 * HANDLE, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
-    for (sign, along) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
-        let place = Rect::from_center_size(knob + vec2(along, 0.0), vec2(10.0, 10.0));
-        paint_sign(painter, place, sign, Color32::from_gray(30));
-    }
+    painter.text(knob, Align2::CENTER_CENTER, "‹ ›", FontId::proportional(16.0), Color32::from_gray(30));
 }
 
 /// A title in a corner of the area, cut if it has no room.
