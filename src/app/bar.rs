@@ -8,7 +8,7 @@ use super::stage_list;
 use super::theme;
 use super::widgets::{About, add_command, named, switch, tip, with_keys};
 use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, RichText, Ui, ViewportCommand, vec2,
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
 };
 
 const HEIGHT: f32 = 48.0;
@@ -102,13 +102,17 @@ fn stage(ui: &mut Ui, facts: &Facts) {
     };
     let changed = if document.is_changed() && width >= 140.0 { " · changed" } else { "" };
     // The title is cut before "changed" is.
-    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), "⏷");
+    let room_for_triangle = Atom::custom(egui::IdSalt::new("triangle"), vec2(12.0, 8.0));
+    let atoms = (Atom::grow(), RichText::new(title).strong(), changed, Atom::grow(), room_for_triangle);
     let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
         ui.add(button)
     });
     let response = sized.inner;
+    let corner = response.rect.right_center() - vec2(14.0, 0.0);
+    let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
+    egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
     named(&response, "Choose a stage");
     if let Some(is_at_end) = stage_list::take_open(ui) {
         stage_list::begin(ui.ctx(), facts, is_at_end);

@@ -38,7 +38,7 @@ enum Side {
 pub struct Check {
     /// The picture that is checked or was checked last.
     path: Option<PathBuf>,
-    shown: Option<(Answer, Compared<Texture>)>,
+    pub shown: Option<(Answer, Compared<Texture>)>,
     /// Something is to be shown that was not there before.
     has_news: bool,
     side: Side,
@@ -83,11 +83,6 @@ impl Check {
         if std::mem::take(&mut self.has_news) {
             (remembered.has_info, remembered.tab) = (true, Tab::Check);
         }
-    }
-
-    /// The answer, once there is one.
-    pub fn answer(&self) -> Option<&Answer> {
-        self.shown.as_ref().map(|(answer, _)| answer)
     }
 
     /// What was checked, in words.
@@ -228,7 +223,7 @@ fn unreadable(path: &Path, reason: anyhow::Error) -> anyhow::Error {
     anyhow::anyhow!("{path} is neither a PNG nor a PPM; scene files end in .toml and films in .exr")
 }
 
-/// The verdict with its sign, and one sentence.
+/// The verdict, and one sentence.
 fn verdict(ui: &mut Ui, answer: &Answer) {
     let colours = theme::colours(ui);
     let color = match answer.kind {
@@ -236,16 +231,9 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
         AnswerKind::Mistake | AnswerKind::LikelyMistake | AnswerKind::Unknown => colours.warn,
         AnswerKind::CannotCheck => colours.bad,
     };
-    ui.horizontal_top(|ui| {
-        let sign = if answer.kind == AnswerKind::Right { "✔" } else { "⚠" };
-        ui.label(RichText::new(sign).size(20.0).color(color));
-        ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 4.0;
-            ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
-            let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
-            ui.add(Label::new(text).wrap());
-        });
-    });
+    ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
+    let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
+    ui.add(Label::new(text).wrap());
 }
 
 /// Buttons that lead to the section of the mistake, or on.
@@ -285,12 +273,12 @@ mod tests {
         check.begin(&context, &path, None);
         let mut remembered = Remembered::default();
         check.follow(&mut remembered);
-        assert!(check.is_open() && remembered.tab == Tab::Check && check.answer().is_none());
+        assert!(check.is_open() && remembered.tab == Tab::Check && check.shown.is_none());
         let checked = check.answers.wait().unwrap();
         check.answers.answer(&context).give(checked);
         check.follow(&mut remembered);
         assert!(remembered.recent.is_empty());
-        let answer = check.answer().unwrap();
+        let (answer, _) = check.shown.as_ref().unwrap();
         assert_eq!(answer.kind, AnswerKind::CannotCheck);
         assert!(answer.explanation.contains("neither a PNG nor a PPM"), "{}", answer.explanation);
     }
@@ -315,6 +303,6 @@ mod tests {
         let mut remembered = Remembered::default();
         check.follow(&mut remembered);
         assert_eq!(remembered.recent, [path]);
-        assert_eq!(check.answer().unwrap().stage, Some(stage));
+        assert_eq!(check.shown.unwrap().0.stage, Some(stage));
     }
 }

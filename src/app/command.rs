@@ -423,7 +423,7 @@ fn rows() -> Vec<Row> {
             let r = &mut w.model.remembered;
             (r.tab, r.has_panels, r.has_info) = (tab, true, true);
         }, key(Key::K),
-        off(|f| no_presentation(f).or_else(|| no_stage(f))),
+        off(no_presentation),
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
             let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
@@ -550,7 +550,7 @@ fn rows() -> Vec<Row> {
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row! {C::Kept(place), "", "Shows it instead of the picture",
             move |w, _| w.model.view.look(Some(place)), keys(Modifiers::ALT, digit),
-            off(move |f| not_kept(f, place)),
+            needs(move |f| f.model.view.kept.get(place).is_some(), "No picture is kept under this number"),
             unlisted()}
     }
     rows
@@ -570,15 +570,6 @@ fn has_spheres(facts: &Facts) -> bool {
 
 fn has_kept(facts: &Facts) -> bool {
     facts.model.view.kept.chosen().is_some()
-}
-
-fn no_stage(facts: &Facts) -> Option<String> {
-    facts.document().stage().is_none().then(|| "This picture is no stage of the book".to_owned())
-}
-
-fn not_kept(facts: &Facts, place: usize) -> Option<String> {
-    let is_kept = facts.model.view.kept.get(place).is_some();
-    (!is_kept).then(|| format!("Fewer than {} pictures are kept; M keeps this one", place + 1))
 }
 
 fn no_presentation(facts: &Facts) -> Option<String> {
@@ -640,7 +631,7 @@ impl Command {
     /// Carries it out, whether or not it is off.
     pub(super) fn run(self, window: &mut Window, context: &Context) {
         match self {
-            Command::Stage(stage) => window.show_stage(stage),
+            Command::Stage(stage) => window.show_origin(Origin::of_stage(stage)),
             Command::Extreme(case) => window.show_origin(Origin::of_case(case)),
             Command::Recent(place) => window.open_recent(context, place),
             Command::Bookmark(place) => {

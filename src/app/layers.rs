@@ -37,7 +37,7 @@ pub struct ShownLayer {
     /// 1, or the factor by which the layer is smaller than the picture.
     pub divisor: u32,
     layer: Layer,
-    image: LayerImage,
+    pub image: LayerImage,
 }
 
 /// The layer that is displayed.
@@ -63,11 +63,6 @@ impl Layers {
         let (image, at) = (&shown.image, [x / shown.divisor, y / shown.divisor]);
         let is_inside = at[0] < image.width && at[1] < image.height;
         is_inside.then(|| (shown.layer, image.mean(at)))
-    }
-
-    /// Samples per pixel of a full-size layer; 0 while there is none.
-    pub fn samples(&self, layer: Layer) -> u64 {
-        self.shown(layer).filter(|shown| shown.divisor == 1).map_or(0, |shown| shown.image.samples)
     }
 
     /// Starts to trace `layer` of the document and takes new results. Returns why the layer cannot be traced, once.
@@ -223,7 +218,8 @@ mod tests {
     /// Follows until the layer has all its samples.
     fn finish(layers: &mut Layers, layer: Layer, document: &Document) {
         let (begin, context) = (Instant::now(), Context::default());
-        while layers.samples(layer) < SAMPLES {
+        let is_full = |shown: &ShownLayer| shown.divisor == 1 && shown.image.samples == SAMPLES;
+        while !layers.shown(layer).is_some_and(is_full) {
             assert!(begin.elapsed() < Duration::from_secs(60), "it never came");
             std::thread::sleep(Duration::from_millis(1));
             layers.follow(&context, Some(layer), document, false);

@@ -5,7 +5,7 @@ use super::facts::Facts;
 use super::widgets::tip;
 use eframe::egui::accesskit::Toggled;
 use eframe::egui::containers::menu::SubMenuButton;
-use eframe::egui::{Align2, Atom, Button, FontId, IdSalt, Response, RichText, Ui, vec2};
+use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
 
 /// Width of the menus, points.
 pub const MENU_WIDTH: f32 = 248.0;
@@ -79,9 +79,9 @@ pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
         .inner
         .accessible_name(name.as_str());
     if facts.is_on(command) {
-        let (middle, color) =
-            (response.rect.left_center() + vec2(12.0, 0.0), ui.visuals().strong_text_color());
-        ui.painter().text(middle, Align2::CENTER_CENTER, "✔", FontId::proportional(11.0), color);
+        let middle = response.rect.left_center() + vec2(12.0, 0.0);
+        let tick = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
+        ui.painter().line(tick.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
     }
     name_state(&response, facts.switch(command));
     let path = facts.path(command).map(|path| path.display().to_string());

@@ -17,7 +17,6 @@ use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
 use crate::job::output::OutputFormat;
-use crate::stages::Stage;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -93,13 +92,9 @@ impl Window {
         self.tools.forget();
     }
 
-    pub(super) fn show_stage(&mut self, stage: &'static Stage) {
-        self.show_origin(Origin::of_stage(stage));
-    }
-
     pub(super) fn step_stage(&mut self, is_next: bool) {
         if let Some(stage) = self.facts().neighbour(is_next) {
-            self.show_stage(stage);
+            self.show_origin(Origin::of_stage(stage));
         }
     }
 

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Second {
     /// `None` until a second picture is needed.
     tracer: Option<Tracer>,
-    of: Option<(Other, Arc<Origin>)>,
+    pub of: Option<(Other, Arc<Origin>)>,
     /// The picture, if it was kept.
     picture: KeptPicture,
     /// Its film when it was last read.
@@ -28,16 +28,6 @@ impl Second {
         match &self.of {
             Some((Other::Kept(kept), _)) => self.picture.shown(kept),
             _ => self.tracer.as_ref().and_then(Tracer::shown),
-        }
-    }
-
-    /// Whether a picture of the current comparison is available.
-    pub fn has_picture(&self, document: &Document, view: &ViewState) -> bool {
-        match (view.compared(document), &self.of, self.shown()) {
-            (Some(wanted), Some((kept, origin)), Some(shown)) => {
-                wanted == *kept && Arc::ptr_eq(origin, &shown.document.origin)
-            }
-            _ => false,
         }
     }
 

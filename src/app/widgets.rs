@@ -531,7 +531,8 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
         },
         |ui| {
             if let Some(name) = header.reset {
-                let response = sign_button(ui, "↺", 16.0, name);
+                let response = ui.link(RichText::new("Reset").small());
+                named(&response, name);
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
             if !is_open && !header.summary.is_empty() {
@@ -583,7 +584,8 @@ pub fn sign_button(ui: &mut Ui, sign: &str, size: f32, name: &str) -> Response {
 
 /// An entry of a legend.
 pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
-    ui.label(RichText::new("■").small().color(colour));
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2, colour);
     small(ui, name);
 }
 

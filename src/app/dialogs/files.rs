@@ -15,7 +15,7 @@ use crate::progressive::{Phase, Status};
 use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
-use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
+use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -318,11 +318,7 @@ impl SaveBox {
 /// A label, and what follows it over the rest of the width, from the right to the left.
 fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let size = vec2(64.0, 24.0);
-        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_size(size);
-            ui.label(label);
-        });
+        ui.add_sized([64.0, 24.0], Label::new(label).halign(Align::Min));
         ui.with_layout(Layout::right_to_left(Align::Center), add).inner
     })
     .inner
