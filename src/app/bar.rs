@@ -3,10 +3,10 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::menu::menus;
-use super::model::{Device, Document, Source, adapter};
+use super::model::{Device, Document, Source};
 use super::stage_list;
 use super::theme;
-use super::widgets::{About, add_command, named, switch, tip, with_keys};
+use super::widgets::{add_command, command_switch, named, tip, with_keys};
 use eframe::egui::{
     self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
 };
@@ -63,8 +63,8 @@ fn actions(ui: &mut Ui, facts: &Facts) {
             let width = wanted.min(ui.available_width() - 8.0).max(96.0);
             let indent = window.center().x - 0.5 * width - ui.cursor().left();
             ui.add_space(indent.min(ui.available_width() - width).max(8.0));
-            ui.set_max_width(width);
-            stage(ui, facts);
+            let layout = Layout::left_to_right(Align::Center);
+            ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
         });
     });
 }
@@ -127,50 +127,26 @@ fn stage(ui: &mut Ui, facts: &Facts) {
         .align(egui::RectAlign::BOTTOM)
         .gap(4.0)
         .show(|ui| stage_list::ui(ui, facts));
-    let help = "All pictures of the book, to choose from; type to search";
-    tip(ui, response, &with_keys(ui, help, Command::Stages), None);
+    tip(ui, response, &with_keys(ui, Command::Stages.help(), Command::Stages), None);
     step(ui, facts, Command::NextStage, "›");
 }
 
 fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: &str) {
-    let text = RichText::new(sign).size(18.0);
-    let button = Button::new((Atom::grow(), text, Atom::grow())).gap(0.0).min_size(vec2(24.0, 24.0));
+    let atoms = (Atom::grow(), RichText::new(sign).strong(), Atom::grow());
+    let button = Button::new(atoms).gap(0.0).min_size(vec2(24.0, 24.0));
     named(&add_command(ui, facts, command, button), &command.name());
 }
 
 fn device(ui: &mut Ui, facts: &Facts) {
-    const DEVICES: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Both];
-    let described = DEVICES.map(|device| (device.unavailable(), device_help(device)));
-    let mut options = Vec::new();
-    for (device, (reason, help)) in DEVICES.into_iter().zip(&described) {
-        options.push((device, About::new(device.label(), help).disabled_if(reason.as_deref())));
-    }
-    if let Some(device) = switch(ui, DEVICE, facts.model.remembered.device, &options) {
-        facts.send(Command::Device(device));
-    }
-}
-
-fn device_help(device: Device) -> String {
-    match (device, adapter()) {
-        (Device::Gpu, Ok(adapter)) if adapter.is_software => format!(
-            "{} is no graphics card but a program on the processor, so it is slower than CPU",
-            adapter.name.split(" (").next().unwrap_or_default()
-        ),
-        _ => device.help().to_owned(),
-    }
+    let devices = [Device::Cpu, Device::Gpu, Device::Both];
+    command_switch(ui, facts, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
 }
 
 fn pause(ui: &mut Ui, facts: &Facts) {
-    let (label, help) = if facts.further().is_some() {
-        ("Go on", "Go on to half the error, which takes about four times as long")
-    } else if facts.model.is_paused {
-        ("Resume", "Go on where it stopped")
-    } else {
-        ("Pause", "Stop for now; no sample is lost")
+    let label = match facts.model.is_paused {
+        _ if facts.further().is_some() => "Go on",
+        true => "Resume",
+        false => "Pause",
     };
-    let reason = facts.disabled_reason(Command::Pause);
-    let response = ui.add_enabled(reason.is_none(), Button::new(label).min_size(vec2(PAUSE, 0.0)));
-    if tip(ui, response, &with_keys(ui, help, Command::Pause), reason.as_deref()).clicked() {
-        facts.send(Command::Pause);
-    }
+    add_command(ui, facts, Command::Pause, Button::new(label).min_size(vec2(PAUSE, 0.0)));
 }

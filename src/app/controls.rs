@@ -54,11 +54,12 @@ fn is_early(document: &Document) -> bool {
 }
 
 fn camera(ui: &mut Ui, document: &mut Document) {
-    let placed = |camera: &Camera| (camera.look_from, camera.look_at, camera.vup, camera.vfov_degrees);
-    let original = document.origin.recipe.camera;
-    let (is_changed, is_early) = (placed(&document.camera) != placed(&original), is_early(document));
-    let camera = &mut document.camera;
-    let header = Header { title: "Camera", reset: is_changed.then_some("Reset camera"), ..Header::default() };
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = *camera;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..original };
+    let reset = (*camera != home).then_some("Reset camera");
+    let header = Header { title: "Camera", reset, ..Header::default() };
     let is_reset = group(ui, header, |ui| {
         let help = "How wide the camera sees, from the lower to the upper edge, in degrees (vfov)";
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
@@ -69,8 +70,7 @@ fn camera(ui: &mut Ui, document: &mut Document) {
         fold(ui, header, false, |ui| position(ui, camera, is_early));
     });
     if is_reset {
-        let Camera { look_from, look_at, vup, vfov_degrees, .. } = original;
-        *camera = Camera { look_from, look_at, vup, vfov_degrees, ..*camera };
+        *camera = home;
     }
 }
 
@@ -87,17 +87,17 @@ fn position(ui: &mut Ui, camera: &mut Camera, is_early: bool) {
 }
 
 fn lens(ui: &mut Ui, document: &mut Document) {
-    let original = document.origin.recipe.camera;
-    let lens = |camera: &Camera| (camera.defocus_angle_degrees, camera.focus_distance);
-    let (is_changed, is_early) = (lens(&document.camera) != lens(&original), is_early(document));
-    let camera = &mut document.camera;
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = original;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..*camera };
     let summary = if camera.defocus_angle_degrees == 0.0 { "pinhole" } else { "" };
-    let reset = is_changed.then_some("Reset lens");
+    let reset = (*camera != home).then_some("Reset lens");
     let header = Header { title: "Lens", summary, reset, ..Header::default() };
-    let controls = |ui: &mut Ui| lens_controls(ui, camera, original.defocus_angle_degrees);
+    let controls = |ui: &mut Ui| lens_controls(ui, camera, defocus_angle_degrees);
     let is_reset = if is_early { fold(ui, header, false, controls) } else { group(ui, header, controls) };
     if is_reset {
-        (camera.defocus_angle_degrees, camera.focus_distance) = lens(&original);
+        *camera = home;
     }
 }
 

@@ -105,7 +105,7 @@ fn actions(ui: &mut Ui, facts: &Facts) {
     for (name, command) in ACTIONS[3..].iter().rev() {
         command_button(ui, facts, *command, name);
     }
-    command_switch(ui, facts, &ACTIONS[..3]);
+    command_switch(ui, facts, 0.0, &ACTIONS[..3]);
 }
 
 fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {

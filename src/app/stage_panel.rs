@@ -3,7 +3,9 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Document, With, partner};
-use super::widgets::{add_command, choice, command_button, command_switch, hint, primary, small, tip};
+use super::widgets::{
+    add_command, choice, command_button, command_switch, hint, primary, small, tip, with_keys,
+};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Button, Label, Link, RichText, Ui};
@@ -62,19 +64,14 @@ fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts) {
     let command = Command::ShowMe;
     let reason = facts.disabled_reason(command);
     ui.add_space(4.0);
-    let response = match () {
-        () if facts.has_sight => ui.button("Return"),
-        // The card of the first steps has the one button to press next.
-        () if facts.model.has_first_steps || reason.is_some() => {
-            ui.add_enabled(reason.is_none(), Button::new("Show me"))
-        }
-        () => primary(ui, "Show me"),
+    // The card of the first steps has the one button to press next.
+    let response = if facts.has_sight || facts.model.has_first_steps || reason.is_some() {
+        let label = if facts.has_sight { "Return" } else { "Show me" };
+        ui.add_enabled(reason.is_none(), Button::new(label))
+    } else {
+        primary(ui, "Show me")
     };
-    let help = match facts.has_sight {
-        true => "Goes back to how it was before Show me (Escape)",
-        false => "Shows you where to look: sets zoom, view or wipe; again returns (H)",
-    };
-    if tip(ui, response, help, reason.as_deref()).clicked() {
+    if tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref()).clicked() {
         facts.send(command);
     }
     if facts.has_sight {
@@ -96,7 +93,7 @@ fn compare_ui(ui: &mut Ui, facts: &Facts) {
     ui.add_space(-4.0);
     ui.add(Label::new(other).wrap());
     let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
-    command_switch(ui, facts, &[("Wipe", wipe), ("Difference", Command::Difference)]);
+    command_switch(ui, facts, 0.0, &[("Wipe", wipe), ("Difference", Command::Difference)]);
 }
 
 /// Text about a scene that is not a stage.

@@ -6,10 +6,12 @@ use super::kept::{FilmId, Query, Subject};
 use super::model::{Channel, Show, Tone, ViewState};
 use super::theme;
 use super::widgets::{
-    About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
+    About, Header, Number, add_command, compact, entry, fold, hint, list, row, small, switch, tip,
 };
 use crate::film::Histogram;
-use eframe::egui::{self, Align2, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    self, Align2, Checkbox, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
 use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
@@ -69,12 +71,8 @@ impl ToneUi {
                 }
             });
             let mut is_denoised = view.is_denoised;
-            let reason = facts.disabled_reason(Command::Denoise);
-            let (name, help) = (Command::Denoise.name(), Command::Denoise.help());
-            let about = About::new(&name, help);
-            if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
-                facts.send(Command::Denoise);
-            }
+            let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());
+            add_command(ui, facts, Command::Denoise, denoise);
             let reason = facts.no_exposure();
             brightness_ui(ui, &mut view.tone, reason.as_deref());
             match &self.histogram {

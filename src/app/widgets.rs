@@ -177,8 +177,8 @@ pub fn add_command(ui: &mut Ui, facts: &Facts, command: Command, control: impl W
     response
 }
 
-/// Buttons of commands, of which at most one is on.
-pub fn command_switch(ui: &mut Ui, facts: &Facts, named: &[(&str, Command)]) {
+/// Buttons of commands, of which at most one is on, each at least `width` wide.
+pub fn command_switch(ui: &mut Ui, facts: &Facts, width: f32, named: &[(&str, Command)]) {
     let words = |(_, command): &(&str, Command)| {
         (with_keys(ui, command.help(), *command), facts.disabled_reason(*command))
     };
@@ -187,7 +187,7 @@ pub fn command_switch(ui: &mut Ui, facts: &Facts, named: &[(&str, Command)]) {
         (Some(*command), About::new(name, help).disabled_if(reason.as_deref()))
     });
     let on = named.iter().map(|(_, command)| *command).find(|command| facts.is_on(*command));
-    if let Some(Some(command)) = switch(ui, 0.0, on, &options.collect::<Vec<_>>()) {
+    if let Some(Some(command)) = switch(ui, width, on, &options.collect::<Vec<_>>()) {
         facts.send(command);
     }
 }
@@ -471,7 +471,7 @@ pub fn point_words(point: DVec3) -> String {
 #[derive(Clone, Copy, Default)]
 pub struct Header<'a> {
     pub title: &'a str,
-    /// The group's values, shown while it is folded.
+    /// The group's values, shown while it is folded and as they were.
     pub summary: &'a str,
     /// The name of the button that resets the group, if something in it was changed.
     pub reset: Option<&'a str>,
@@ -535,7 +535,7 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
                 named(&response, name);
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
-            if !is_open && !header.summary.is_empty() {
+            if !is_open && !header.summary.is_empty() && header.reset.is_none() {
                 small(ui, header.summary);
             }
         },

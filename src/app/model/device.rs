@@ -81,7 +81,12 @@ impl Device {
     }
 
     pub fn help(self) -> &'static str {
-        self.words()[2]
+        match (self, adapter()) {
+            (Device::Gpu, Ok(adapter)) if adapter.is_software => {
+                "Trace with a program on the processor, since there is no graphics card; slower than CPU"
+            }
+            _ => self.words()[2],
+        }
     }
 
     /// The device of a backend.
