@@ -41,14 +41,14 @@ impl What {
     }
 }
 
-/// What a file is chosen for.
+/// What a file or a folder is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
-    /// To change name and folder in the dialog of saving.
-    Place(What),
+    /// The folder in which the dialog of saving saves.
+    Folder,
 }
 
 impl Purpose {
@@ -56,31 +56,20 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
-            Purpose::Place(_) => "Save",
+            Purpose::Folder => "Folder",
         }
     }
 
-    fn is_saving(self) -> bool {
-        matches!(self, Purpose::Place(_))
+    /// Opens the system's dialog, and blocks until it is closed.
+    fn choose(self, from: &Path) -> Option<PathBuf> {
+        let dialog = rfd::FileDialog::new().set_title(self.title()).set_directory(from);
+        let endings: &[&str] = match self {
+            Purpose::Open => &["png", "ppm", "exr", "toml"],
+            Purpose::Check => &["png", "ppm"],
+            Purpose::Folder => return dialog.pick_folder(),
+        };
+        dialog.add_filter(endings.join(", "), endings).pick_file()
     }
-
-    fn endings(self) -> Vec<&'static str> {
-        match self {
-            Purpose::Open => vec!["png", "ppm", "exr", "toml"],
-            Purpose::Check => vec!["png", "ppm"],
-            Purpose::Place(what) => vec![what.ending()],
-        }
-    }
-}
-
-/// The path with this ending, which is added if the name has another.
-fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
-    if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
-        return path;
-    }
-    let mut name = path.into_os_string();
-    name.push(format!(".{ending}"));
-    name.into()
 }
 
 /// The system's file dialog.
@@ -100,7 +89,7 @@ impl System {
         self.chosen.take()?.ok()
     }
 
-    /// Opens the dialog at a folder or a file, on a thread of its own, because it can block for any time.
+    /// Opens the dialog at a folder, on a thread of its own, because it can block for any time.
     pub fn ask(&mut self, context: &egui::Context, purpose: Purpose, from: PathBuf) {
         if self.chosen.is_open() {
             return;
@@ -111,19 +100,8 @@ impl System {
         }
         let choose = move || {
             let begin = Instant::now();
-            let (folder, name) = match from.file_name().filter(|_| !from.is_dir()) {
-                Some(name) => (from.parent().unwrap_or(&from), name.to_string_lossy().into_owned()),
-                None => (from.as_path(), String::new()),
-            };
             // The system shows nothing where there is no folder, such as the usual one before the first picture.
-            let folder = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(folder);
-            let endings = purpose.endings();
-            let dialog = rfd::FileDialog::new()
-                .set_title(purpose.title())
-                .add_filter(endings.join(", "), &endings)
-                .set_directory(folder);
-            let path =
-                if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
+            let path = purpose.choose(from.ancestors().find(|folder| folder.is_dir()).unwrap_or(&from));
             match path {
                 None if begin.elapsed() >= System::SEEN => drop(answer),
                 path => answer.give(Ok((purpose, from, path))),
@@ -202,7 +180,7 @@ enum Size {
 /// Name, folder, format and size of what is saved.
 pub struct SaveBox {
     name: String,
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
     what: What,
     size: Size,
     other: [u32; 2],
@@ -213,15 +191,15 @@ impl SaveBox {
         SaveBox { name: name.to_owned(), folder, what, size: Size::Seen, other: size }
     }
 
-    /// Takes name and folder from the system's dialog.
-    pub(super) fn place(&mut self, path: &Path) {
-        if let (Some(folder), Some(stem)) = (path.parent(), path.file_stem()) {
-            (self.folder, self.name) = (folder.to_owned(), stem.to_string_lossy().into_owned());
-        }
-    }
-
+    /// The path with the ending, which is added if the name has another.
     fn path(&self) -> PathBuf {
-        with_ending(self.folder.join(self.name.trim()), self.what.ending())
+        let (path, ending) = (self.folder.join(self.name.trim()), self.what.ending());
+        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
+            return path;
+        }
+        let mut name = path.into_os_string();
+        name.push(format!(".{ending}"));
+        name.into()
     }
 
     fn pixels(&self, size: Size, shown: &Document) -> [u32; 2] {
@@ -249,7 +227,7 @@ impl SaveBox {
         self.what = of_ending.map_or(self.what, |(what, ..)| what);
         labelled(ui, "Folder", |ui| {
             if system.is_there && ui.button("Change…").clicked() {
-                system.ask(ui.ctx(), Purpose::Place(self.what), self.path());
+                system.ask(ui.ctx(), Purpose::Folder, self.folder.clone());
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let folder = Label::new(self.folder.display().to_string()).truncate();

@@ -106,8 +106,8 @@ impl Dialogs {
     pub fn chosen(&mut self) -> Option<Outcome> {
         let (purpose, from, path) = self.system.chosen()?;
         match (purpose, path, &mut self.open) {
-            (Purpose::Place(_), Some(path), Some(Dialog::Save(save))) => save.place(&path),
-            (Purpose::Place(_), ..) => self.system.is_there = false,
+            (Purpose::Folder, Some(folder), Some(Dialog::Save(save))) => save.folder = folder,
+            (Purpose::Folder, ..) => self.system.is_there = false,
             (_, Some(path), _) => return Some(Outcome::Named(purpose, path)),
             (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }
