@@ -5,7 +5,7 @@ use crate::job::render::panic_text;
 use eframe::egui::Context;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
 /// Does work that may panic.
@@ -17,11 +17,8 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
         .map_err(|payload| format!("the program failed ({})", panic_text(payload.as_ref())))
 }
 
-/// An answer, or the end of a question.
-type Message<T> = Option<Result<T, String>>;
-
 /// The slot in which answers of one kind arrive.
-pub struct Answers<T>(Vec<Receiver<Message<T>>>);
+pub struct Answers<T>(Vec<Receiver<Result<T, String>>>);
 
 impl<T> Default for Answers<T> {
     fn default() -> Self {
@@ -34,7 +31,7 @@ impl<T: Send + 'static> Answers<T> {
     pub fn answer(&mut self, context: &Context) -> Answer<T> {
         let (sender, receiver) = channel();
         self.0.push(receiver);
-        Answer { sender, context: context.clone(), is_promised: Cell::new(false) }
+        Answer { sender: Some(sender), context: context.clone(), is_promised: Cell::new(false) }
     }
 
     /// Makes a handle that gives an answer from any thread. If it is dropped before, the answer is an error.
@@ -62,21 +59,21 @@ impl<T: Send + 'static> Answers<T> {
     /// Waits for the open questions, and returns the first answer.
     pub fn wait(&mut self) -> Option<Result<T, String>> {
         let waited: Vec<_> = self.0.drain(..).map(|receiver| receiver.recv()).collect();
-        waited.into_iter().flatten().flatten().next()
+        waited.into_iter().flatten().next()
     }
 
     /// The oldest answer that has not been taken yet.
     pub fn take(&mut self) -> Option<Result<T, String>> {
         let mut found = None;
         self.0.retain(|receiver| {
-            while found.is_none() {
-                match receiver.try_recv() {
-                    Ok(Some(answer)) => found = Some(answer),
-                    Ok(None) => return false,
-                    Err(_) => break,
+            found.is_some()
+                || match receiver.try_recv() {
+                    Ok(answer) => {
+                        found = Some(answer);
+                        true
+                    }
+                    Err(error) => error == TryRecvError::Empty,
                 }
-            }
-            true
         });
         found
     }
@@ -84,7 +81,8 @@ impl<T: Send + 'static> Answers<T> {
 
 /// The right to give an answer, which wakes the window.
 pub struct Answer<T> {
-    sender: Sender<Message<T>>,
+    /// Until it is dropped.
+    sender: Option<Sender<Result<T, String>>>,
     context: Context,
     /// An answer was promised and not yet given.
     is_promised: Cell<bool>,
@@ -100,13 +98,8 @@ impl<T> Answer<T> {
     pub fn give_one(&self, value: Result<T, String>) {
         self.is_promised.set(false);
         // If the window was closed, nobody receives it.
-        let _ = self.sender.send(Some(value));
+        let _ = self.sender.as_ref().map(|sender| sender.send(value));
         self.context.request_repaint();
-    }
-
-    /// Ends the question without an answer.
-    pub fn end(self) {
-        self.is_promised.set(false);
     }
 }
 
@@ -129,7 +122,8 @@ impl<T> Drop for Answer<T> {
                 if thread::panicking() { "the program failed" } else { "nothing has done it; try again" };
             self.give_one(Err(reason.to_owned()));
         }
-        let _ = self.sender.send(None);
+        // The question is over before the window looks.
+        drop(self.sender.take());
         self.context.request_repaint();
     }
 }
@@ -148,11 +142,8 @@ mod tests {
         let count = Arc::clone(&wakes);
         context.set_request_repaint_callback(move |_| _ = count.fetch_add(1, Ordering::Relaxed));
         type Action = fn(Answer<u32>);
-        let actions: [(&str, Action); 3] = [
-            ("given", |answer| answer.give(Ok(1))),
-            ("one of several", |answer| answer.give_one(Ok(2))),
-            ("none", |answer| answer.end()),
-        ];
+        let actions: [(&str, Action); 2] =
+            [("given", |answer| answer.give(Ok(1))), ("one of several", |answer| answer.give_one(Ok(2)))];
         for (name, act) in actions {
             // A frame that asks for no other one.
             for _ in 0..4 {

@@ -99,7 +99,7 @@ impl Place {
     /// `None` if another window has it, or nothing can be written.
     fn claim(directory: &Path) -> Option<Self> {
         fs::create_dir_all(directory).ok()?;
-        let path = directory.join("window.lock");
+        let path = lock_in(directory);
         let has_ended_early = path.exists();
         let lock = lock_path(&path, PATIENCE)
             .inspect_err(|error| log::info!("this window does not save its film by itself: {error}"))
@@ -122,10 +122,11 @@ impl Place {
     fn left(&self) -> PathBuf {
         self.directory.join("recovered.exr")
     }
+}
 
-    fn release(&self) {
-        let _ = fs::remove_file(self.directory.join("window.lock"));
-    }
+/// A window that ends in order removes it.
+fn lock_in(directory: &Path) -> PathBuf {
+    directory.join("window.lock")
 }
 
 pub struct Autosave {
@@ -137,6 +138,8 @@ pub struct Autosave {
     begun: Instant,
     outcomes: Answers<()>,
     has_failed: bool,
+    /// The film of the last window is read, and must not be replaced before.
+    pub is_restoring: bool,
 }
 
 impl Autosave {
@@ -150,6 +153,7 @@ impl Autosave {
             begun: Instant::now(),
             outcomes: Answers::default(),
             has_failed: false,
+            is_restoring: false,
         }
     }
 
@@ -198,36 +202,33 @@ impl Autosave {
     }
 
     /// Saves the film at the end of the window. Where it has no place of its own, a panic saves it elsewhere.
-    pub fn end(&mut self, model: &Model, tracing: &mut Tracing, is_restoring: bool) {
+    pub fn end(&mut self, model: &Model, tracing: &mut Tracing) {
         let _ = self.outcomes.wait();
         let is_panic = std::thread::panicking();
         let is_kept = self.place.is_some() || is_panic;
-        if is_kept && !is_restoring && tracing.main.has_samples(&model.document) {
+        if is_kept && !self.is_restoring && tracing.main.has_samples(&model.document) {
             let describe = describe(&model.document, tracing);
             if let Some(film) = tracing.main.take_film().filter(|film| film.sample_count() > 0) {
-                let description = describe(&film);
-                let place = self.place.as_ref();
-                let saved = place.and_then(|place| write(&place.film(), &film, &description).ok());
-                let words = format!("the picture's {} per pixel", counted(film.sample_count(), "sample"));
-                match (saved, place) {
-                    (Some(()), Some(place)) if is_panic => console::note(&format!(
-                        "{words} were saved; the next window offers them, or continue with --resume {}",
-                        place.film().display()
-                    )),
-                    (Some(()), _) => {}
-                    _ => {
-                        let name = &model.document.name();
-                        console::note(&saved::rescue(&[], name, &film, &description).map_or_else(
-                            |lost| lost,
-                            |path| format!("{words} were saved; continue with --resume {}", path.display()),
-                        ));
-                    }
-                }
+                self.save_last(&film, &describe(&film), &model.document.name());
             }
         }
         if let Some(place) = self.place.as_ref().filter(|_| !is_panic) {
-            place.release();
+            let _ = fs::remove_file(lock_in(&place.directory));
         }
+    }
+
+    fn save_last(&self, film: &Film, description: &Description, name: &str) {
+        let words = format!("the picture's {} per pixel were saved", counted(film.sample_count(), "sample"));
+        let is_saved = |place: &Place| write(&place.film(), film, description).is_ok();
+        if self.place.as_ref().is_some_and(is_saved) {
+            if std::thread::panicking() {
+                console::note(&format!("{words}; the next window offers them"));
+            }
+            return;
+        }
+        let continued = |path: PathBuf| format!("{words}; continue with --resume {}", path.display());
+        let outcome = saved::rescue(&[], name, film, description).map(continued);
+        console::note(&outcome.unwrap_or_else(|lost| lost));
     }
 }
 

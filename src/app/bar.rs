@@ -3,13 +3,12 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::menu::menus;
-use super::model::{Device, Document, Source, adapter};
+use super::model::{Device, Document, Source};
 use super::stage_list;
 use super::theme;
-use super::widgets::{About, Sign, add_command, named, paint_sign, switch, tip, with_keys};
+use super::widgets::{add_command, command_switch, named, tip, with_keys};
 use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, UiBuilder,
-    ViewportCommand, pos2, vec2,
+    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
 };
 
 const HEIGHT: f32 = 48.0;
@@ -20,49 +19,52 @@ const ONE_ROW: f32 = 780.0;
 /// Narrower windows show only the section of the stage, points.
 const WITH_TITLE: f32 = 1000.0;
 
+/// Widths of the stage, of a device, and of the button that pauses: "Resume", "Go on" and "Pause" have the same, so that
+/// nothing moves.
 const STAGE: f32 = 288.0;
 const DEVICE: f32 = 45.0;
-/// For "Resume", "Go on" and "Pause" alike, so that nothing moves.
 const PAUSE: f32 = 72.0;
-const SAVE: f32 = 61.0;
-
-/// Width of what stands at the right, points.
-const RIGHT: f32 = 3.0 * DEVICE + 24.0 + PAUSE + 8.0 + SAVE;
 
 /// Draws the bar.
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let has_one_row = ui.available_width() >= ONE_ROW;
     let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
     let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
     panel.show(ui, |ui| {
-        let room = ui.max_rect().with_max_x(ui.max_rect().right() - 8.0);
-        let row = |rect: Rect| UiBuilder::new().max_rect(rect).layout(Layout::left_to_right(Align::Center));
-        let first = Rect::from_min_size(room.min, vec2(room.width(), 24.0));
-        let menus = ui.scope_builder(row(first), |ui| {
-            egui::containers::menu::menu_style(ui.style_mut());
-            ui.spacing_mut().item_spacing.x = 0.0;
-            ui.spacing_mut().button_padding = vec2(8.0, 4.0);
-            menus(ui, facts, commands);
+        ui.horizontal(|ui| {
+            ui.scope(|ui| {
+                egui::containers::menu::menu_style(ui.style_mut());
+                ui.spacing_mut().item_spacing.x = 0.0;
+                ui.spacing_mut().button_padding = vec2(8.0, 4.0);
+                menus(ui, facts);
+            });
+            if has_one_row {
+                actions(ui, facts);
+            }
         });
-        let (row_rect, after_menus) = match has_one_row {
-            true => (first, menus.response.rect.right() + 16.0),
-            false => (first.translate(vec2(0.0, 32.0)), room.left() + 8.0),
-        };
-        let right = room.right() - RIGHT;
-        let most = right - 16.0 - after_menus;
-        let wanted = if ui.ctx().content_rect().width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
-        let width = wanted.min(most).max(96.0);
-        let middle = ui.ctx().content_rect().center().x - 0.5 * width;
-        let left = middle.min(right - 16.0 - width).max(after_menus);
-        let place = Rect::from_min_size(pos2(left, row_rect.top()), vec2(width, 24.0));
-        ui.scope_builder(row(place), |ui| stage(ui, facts, commands));
-        let place = Rect::from_min_max(pos2(right, row_rect.top()), pos2(room.right(), row_rect.bottom()));
-        ui.scope_builder(row(place), |ui| {
-            device(ui, facts, commands);
-            ui.add_space(16.0);
-            pause(ui, facts, commands);
-            let save = Button::new("Save…").min_size(vec2(SAVE, 0.0));
-            add_command(ui, facts, Command::Save, save, commands);
+        if !has_one_row {
+            ui.horizontal(|ui| actions(ui, facts));
+        }
+    });
+}
+
+/// The stage in the middle of the window; device, pause and save at the right.
+fn actions(ui: &mut Ui, facts: &Facts) {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        ui.add_space(8.0);
+        add_command(ui, facts, Command::Save, Button::new("Save…"));
+        pause(ui, facts);
+        ui.add_space(8.0);
+        device(ui, facts);
+        ui.add_space(8.0);
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let window = ui.ctx().content_rect();
+            let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
+            let width = wanted.min(ui.available_width() - 8.0).max(96.0);
+            let indent = window.center().x - 0.5 * width - ui.cursor().left();
+            ui.add_space(indent.min(ui.available_width() - width).max(8.0));
+            let layout = Layout::left_to_right(Align::Center);
+            ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
         });
     });
 }
@@ -89,10 +91,10 @@ fn title_of(document: &Document) -> String {
 }
 
 /// The stage between the arrows to its neighbours.
-fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage(ui: &mut Ui, facts: &Facts) {
     ui.spacing_mut().item_spacing.x = 4.0;
     let width = ui.available_width() - 56.0;
-    step(ui, facts, commands, Command::PreviousStage, Sign::Previous);
+    step(ui, facts, Command::PreviousStage, "‹");
     let document = facts.document();
     let title = match document.stage() {
         Some(stage) if width < 140.0 => stage.section.to_owned(),
@@ -124,54 +126,27 @@ fn stage(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         .width(stage_list::WIDTH)
         .align(egui::RectAlign::BOTTOM)
         .gap(4.0)
-        .show(|ui| stage_list::ui(ui, commands));
-    let help = "All pictures of the book, to choose from; type to search";
-    tip(ui, response, &with_keys(ui, help, Command::Stages), None);
-    step(ui, facts, commands, Command::NextStage, Sign::Next);
+        .show(|ui| stage_list::ui(ui, facts));
+    tip(ui, response, &with_keys(ui, Command::Stages.help(), Command::Stages), None);
+    step(ui, facts, Command::NextStage, "›");
 }
 
-fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, sign: Sign) {
-    let button = Button::new("").min_size(vec2(24.0, 24.0));
-    let response = add_command(ui, facts, command, button, commands);
-    let fade = if response.enabled() { 1.0 } else { ui.visuals().disabled_alpha };
-    let color = ui.style().interact(&response).text_color().gamma_multiply(fade);
-    paint_sign(ui.painter(), response.rect, sign, color);
-    named(&response, &command.name());
+fn step(ui: &mut Ui, facts: &Facts, command: Command, sign: &str) {
+    let atoms = (Atom::grow(), RichText::new(sign).strong(), Atom::grow());
+    let button = Button::new(atoms).gap(0.0).min_size(vec2(24.0, 24.0));
+    named(&add_command(ui, facts, command, button), &command.name());
 }
 
-fn device(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    const DEVICES: [Device; 3] = [Device::Cpu, Device::Gpu, Device::Both];
-    let described = DEVICES.map(|device| (device.unavailable(), device_help(device)));
-    let mut options = Vec::new();
-    for (device, (reason, help)) in DEVICES.into_iter().zip(&described) {
-        options.push((device, About::new(device.label(), help).disabled_if(reason.as_deref())));
-    }
-    if let Some(device) = switch(ui, DEVICE, facts.model.remembered.device, &options) {
-        commands.push(Command::Device(device));
-    }
+fn device(ui: &mut Ui, facts: &Facts) {
+    let devices = [Device::Cpu, Device::Gpu, Device::Both];
+    command_switch(ui, facts, DEVICE, &devices.map(|device| (device.label(), Command::Device(device))));
 }
 
-fn device_help(device: Device) -> String {
-    match (device, adapter()) {
-        (Device::Gpu, Ok(adapter)) if adapter.is_software => format!(
-            "{} is no graphics card but a program on the processor, so it is slower than CPU",
-            adapter.name.split(" (").next().unwrap_or_default()
-        ),
-        _ => device.help().to_owned(),
-    }
-}
-
-fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    let (label, help) = if facts.further().is_some() {
-        ("Go on", "Go on to half the error, which takes about four times as long")
-    } else if facts.model.is_paused {
-        ("Resume", "Go on where it stopped")
-    } else {
-        ("Pause", "Stop for now; no sample is lost")
+fn pause(ui: &mut Ui, facts: &Facts) {
+    let label = match facts.model.is_paused {
+        _ if facts.further().is_some() => "Go on",
+        true => "Resume",
+        false => "Pause",
     };
-    let reason = facts.disabled_reason(Command::Pause);
-    let response = ui.add_enabled(reason.is_none(), Button::new(label).min_size(vec2(PAUSE, 0.0)));
-    if tip(ui, response, &with_keys(ui, help, Command::Pause), reason.as_deref()).clicked() {
-        commands.push(Command::Pause);
-    }
+    add_command(ui, facts, Command::Pause, Button::new(label).min_size(vec2(PAUSE, 0.0)));
 }

@@ -2,6 +2,7 @@
 
 use super::model::Document;
 use eframe::egui::Context;
+use eframe::egui::util::undoer::{Settings, Undoer};
 use std::time::{Duration, Instant};
 
 /// After this long without a move the picture is rendered at its full size.
@@ -12,68 +13,46 @@ const STEPS: usize = 100;
 
 /// The history of the document.
 pub struct Changes {
-    /// The document before each change, oldest first.
-    undo: Vec<Document>,
-    redo: Vec<Document>,
-    last: Document,
+    /// The document at the end of each change or gesture.
+    history: Undoer<Document>,
+    /// The document of the frame before.
+    pub last: Document,
     moved: Option<Instant>,
     /// A move was noted in this frame, however long the frame takes.
     has_moved: bool,
     /// Something is being moved, or a button of the mouse is held.
-    is_in_gesture: bool,
-    /// The step to undo has been added for the present gesture.
-    has_step: bool,
-    /// The document was changed by undo or redo, which is not a new undo step.
-    is_undoing: bool,
+    pub is_in_gesture: bool,
 }
 
 impl Changes {
     /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
-        Changes {
-            undo: Vec::new(),
-            redo: Vec::new(),
-            last: document,
-            moved: None,
-            has_moved: false,
-            is_in_gesture: false,
-            has_step: false,
-            is_undoing: false,
-        }
-    }
-
-    /// The document of the frame before.
-    pub fn last(&self) -> &Document {
-        &self.last
+        // A step ends with its gesture, not after some time.
+        let never = f32::INFINITY;
+        let settings = Settings { max_undos: STEPS, stable_time: never, auto_save_interval: never };
+        let mut history = Undoer::with_settings(settings);
+        history.add_undo(&document);
+        Changes { history, last: document, moved: None, has_moved: false, is_in_gesture: false }
     }
 
     /// What [`Changes::undo`] brings back.
-    pub fn earlier(&self, document: &Document) -> Option<&Document> {
-        self.undo.iter().rev().find(|earlier| *earlier != document)
+    pub fn earlier(&self, document: &Document) -> Option<Document> {
+        self.history.clone().undo(document).cloned()
     }
 
     /// What [`Changes::redo`] brings back.
-    pub fn later(&self) -> Option<&Document> {
-        self.redo.last()
+    pub fn later(&self, document: &Document) -> Option<Document> {
+        self.history.clone().redo(document).cloned()
     }
 
-    /// Undoes the last change. One that came to nothing, such as a drag back, is skipped.
+    /// Undoes the last change.
     pub fn undo(&mut self, document: &mut Document) {
-        while let Some(earlier) = self.undo.pop() {
-            if earlier != *document {
-                self.redo.push(restore(document, earlier));
-                self.is_undoing = true;
-                break;
-            }
-        }
+        self.history.undo(document).cloned().into_iter().for_each(|earlier| restore(document, earlier));
     }
 
     /// Redoes the change that was undone last.
     pub fn redo(&mut self, document: &mut Document) {
-        if let Some(later) = self.redo.pop() {
-            self.undo.push(restore(document, later));
-            self.is_undoing = true;
-        }
+        self.history.redo(document).cloned().into_iter().for_each(|later| restore(document, later));
     }
 
     /// Notes a change by hand, which is previewed first.
@@ -84,13 +63,8 @@ impl Changes {
 
     /// Ends the move. The changes of a command are not part of it.
     pub fn end_move(&mut self) {
-        self.moved = None;
-        (self.has_moved, self.is_in_gesture, self.has_step) = (false, false, false);
-    }
-
-    /// Whether something is being moved, or a button of the mouse is held.
-    pub fn is_in_gesture(&self) -> bool {
-        self.is_in_gesture
+        self.history.add_undo(&self.last);
+        (self.moved, self.has_moved, self.is_in_gesture) = (None, false, false);
     }
 
     /// Whether something is being moved.
@@ -98,50 +72,30 @@ impl Changes {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
     }
 
-    /// Accepts a replaced document without treating it as a change of the film.
-    pub fn adopt(&mut self, document: &Document) {
-        self.last = document.clone();
-    }
-
     /// Notes what has changed in this frame. Returns whether the document now needs a different film.
     pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
         let is_other_film = !document.has_same_film(&self.last);
-        let before = std::mem::replace(&mut self.last, document.clone());
-        if *document != before {
-            // Undo returns to the state before a change, or before a whole gesture.
-            if !self.has_step && !self.is_undoing {
-                self.add(before);
-            }
-            self.has_step = true;
-            if is_other_film && is_by_hand {
-                self.note_move();
-            }
+        if *document != self.last && is_other_film && is_by_hand {
+            self.note_move();
         }
-        self.is_undoing = false;
+        self.last = document.clone();
         self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
-        self.has_step &= self.is_in_gesture;
-        is_other_film
-    }
-
-    fn add(&mut self, before: Document) {
-        self.redo.clear();
-        self.undo.push(before);
-        if self.undo.len() > STEPS {
-            self.undo.remove(0);
+        self.history.feed_state(0.0, document);
+        if !self.is_in_gesture {
+            self.history.add_undo(document);
         }
+        is_other_film
     }
 }
 
-/// Replaces `document` by its state before or after a change, and returns it. A size that follows the viewport or the book
-/// stays.
-fn restore(document: &mut Document, state: Document) -> Document {
+/// Replaces `document` by another state of it. A size that follows the viewport or the book stays.
+fn restore(document: &mut Document, state: Document) {
     let before = std::mem::replace(document, state);
     let follows = !before.has_own_size && !document.has_own_size;
     if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
         document.set_size(before.size());
     }
-    before
 }
 
 #[cfg(test)]
@@ -186,19 +140,19 @@ mod tests {
             })
             .collect();
         let last = document.camera;
-        assert!(changes.earlier(&document).is_some() && changes.later().is_none());
+        assert!(changes.earlier(&document).is_some() && changes.later(&document).is_none());
         for camera in cameras.into_iter().rev() {
             changes.undo(&mut document);
             assert_eq!(document.camera, camera);
             assert!(changes.follow(&context, &document));
         }
-        assert!(changes.earlier(&document).is_none() && changes.later().is_some());
+        assert!(changes.earlier(&document).is_none() && changes.later(&document).is_some());
         for _ in 0..3 {
             changes.redo(&mut document);
             changes.follow(&context, &document);
         }
         assert_eq!(document.camera, last);
-        assert!(changes.later().is_none());
+        assert!(changes.later(&document).is_none());
     }
 
     #[test]

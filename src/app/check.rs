@@ -2,17 +2,18 @@
 
 use super::answers::Answers;
 use super::command::Command;
+use super::facts::Facts;
+use super::model::{Remembered, Tab};
 use super::right::scrolling;
 use super::stage_panel::paragraph;
 use super::texture::Texture;
 use super::theme;
 use super::viewport::paint;
-use super::widgets::{About, Header, Sign, fold, hint, paint_sign, panel_line, primary, small, switch, tip};
+use super::widgets::{About, Header, fold, hint, panel_line, primary, small, switch, tip};
 use crate::pictures::check::{Answer, AnswerKind, Damage, Mine, judge, pictures};
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align2, Color32, Label, Pos2, Rect, RichText, Sense, Stroke, TextureOptions, Ui, WidgetInfo, pos2,
-    vec2,
+    self, Align2, Color32, Label, Rect, RichText, Sense, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
 };
 use std::path::{Path, PathBuf};
 
@@ -37,7 +38,7 @@ enum Side {
 pub struct Check {
     /// The picture that is checked or was checked last.
     path: Option<PathBuf>,
-    shown: Option<(Answer, Compared<Texture>)>,
+    pub shown: Option<(Answer, Compared<Texture>)>,
     /// Something is to be shown that was not there before.
     has_news: bool,
     side: Side,
@@ -65,27 +66,23 @@ impl Check {
         (self.side, self.divider) = (Side::Wipe, 0.5);
     }
 
-    /// Takes answers. Returns the picture that was checked, if it could be compared.
-    pub fn follow(&mut self) -> Option<PathBuf> {
-        let failed = |reason| (Answer::cannot_check(&anyhow::Error::msg(reason)), None);
-        let (answer, rgb8) = self.answers.take()?.unwrap_or_else(failed);
-        let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
-            (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
-        };
-        let path = rgb8.as_ref().and(self.path.clone());
-        self.shown = Some((answer, rgb8.map(textures)));
-        self.has_news = true;
-        path
-    }
-
-    /// Whether a check has begun or ended since this was asked.
-    pub fn take_news(&mut self) -> bool {
-        std::mem::take(&mut self.has_news)
-    }
-
-    /// The answer, once there is one.
-    pub fn answer(&self) -> Option<&Answer> {
-        self.shown.as_ref().map(|(answer, _)| answer)
+    /// Takes the answer, and opens its tab when there is something new in it.
+    pub fn follow(&mut self, remembered: &mut Remembered) {
+        if let Some(outcome) = self.answers.take() {
+            let failed = |reason| (Answer::cannot_check(&anyhow::Error::msg(reason)), None);
+            let (answer, rgb8) = outcome.unwrap_or_else(failed);
+            if let Some(path) = rgb8.as_ref().and(self.path.as_ref()) {
+                remembered.note_recent(path);
+            }
+            let textures = |(size, views): ([u32; 2], [Vec<u8>; 3])| {
+                (size, views.map(|rgb8| Texture::new(size, &rgb8, None)))
+            };
+            self.shown = Some((answer, rgb8.map(textures)));
+            self.has_news = true;
+        }
+        if std::mem::take(&mut self.has_news) {
+            (remembered.has_info, remembered.tab) = (true, Tab::Check);
+        }
     }
 
     /// What was checked, in words.
@@ -112,7 +109,7 @@ impl Check {
     }
 
     /// Draws the answer, or that it is awaited.
-    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) {
         let name = self.name();
         let Some((answer, pictures)) = &self.shown else {
             scrolling(ui, |ui| {
@@ -132,7 +129,7 @@ impl Check {
                 ui.set_height(32.0);
                 is_again = ui.button("Check again").clicked();
                 if ui.button("Another picture…").clicked() {
-                    commands.push(Command::CheckPicture);
+                    facts.send(Command::CheckPicture);
                 }
             });
         });
@@ -149,7 +146,7 @@ impl Check {
             for Damage { title, remedy } in &answer.damages {
                 paragraph(ui, "The file, too", &format!("{title}: {remedy}."));
             }
-            links(ui, answer, commands);
+            links(ui, answer, facts);
             if pictures.is_some() {
                 ui.add_space(4.0);
                 small(ui, "Compare");
@@ -176,50 +173,39 @@ impl Check {
 
     /// Draws the two pictures in the middle of the window, in place of the traced one, if there are any. Returns the room.
     pub fn picture(&mut self, ui: &mut Ui) -> Option<Rect> {
-        let name = self.name();
-        let (answer, pictures) = self.shown.as_mut()?;
-        let (size, [yours, ours, difference]) = pictures.as_mut()?;
+        let (answer, pictures) = self.shown.as_ref()?;
+        let (size, [yours, ours, difference]) = pictures.as_ref()?;
         let room = ui.available_rect_before_wrap();
-        ui.painter().rect_filled(room, 0, theme::colours(ui).surround);
-        let size = size.map(|pixels| pixels as f32);
-        let scale = ((room.width() - 16.0) / size[0]).min((room.height() - 16.0) / size[1]).max(0.0);
-        let rect = Rect::from_center_size(room.center(), vec2(size[0], size[1]) * scale);
+        let size = vec2(size[0] as f32, size[1] as f32);
+        let scale = ((room.size() - Vec2::splat(16.0)) / size).min_elem().max(0.0);
+        let rect = Rect::from_center_size(room.center(), size * scale);
         let response = ui.allocate_rect(room, Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Your picture and ours"));
-        let image = |texture: &mut Texture, clip: Rect| {
-            let options = if scale < 4.0 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
-            let id = texture.id(ui.ctx(), options);
-            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            ui.painter().with_clip_rect(clip).image(id, rect, whole, Color32::WHITE);
+        let painter = ui.painter().with_clip_rect(room);
+        painter.rect_filled(room, 0, theme::colours(ui).surround);
+        let options = if scale < 4.0 { TextureOptions::LINEAR } else { TextureOptions::NEAREST };
+        let whole = match self.side {
+            Side::Yours => yours,
+            Side::Wipe | Side::Ours => ours,
+            Side::Difference => difference,
         };
-        let yours_is = format!("Yours: {name}");
-        let ours_is = answer
-            .stage
-            .map_or("Ours".to_owned(), |stage| format!("Ours: {} {}", stage.section, stage.title));
-        let label = |rect: Rect, corner: Align2, text: &String| {
-            paint::title(ui, ui.painter(), rect, corner, text);
+        painter.image(whole.id(ui.ctx(), options), rect, paint::WHOLE, Color32::WHITE);
+        let your_title = format!("Yours: {}", self.name());
+        let our_title = match answer.stage {
+            Some(stage) => format!("Ours: {} {}", stage.section, stage.title),
+            None => "Ours".to_owned(),
         };
         match self.side {
             Side::Wipe => {
                 if let Some(pointer) = response.interact_pointer_pos() {
                     self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
                 }
-                let x = rect.left() + self.divider * rect.width();
-                image(yours, rect.with_max_x(x));
-                image(ours, rect.with_min_x(x));
-                paint::divider(ui.painter(), rect, x);
-                label(rect.with_max_x(x), Align2::LEFT_TOP, &yours_is);
-                label(rect.with_min_x(x), Align2::RIGHT_TOP, &ours_is);
+                let left = yours.id(ui.ctx(), options);
+                paint::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
-            Side::Yours => {
-                image(yours, rect);
-                label(rect, Align2::LEFT_TOP, &yours_is);
-            }
-            Side::Ours => {
-                image(ours, rect);
-                label(rect, Align2::RIGHT_TOP, &ours_is);
-            }
-            Side::Difference => image(difference, rect),
+            Side::Yours => paint::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
+            Side::Ours => paint::title(ui, &painter, rect, Align2::RIGHT_TOP, &our_title),
+            Side::Difference => {}
         }
         Some(room)
     }
@@ -237,7 +223,7 @@ fn unreadable(path: &Path, reason: anyhow::Error) -> anyhow::Error {
     anyhow::anyhow!("{path} is neither a PNG nor a PPM; scene files end in .toml and films in .exr")
 }
 
-/// The verdict with its sign, and one sentence.
+/// The verdict, and one sentence.
 fn verdict(ui: &mut Ui, answer: &Answer) {
     let colours = theme::colours(ui);
     let color = match answer.kind {
@@ -245,38 +231,26 @@ fn verdict(ui: &mut Ui, answer: &Answer) {
         AnswerKind::Mistake | AnswerKind::LikelyMistake | AnswerKind::Unknown => colours.warn,
         AnswerKind::CannotCheck => colours.bad,
     };
-    ui.horizontal_top(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(24.0, 24.0), Sense::hover());
-        if answer.kind == AnswerKind::Right {
-            let tick = [[-8.0, 0.0], [-2.0, 6.0], [8.0, -7.0]].map(|[x, y]| rect.center() + vec2(x, y));
-            ui.painter().line(tick.to_vec(), Stroke::new(2.5, color));
-        } else {
-            paint_sign(ui.painter(), rect, Sign::Alert, color);
-        }
-        ui.vertical(|ui| {
-            ui.spacing_mut().item_spacing.y = 4.0;
-            ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
-            let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
-            ui.add(Label::new(text).wrap());
-        });
-    });
+    ui.add(Label::new(RichText::new(&answer.title).heading().color(color)).wrap());
+    let text = RichText::new(format!("{}.", answer.explanation)).line_height(Some(20.0));
+    ui.add(Label::new(text).wrap());
 }
 
 /// Buttons that lead to the section of the mistake, or on.
-fn links(ui: &mut Ui, answer: &Answer, commands: &mut Vec<Command>) {
+fn links(ui: &mut Ui, answer: &Answer, facts: &Facts) {
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
         if let Some(next) = next
             && primary(ui, format!("Next: {}", next.section)).clicked()
         {
-            commands.push(Command::Stage(next));
+            facts.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
             let go = primary(ui, format!("Go to {}", stage.section));
             if tip(ui, go, stage.title, None).clicked() {
-                commands.push(Command::Stage(stage));
+                facts.send(Command::Stage(stage));
             }
             let read = ui.button(format!("Read {} in the book", section.number));
             if tip(ui, read, &section.url, None).clicked() {
@@ -297,11 +271,14 @@ mod tests {
         std::fs::write(&path, "no picture").unwrap();
         let (context, mut check) = (egui::Context::default(), Check::default());
         check.begin(&context, &path, None);
-        assert!(check.is_open() && check.take_news() && check.answer().is_none());
+        let mut remembered = Remembered::default();
+        check.follow(&mut remembered);
+        assert!(check.is_open() && remembered.tab == Tab::Check && check.shown.is_none());
         let checked = check.answers.wait().unwrap();
         check.answers.answer(&context).give(checked);
-        assert_eq!(check.follow(), None);
-        let answer = check.answer().unwrap();
+        check.follow(&mut remembered);
+        assert!(remembered.recent.is_empty());
+        let (answer, _) = check.shown.as_ref().unwrap();
         assert_eq!(answer.kind, AnswerKind::CannotCheck);
         assert!(answer.explanation.contains("neither a PNG nor a PPM"), "{}", answer.explanation);
     }
@@ -323,7 +300,9 @@ mod tests {
         let (size, views) = checked.as_ref().unwrap().1.as_ref().unwrap();
         assert!(*size == [16, 9] && views[0] == rgb8, "the first picture is the reader's");
         check.answers.answer(&context).give(checked);
-        assert_eq!(check.follow(), Some(path));
-        assert_eq!(check.answer().unwrap().stage, Some(stage));
+        let mut remembered = Remembered::default();
+        check.follow(&mut remembered);
+        assert_eq!(remembered.recent, [path]);
+        assert_eq!(check.shown.unwrap().0.stage, Some(stage));
     }
 }

@@ -4,14 +4,15 @@ use super::dialogs::{Dialog, Keys, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Theme, Tone, With};
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Tone, With};
 use super::spheres::neighbour;
-use super::theme;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::{BOOK_URL, Stage};
-use eframe::egui::{Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ViewportCommand};
+use eframe::egui::{
+    Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ThemePreference, ViewportCommand,
+};
 use std::sync::LazyLock;
 
 /// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
@@ -49,7 +50,7 @@ pub enum Command {
     Panels,
     Present,
     FullScreen,
-    Theme(Theme),
+    Theme(ThemePreference),
     Pause,
     Restart,
     SwitchDevice,
@@ -336,10 +337,13 @@ fn rows() -> Vec<Row> {
         |w, c| w.fill_screen(c, !w.model.is_full_screen),
         key(Key::F11), on(|f| f.model.is_full_screen)}
     menu = Some(Menu::Theme);
-    for theme in Theme::ALL {
-        let [name, help, synonyms] = theme.words();
-        row! {C::Theme(theme), name, help, 
-            move |w, c| (w.model.remembered.theme, _) = (theme, theme::choose(c, theme)),
+    for (theme, name, help, synonyms) in [
+        (ThemePreference::System, "As the system", "Follows the system", "theme"),
+        (ThemePreference::Dark, "Dark", "Light text on dark panels", "theme night"),
+        (ThemePreference::Light, "Light", "Dark text on light panels", "theme bright"),
+    ] {
+        row! {C::Theme(theme), name, help,
+            move |w, c| (w.model.remembered.theme, _) = (theme, c.set_theme(theme)),
             on(move |f| f.model.remembered.theme == theme), also(synonyms)}
     }
 
@@ -405,7 +409,7 @@ fn rows() -> Vec<Row> {
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision")}
     row! {C::ListPaths, "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
-        |w, c| w.list_paths(c), key(Key::T), line(),
+        |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if f.model.view.kept.looked().is_some() =>
@@ -419,11 +423,11 @@ fn rows() -> Vec<Row> {
             let r = &mut w.model.remembered;
             (r.tab, r.has_panels, r.has_info) = (tab, true, true);
         }, key(Key::K),
-        off(|f| no_presentation(f).or_else(|| no_stage(f))),
+        off(no_presentation),
         on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
     row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
             let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
-            w.open_or_tell(c, url);
+            w.open_url(c, url);
         },
         also("web section")}
     row! {C::Companion, "Read in the companion",
@@ -483,6 +487,7 @@ fn rows() -> Vec<Row> {
         needs(has_selection, NO_SPHERE), also("sharp depth of field")}
     row! {C::Flip, "Flip between the two", "Shows the traced picture and the kept one in turn",
         |w, _| w.model.view.flip(), key(Key::J), needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.kept.looked().is_some()),
         also("kept slot compare blink")}
     row! {C::KeptWipe, "Wipe with the kept picture", "Drag a divider between it and the picture",
         |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
@@ -545,7 +550,7 @@ fn rows() -> Vec<Row> {
     for (place, digit) in DIGITS.into_iter().enumerate() {
         row! {C::Kept(place), "", "Shows it instead of the picture",
             move |w, _| w.model.view.look(Some(place)), keys(Modifiers::ALT, digit),
-            off(move |f| not_kept(f, place)),
+            needs(move |f| f.model.view.kept.get(place).is_some(), "No picture is kept under this number"),
             unlisted()}
     }
     rows
@@ -565,15 +570,6 @@ fn has_spheres(facts: &Facts) -> bool {
 
 fn has_kept(facts: &Facts) -> bool {
     facts.model.view.kept.chosen().is_some()
-}
-
-fn no_stage(facts: &Facts) -> Option<String> {
-    facts.document().stage().is_none().then(|| "This picture is no stage of the book".to_owned())
-}
-
-fn not_kept(facts: &Facts, place: usize) -> Option<String> {
-    let is_kept = facts.model.view.kept.get(place).is_some();
-    (!is_kept).then(|| format!("Fewer than {} pictures are kept; M keeps this one", place + 1))
 }
 
 fn no_presentation(facts: &Facts) -> Option<String> {
@@ -635,7 +631,7 @@ impl Command {
     /// Carries it out, whether or not it is off.
     pub(super) fn run(self, window: &mut Window, context: &Context) {
         match self {
-            Command::Stage(stage) => window.show_stage(stage),
+            Command::Stage(stage) => window.show_origin(Origin::of_stage(stage)),
             Command::Extreme(case) => window.show_origin(Origin::of_case(case)),
             Command::Recent(place) => window.open_recent(context, place),
             Command::Bookmark(place) => {

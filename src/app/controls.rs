@@ -32,23 +32,19 @@ pub fn ui(
     (document, selected): (&mut Document, Option<&Selected>),
     remembered: &mut Remembered,
     facts: &Facts,
-    (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
 ) {
     let has_rays = document.no_rays().is_none();
     if has_rays {
         camera(ui, document);
         lens(ui, document);
-        sphere(ui, (document, selected), facts, (edits, commands));
+        sphere(ui, (document, selected), facts);
         panel_line(ui);
     }
-    ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
-        let within = |ui: &mut Ui| ui.spacing_mut().item_spacing.y = spacing;
-        size_and_samples(ui, document, remembered, commands, within);
-        if has_rays {
-            tracer(ui, document, remembered, facts, within);
-        }
-    });
+    ui.spacing_mut().item_spacing.y = 0.0;
+    size_and_samples(ui, document, facts);
+    if has_rays {
+        tracer(ui, document, remembered, facts);
+    }
 }
 
 /// Whether the picture is a stage before the chapters about the camera.
@@ -58,11 +54,12 @@ fn is_early(document: &Document) -> bool {
 }
 
 fn camera(ui: &mut Ui, document: &mut Document) {
-    let placed = |camera: &Camera| (camera.look_from, camera.look_at, camera.vup, camera.vfov_degrees);
-    let original = document.origin.recipe.camera;
-    let (is_changed, is_early) = (placed(&document.camera) != placed(&original), is_early(document));
-    let camera = &mut document.camera;
-    let header = Header { title: "Camera", reset: is_changed.then_some("Reset camera"), ..Header::default() };
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = *camera;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..original };
+    let reset = (*camera != home).then_some("Reset camera");
+    let header = Header { title: "Camera", reset, ..Header::default() };
     let is_reset = group(ui, header, |ui| {
         let help = "How wide the camera sees, from the lower to the upper edge, in degrees (vfov)";
         let [narrowest, widest] = VFOV_LIMITS_DEGREES;
@@ -73,8 +70,7 @@ fn camera(ui: &mut Ui, document: &mut Document) {
         fold(ui, header, false, |ui| position(ui, camera, is_early));
     });
     if is_reset {
-        let Camera { look_from, look_at, vup, vfov_degrees, .. } = original;
-        *camera = Camera { look_from, look_at, vup, vfov_degrees, ..*camera };
+        *camera = home;
     }
 }
 
@@ -91,17 +87,17 @@ fn position(ui: &mut Ui, camera: &mut Camera, is_early: bool) {
 }
 
 fn lens(ui: &mut Ui, document: &mut Document) {
-    let original = document.origin.recipe.camera;
-    let lens = |camera: &Camera| (camera.defocus_angle_degrees, camera.focus_distance);
-    let (is_changed, is_early) = (lens(&document.camera) != lens(&original), is_early(document));
-    let camera = &mut document.camera;
+    let is_early = is_early(document);
+    let (original, camera) = (document.origin.recipe.camera, &mut document.camera);
+    let Camera { defocus_angle_degrees, focus_distance, .. } = original;
+    let home = Camera { defocus_angle_degrees, focus_distance, ..*camera };
     let summary = if camera.defocus_angle_degrees == 0.0 { "pinhole" } else { "" };
-    let reset = is_changed.then_some("Reset lens");
+    let reset = (*camera != home).then_some("Reset lens");
     let header = Header { title: "Lens", summary, reset, ..Header::default() };
-    let controls = |ui: &mut Ui| lens_controls(ui, camera, original.defocus_angle_degrees);
+    let controls = |ui: &mut Ui| lens_controls(ui, camera, defocus_angle_degrees);
     let is_reset = if is_early { fold(ui, header, false, controls) } else { group(ui, header, controls) };
     if is_reset {
-        (camera.defocus_angle_degrees, camera.focus_distance) = lens(&original);
+        *camera = home;
     }
 }
 
@@ -125,12 +121,7 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     }
 }
 
-fn sphere(
-    ui: &mut Ui,
-    (document, selected): (&mut Document, Option<&Selected>),
-    facts: &Facts,
-    (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
-) {
+fn sphere(ui: &mut Ui, (document, selected): (&mut Document, Option<&Selected>), facts: &Facts) {
     let title = selected.map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
     let reset = document.has_changed_scene().then_some("Reset spheres");
     let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
@@ -140,7 +131,7 @@ fn sphere(
         };
         let body = body(ui, selected, document);
         if body != selected.body {
-            edits.push(Edit::Change(selected.sphere, body));
+            facts.edit(Edit::Change(selected.sphere, body));
         }
         ui.horizontal(|ui| {
             for (name, command) in [
@@ -148,7 +139,7 @@ fn sphere(
                 ("Copy", Command::DuplicateSphere),
                 ("Delete", Command::DeleteSphere),
             ] {
-                command_button(ui, facts, command, name, commands);
+                command_button(ui, facts, command, name);
             }
         });
     });
@@ -211,13 +202,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(
-    ui: &mut Ui,
-    document: &mut Document,
-    remembered: &Remembered,
-    commands: &mut Vec<Command>,
-    within: impl FnOnce(&mut Ui),
-) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -226,8 +211,7 @@ fn size_and_samples(
     let reset = is_changed.then_some("Reset size and samples");
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
-        within(ui);
-        sizing(ui, document, remembered, commands);
+        sizing(ui, document, facts);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
     });
@@ -239,20 +223,20 @@ fn size_and_samples(
     }
 }
 
-fn sizing(ui: &mut Ui, document: &mut Document, remembered: &Remembered, commands: &mut Vec<Command>) {
+fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let names = [
         ("Fill the window", Some(Sizing::Viewport)),
         ("As in the book", Some(Sizing::Book)),
         ("Other", None),
     ];
-    let chosen = (!document.has_own_size).then_some(remembered.sizing);
+    let chosen = (!document.has_own_size).then_some(facts.model.remembered.sizing);
     let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
     ui.spacing_mut().combo_width = 136.0;
     list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
         for (name, sizing) in names {
             if entry(ui, sizing == chosen, About::new(name, "")) {
                 match sizing {
-                    Some(sizing) => commands.push(Command::Size(sizing)),
+                    Some(sizing) => facts.send(Command::Size(sizing)),
                     None => document.has_own_size = true,
                 }
             }
@@ -269,10 +253,8 @@ fn sizing(ui: &mut Ui, document: &mut Document, remembered: &Remembered, command
 
 /// A row for a whole number.
 fn whole(ui: &mut Ui, about: About<'_>, value: &mut u32, limits: RangeInclusive<u32>, width: f32) {
-    let mut number = f64::from(*value);
     let limits = f64::from(*limits.start())..=f64::from(*limits.end());
-    row(ui, about, |ui| Number::new(about, limits).whole().field(ui, width, &mut number));
-    *value = number as u32;
+    row(ui, about, |ui| Number::new(about, limits).whole_field(ui, width, value));
 }
 
 /// What ends the render. A choice replaces what the command line has set.
@@ -319,13 +301,7 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     }
 }
 
-fn tracer(
-    ui: &mut Ui,
-    document: &mut Document,
-    remembered: &mut Remembered,
-    facts: &Facts,
-    within: impl FnOnce(&mut Ui),
-) {
+fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let RenderSettings { width, height, .. } = document.settings;
     let original = RenderSettings { width, height, ..document.origin.recipe.settings };
     let is_changed = document.settings != original;
@@ -341,7 +317,6 @@ fn tracer(
     let header = Header { title: "Tracer", summary: &summary, reset, ..Header::default() };
     let (rules, is_random) = (*document.rules(), document.is_random());
     let is_reset = fold(ui, header, false, |ui| {
-        within(ui);
         let settings = &mut document.settings;
         if rules.shading == Shading::Path {
             let help = "A path that has not ended by then brings back no light (max_depth)";

@@ -43,10 +43,9 @@ impl Denoising {
             if let Ok((_, took)) = outcome {
                 self.rest_until = Some(Instant::now() + took * SHARE);
             }
-            found = match (outcome, working) {
-                (Ok((answer, _)), _) => Some(answer),
-                (Err(reason), Some((film, _))) => Some((film, Err(reason))),
-                (Err(_), None) => None,
+            found = match outcome {
+                Ok((answer, _)) => Some(answer),
+                Err(reason) => working.map(|(film, _)| (film, Err(reason))),
             };
         }
         if !is_on {

@@ -33,12 +33,6 @@ pub struct Display {
 }
 
 impl Display {
-    /// The film on the screen.
-    pub fn subject<'a>(&'a self, model: &'a Model, tracing: &'a Tracing) -> Subject<'a> {
-        let live = (&model.document, &tracing.main);
-        Subject::new(&model.view, live, tracing.seconds_before)
-    }
-
     /// The picture of the film on the screen.
     pub fn shown<'a>(&'a self, model: &Model, tracing: &'a Tracing) -> Option<&'a Shown> {
         match model.view.kept.shown() {
@@ -64,13 +58,11 @@ impl Display {
             self.judged = Some((document.camera, Arc::clone(&document.checked)));
             self.is_lost = is_lost(document);
         }
-        let other = || view.kept.chosen().and_then(|place| view.kept.get(place)).map(|named| &named.kept);
-        if let Some(kept) = view.kept.shown().or_else(other) {
-            let shown = view.of_shown(FilmId::Kept(kept.number()), tracing.second.film());
+        if let Some(kept) = view.kept.shown().or(view.kept.meant()) {
+            let shown = view.of_shown(FilmId::Kept(kept.number), tracing.second.film.as_ref());
             self.kept.picture.follow(context, kept, &shown);
         }
-        let live = (document, &tracing.main);
-        let subject = Subject::new(view, live, tracing.seconds_before);
+        let subject = Subject::new(view, document, tracing);
         let is_live_moving = is_moving && !subject.is_kept();
         let fault = self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
         if let Some(reason) = fault {
@@ -78,7 +70,7 @@ impl Display {
         }
         self.tone.follow(&subject, view.tone.white(), context);
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
-        let area = self.viewport.room().filter(|_| is_picture);
-        self.values.follow(&subject, self.viewport.placement.rect(), area, context);
+        let area = self.viewport.room.filter(|_| is_picture);
+        self.values.follow(&subject, self.viewport.placement.rect, area, context);
     }
 }

@@ -4,14 +4,16 @@ use super::command::Command;
 use super::facts::Facts;
 use super::kept::KeptActions;
 use super::menu::item;
-use super::model::{Dock, Kept, Model, ViewState, With};
+use super::model::{Dock, Model, ViewState, With};
 use super::tools::Tools;
-use super::widgets::{About, Sign, TABS, command_button, hint, panel_line, sign_button, small, switch, tip};
+use super::widgets::{
+    TABS, choice, command_button, command_switch, hint, panel_line, sign_button, small, tip,
+};
 use super::{plot, theme};
 use crate::system::memory::words;
 use eframe::egui::{
-    self, Align, Align2, Color32, ColorImage, Frame, Label, Margin, Rect, RichText, Role, ScrollArea, Sense,
-    Sides, Stroke, StrokeKind, TextStyle, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, vec2,
+    self, Align, Atom, Frame, Image, Label, Layout, Margin, RichText, Role, ScrollArea, Sides, Ui, Vec2,
+    WidgetInfo, vec2,
 };
 
 /// Height at first, at least, and in low windows, points.
@@ -21,36 +23,10 @@ const LOW: f32 = 200.0;
 
 /// A card: its picture, and its height with the name.
 const PICTURE: Vec2 = vec2(132.0, 74.0);
-const CARD: f32 = 94.0;
-
-/// The small pictures of the cards, by [`Kept::number`].
-#[derive(Default)]
-pub struct Cards(Vec<(u64, TextureHandle)>);
-
-impl Cards {
-    fn texture(&mut self, ui: &Ui, kept: &Kept) -> &TextureHandle {
-        let place = self.0.iter().position(|(number, _)| *number == kept.number());
-        let place = place.unwrap_or_else(|| {
-            let small = &kept.thumbnail;
-            let size = [small.width(), small.height()].map(|length| length as usize);
-            let image = ColorImage::from_rgb(size, small);
-            let texture = ui.ctx().load_texture("kept", image, TextureOptions::LINEAR);
-            self.0.push((kept.number(), texture));
-            self.0.len() - 1
-        });
-        &self.0[place].1
-    }
-}
+const CARD: f32 = 102.0;
 
 /// Draws the dock.
-pub fn ui(
-    ui: &mut Ui,
-    model: &mut Model,
-    tools: &mut Tools,
-    kept: &mut KeptActions,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActions, facts: &Facts) {
     let Some(dock) = model.remembered.dock else { return };
     let height = ui.ctx().content_rect().height();
     let usual = if height < 700.0 { LOW } else { HEIGHT };
@@ -62,13 +38,13 @@ pub fn ui(
         .show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 0.0;
             let row = Frame::new().inner_margin(Margin::symmetric(16, 0));
-            row.show(ui, |ui| tabs(ui, dock, model, facts, commands));
+            row.show(ui, |ui| tabs(ui, dock, model, facts));
             panel_line(ui);
             Frame::new().inner_margin(Margin { left: 16, right: 16, top: 8, bottom: 8 }).show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 8.0;
                 match dock {
                     Dock::Path => tools.paths.ui(ui),
-                    Dock::Kept => kept_ui(ui, model, kept, facts, commands),
+                    Dock::Kept => kept_ui(ui, model, kept, facts),
                     Dock::Lanes => tools.lanes.ui(ui, facts),
                     Dock::Error => plot::ui(ui, facts),
                 }
@@ -77,7 +53,7 @@ pub fn ui(
         });
 }
 
-fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mut Vec<Command>) {
+fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let shown = &mut model.remembered.dock;
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
@@ -97,15 +73,15 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts, commands: &mu
         }
     };
     let right = |ui: &mut Ui| {
-        let close = sign_button(ui, Sign::Close, 24.0, "Close dock");
+        let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            commands.push(match dock {
+            facts.send(match dock {
                 Dock::Path if facts.has_paths => Command::ClearPaths,
                 _ => Command::Dock(dock),
             });
         }
         if dock == Dock::Kept {
-            actions(ui, facts, commands);
+            actions(ui, facts);
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
@@ -125,38 +101,21 @@ pub const MENU: [Command; 5] =
     [Command::Flip, Command::KeptWipe, Command::KeptDifference, Command::OnlyNoise, Command::DeleteKept];
 
 /// The actions, from right to left. The first three are a switch.
-fn actions(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn actions(ui: &mut Ui, facts: &Facts) {
     for (name, command) in ACTIONS[3..].iter().rev() {
-        command_button(ui, facts, *command, name, commands);
+        command_button(ui, facts, *command, name);
     }
-    let reasons = [0, 1, 2].map(|place| facts.disabled_reason(ACTIONS[place].1));
-    let about = |place: usize| {
-        let (name, command) = ACTIONS[place];
-        (Some(command), About::new(name, command.help()).disabled_if(reasons[place].as_deref()))
-    };
-    let is_looked = facts.model.view.kept.looked().is_some();
-    let is_on = |command: &Command| match command {
-        Command::Flip => is_looked,
-        _ => facts.is_on(*command),
-    };
-    let chosen = ACTIONS[..3].iter().map(|(_, command)| *command).find(is_on);
-    commands.extend(switch(ui, 0.0, chosen, &[0, 1, 2].map(about)).flatten());
+    command_switch(ui, facts, 0.0, &ACTIONS[..3]);
 }
 
-fn kept_ui(
-    ui: &mut Ui,
-    model: &mut Model,
-    kept: &mut KeptActions,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
     let list = &model.view.kept;
-    let Some(chosen) = list.chosen().and_then(|place| list.get(place)) else {
+    let Some(chosen) = list.meant() else {
         hint(ui, "Nothing is kept yet. M keeps the picture as it is now, to compare with later.");
         return;
     };
     ui.horizontal_wrapped(|ui| {
-        if !kept.verdict.ui(ui, chosen.kept.number(), facts.status.run) {
+        if !kept.verdict.ui(ui, chosen.number, facts.status.run) {
             let memory = words(list.bytes());
             small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
         }
@@ -165,31 +124,26 @@ fn kept_ui(
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(20.0, 8.0);
             for place in 0..model.view.kept.iter().count() {
-                card(ui, place, &mut model.view, &mut kept.cards, facts, commands);
+                card(ui, place, &mut model.view, facts);
             }
         });
     });
-    let is_there = |number: u64| model.view.kept.iter().any(|named| named.kept.number() == number);
-    kept.cards.0.retain(|(number, _)| is_there(*number));
 }
 
-fn card(
-    ui: &mut Ui,
-    place: usize,
-    view: &mut ViewState,
-    cards: &mut Cards,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
-    let Some(named) = view.kept.get(place).cloned() else { return };
-    let (rect, response) = ui.allocate_exact_size(vec2(PICTURE.x, CARD), Sense::click());
-    let (picture, below) = rect.split_top_bottom_at_y(rect.top() + PICTURE.y);
-    let is_chosen = view.kept.chosen() == Some(place);
-    let title = view.kept.title(place);
-    response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
-    paint_card(ui, picture, place, cards.texture(ui, &named.kept), is_chosen);
-    let name = Label::new(RichText::new(&named.name).small()).truncate();
-    ui.put(below.with_min_y(below.bottom() - 16.0), name.halign(Align::Min));
+fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
+    let Some(kept) = view.kept.get(place).cloned() else { return };
+    let (is_chosen, title) = (view.kept.chosen() == Some(place), view.kept.title(place));
+    let layout = Layout::top_down(Align::Min);
+    let added = ui.allocate_ui_with_layout(vec2(PICTURE.x + 16.0, CARD), layout, |ui| {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        let picture = Image::new(kept.thumbnail(ui.ctx())).fit_to_exact_size(PICTURE);
+        let button = choice(ui, is_chosen, (Atom::grow(), picture, Atom::grow()));
+        let response = ui.add(button.min_size(PICTURE + vec2(16.0, 8.0)));
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, is_chosen, &title));
+        ui.add(Label::new(RichText::new(&title).small()).truncate());
+        response
+    });
+    let response = added.inner;
     if response.double_clicked() {
         view.look(Some(place));
     } else if response.clicked() {
@@ -197,12 +151,10 @@ fn card(
     } else if response.secondary_clicked() {
         view.kept.choose(place);
     }
-    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, commands, *command)));
-    let kept = &named.kept;
-    let ([width, height], samples) = (kept.size(), kept.samples());
-    let memory = words(kept.bytes());
-    let help =
-        format!("{}, {samples} samples per pixel, {width} × {height}, {memory}", kept.document.title());
+    response.context_menu(|ui| MENU.iter().for_each(|command| _ = item(ui, facts, *command)));
+    let ([width, height], samples, memory) = (kept.size(), kept.samples(), words(kept.bytes()));
+    let title = kept.document.title();
+    let help = format!("{title}, {samples} samples per pixel, {width} × {height}, {memory}");
     tip(ui, response, &help, None);
 }
 
@@ -215,31 +167,4 @@ fn choose(view: &mut ViewState, place: usize) {
         (None, _) if looked.is_some() => view.look(Some(place)),
         _ => {}
     }
-}
-
-fn paint_card(ui: &Ui, rect: Rect, place: usize, texture: &TextureHandle, is_chosen: bool) {
-    let colours = theme::colours(ui);
-    let painter = ui.painter();
-    let size = texture.size_vec2();
-    let scale = (rect.size() / size).min_elem();
-    painter.rect_filled(rect, 4, colours.surround);
-    let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-    painter.image(texture.id(), Rect::from_center_size(rect.center(), size * scale), whole, Color32::WHITE);
-    if is_chosen {
-        painter.rect_stroke(rect, 4, Stroke::new(2.0, colours.accent), StrokeKind::Outside);
-    }
-    let badge = Rect::from_min_size(rect.min + vec2(4.0, 4.0), vec2(18.0, 16.0));
-    painter.rect_filled(badge, 4, colours.panel.gamma_multiply(0.9));
-    let font = TextStyle::Small.resolve(ui.style());
-    painter.text(badge.center(), Align2::CENTER_CENTER, (place + 1).to_string(), font, colours.strong);
-}
-
-/// An entry of a legend.
-pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
-    let font = TextStyle::Small.resolve(ui.style());
-    let text = ui.painter().layout_no_wrap(name.to_owned(), font, ui.visuals().weak_text_color());
-    let (rect, response) = ui.allocate_exact_size(text.size() + vec2(16.0, 0.0), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-    ui.painter().rect_filled(Align2::LEFT_CENTER.align_size_within_rect(vec2(10.0, 10.0), rect), 2, colour);
-    ui.painter().galley(rect.min + vec2(16.0, 0.0), text, colour);
 }

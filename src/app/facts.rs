@@ -1,9 +1,11 @@
-//! What panels show but do not change: a snapshot of the window at the start of the frame.
+//! What panels show but do not change: a snapshot of the window at the start of the frame, which also takes what they ask
+//! for.
 
 use super::command::Command;
-use super::model::{Device, Document, Mode, Model, Show, partner};
+use super::model::{Device, Document, Edit, Mode, Model, Show, partner};
 use crate::progressive::{Status, Stop};
 use crate::stages::{Shading, Stage};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -37,9 +39,22 @@ pub struct Facts {
     pub has_sight: bool,
     /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
+    /// What panels have asked for.
+    pub commands: RefCell<Vec<Command>>,
+    pub edits: RefCell<Vec<Edit>>,
 }
 
 impl Facts {
+    /// Asks for a command, which is carried out once all is drawn.
+    pub fn send(&self, command: Command) {
+        self.commands.borrow_mut().push(command);
+    }
+
+    /// Asks for a change of the scene, which is part of a move if there is one.
+    pub fn edit(&self, edit: Edit) {
+        self.edits.borrow_mut().push(edit);
+    }
+
     /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document
@@ -95,7 +110,7 @@ impl Facts {
         let named = match command {
             Command::Undo => self.undo.map(|change| format!("Undo: {change}")),
             Command::Redo => self.redo.map(|change| format!("Redo: {change}")),
-            Command::Kept(place) => view.kept.get(place).map(|named| named.name.clone()),
+            Command::Kept(place) => view.kept.get(place).map(|kept| kept.document.title()),
             Command::Bookmark(place) => remembered.bookmarks.get(place).map(|bookmark| bookmark.name.clone()),
             Command::Recent(_) => {
                 self.path(command).and_then(Path::file_name).map(|name| name.display().to_string())
@@ -117,11 +132,10 @@ impl Facts {
 
     /// Why the chosen kept picture cannot be subtracted from the picture, if so.
     pub fn not_subtractable(&self) -> Option<String> {
-        let kept = &self.model.view.kept;
-        let Some(named) = kept.chosen().and_then(|place| kept.get(place)) else {
+        let Some(kept) = self.model.view.kept.meant() else {
             return Some("No picture is kept; M keeps this one".to_owned());
         };
-        let ([a, b], [x, y]) = (named.kept.size(), self.document().size());
+        let ([a, b], [x, y]) = (kept.size(), self.document().size());
         ([a, b] != [x, y]).then(|| format!("The kept picture is {a} × {b} and this one {x} × {y}"))
     }
 

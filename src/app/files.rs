@@ -2,7 +2,6 @@
 //! separate thread reads. A size that is not on the screen is rendered first, beside the picture.
 
 use super::answers::Answers;
-use super::autosave::Autosave;
 use super::command::Command;
 use super::kept::Subject;
 use super::model::Document;
@@ -48,13 +47,11 @@ struct Sized {
 }
 
 /// Files being read and written. The answers are the path, or why it failed.
+#[derive(Default)]
 pub struct Files {
     pub scene_file: SceneFile,
-    pub autosave: Autosave,
     /// The film of the command line, to go on with.
     pub pending_resume: Option<(PathBuf, RenderJob)>,
-    /// The film of the last window is read, and must not be replaced before.
-    pub is_restoring: bool,
     /// To be saved once there are samples.
     pub pending_save: Option<(OutputFormat, PathBuf)>,
     /// To be copied once there are samples.
@@ -69,7 +66,7 @@ pub struct Files {
     pub copied: Answers<(ColorImage, String)>,
     /// Whether the companion that was written is the full one.
     pub companions: Answers<bool>,
-    /// Where the companion is written.
+    /// Where the companion is written, if not in the usual folder.
     pub companion: Option<PathBuf>,
     /// Stops the companion that is being written.
     companion_stop: Option<Arc<Interrupt>>,
@@ -77,28 +74,9 @@ pub struct Files {
 }
 
 impl Files {
-    pub fn new(autosave: Autosave) -> Self {
-        Files {
-            scene_file: SceneFile::default(),
-            autosave,
-            pending_resume: None,
-            is_restoring: false,
-            pending_save: None,
-            pending_copy: false,
-            saved: Answers::default(),
-            opened: Answers::default(),
-            resumed: Answers::default(),
-            copied: Answers::default(),
-            companions: Answers::default(),
-            companion: cache_directory().map(|cache| cache.join("companion")),
-            companion_stop: None,
-            sized: None,
-        }
-    }
-
     /// Whether the film is needed at the size that it has.
     pub fn needs_film(&self) -> bool {
-        self.pending_save.is_some() || self.pending_copy || self.is_restoring
+        self.pending_save.is_some() || self.pending_copy
     }
 
     /// Renders the document with this many samples per pixel, and saves it.
@@ -161,7 +139,7 @@ impl Files {
         if self.companion_stop.is_some() {
             return Ok(());
         }
-        let out = self.companion.clone().ok_or("There is no home directory to write the companion in")?;
+        let out = self.companion_folder().ok_or("There is no home directory to write the companion in")?;
         let interrupt = Arc::new(Interrupt::unheard());
         self.companion_stop = Some(Arc::clone(&interrupt));
         let options = CompanionOptions {
@@ -178,6 +156,10 @@ impl Files {
         };
         self.companions.ask("companion", context, work);
         Ok(())
+    }
+
+    pub fn companion_folder(&self) -> Option<PathBuf> {
+        self.companion.clone().or_else(|| Some(cache_directory()?.join("companion")))
     }
 
     pub fn stop_companion(&mut self) {
@@ -209,7 +191,7 @@ impl Files {
         let document = subject.document().clone();
         let describe = describer(&document, subject.status(), subject.seconds_before());
         let answer = self.saved.promise(context);
-        let denoised = subject.denoised().map(Arc::clone);
+        let denoised = subject.denoised.map(Arc::clone);
         subject
             .inspect(move |film| answer.give(write(film, denoised.as_deref(), &document, describe, named)));
     }
@@ -277,20 +259,15 @@ fn write(
     if film.sample_count() == 0 {
         return Err("nothing has been traced yet; try again in a moment".to_owned());
     }
-    if OutputFormat::from_path(&path).is_ok_and(|of_name| of_name == format) {
-        // A film is saved as it is.
-        let denoised = denoised.filter(|_| format != OutputFormat::Exr);
-        let film = denoised.map_or(film, |denoised| &denoised.film);
-        let mut description = describe(film);
-        if let Some(denoised) = denoised {
-            description.set(key::DENOISED, denoised.error.words());
-        }
-        write_image(&path, film, document.rules().transfer, &description)
-            .map(|()| path)
-            .map_err(|error| error.to_string())
-    } else {
-        Err(format!("{} does not end in {}", path.display(), format.ending()))
+    // A film is saved as it is.
+    let denoised = denoised.filter(|_| format != OutputFormat::Exr);
+    let film = denoised.map_or(film, |denoised| &denoised.film);
+    let mut description = describe(film);
+    if let Some(denoised) = denoised {
+        description.set(key::DENOISED, denoised.error.words());
     }
+    let written = write_image(&path, film, document.rules().transfer, &description);
+    written.map(|()| path).map_err(|error| error.to_string())
 }
 
 /// What makes the description of a film of the document, whose render has this status.
@@ -313,14 +290,10 @@ mod tests {
     use super::*;
     use crate::app::kept::tests::{OnScreen, small_film};
 
-    fn files() -> Files {
-        Files::new(Autosave::new(None, Duration::MAX))
-    }
-
     #[test]
     fn a_film_is_saved_under_a_name_of_its_format() {
         let directory = tempfile::tempdir().unwrap();
-        let (mut files, context) = (files(), Context::default());
+        let (mut files, context) = (Files::default(), Context::default());
         let mut save = |format: OutputFormat, name: &str| {
             let path = directory.path().join(name);
             let screen = OnScreen::new(small_film(1, 0.5));
@@ -334,14 +307,12 @@ mod tests {
         {
             assert_eq!(save(format, name), Ok(()));
         }
-        let refused = save(OutputFormat::Png, "b.exr").unwrap_err();
-        assert!(refused.ends_with("b.exr does not end in .png"), "{refused}");
     }
 
     #[test]
     fn a_film_without_samples_is_not_saved() {
         let directory = tempfile::tempdir().unwrap();
-        let (mut files, path) = (files(), directory.path().join("a.png"));
+        let (mut files, path) = (Files::default(), directory.path().join("a.png"));
         let (screen, context) = (OnScreen::new(Film::new(4, 2, 1)), Context::default());
         let named = (OutputFormat::Png, path.clone());
         screen.before_answers(|subject| files.save(&context, subject, named));
@@ -353,7 +324,7 @@ mod tests {
     #[test]
     fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
         let directory = tempfile::tempdir().unwrap();
-        let (mut files, context) = (files(), Context::default());
+        let (mut files, context) = (Files::default(), Context::default());
         let white = image::RgbImage::from_pixel(4, 2, image::Rgb([255; 3]));
         white.save(directory.path().join("a.png")).unwrap();
         std::fs::write(directory.path().join("a.toml"), "[camera").unwrap();

@@ -3,9 +3,9 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::theme;
-use super::widgets::{Sign, command_button, primary, sign_button, tip};
+use super::widgets::{command_button, primary, sign_button, tip};
 use crate::stages::Stage;
-use eframe::egui::{self, Align, Frame, Label, Layout, Margin, RichText, Stroke, Ui, vec2};
+use eframe::egui::{self, Frame, Label, Margin, RichText, Sides, Stroke, Ui};
 
 /// Narrower cards have a step on each line, points.
 const THREE_COLUMNS: f32 = 620.0;
@@ -17,7 +17,7 @@ const STEPS: [&str; 3] = [
 ];
 
 /// Draws the card, if it is shown, at the bottom of `ui`.
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     if !facts.model.has_first_steps {
         return;
     }
@@ -39,58 +39,55 @@ pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     panel.frame(around).show(ui, |ui| {
         card.show(ui, |ui| {
             ui.set_min_size(ui.available_size());
-            content(ui, has_columns, facts, commands);
+            content(ui, has_columns, facts);
         });
     });
 }
 
-fn content(ui: &mut Ui, has_columns: bool, facts: &Facts, commands: &mut Vec<Command>) {
-    ui.allocate_ui_with_layout(
-        vec2(ui.available_width(), 20.0),
-        Layout::left_to_right(Align::Center),
+fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
+    Sides::new().height(20.0).shrink_left().truncate().show(
+        ui,
         |ui| {
             ui.label(RichText::new("First steps").size(16.0).strong());
             if has_columns {
-                let about = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
-                ui.label(RichText::new(about).color(theme::colours(ui).weak));
+                ui.weak("Every picture of Ray Tracing in One Weekend, rendered while you watch.");
             }
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let close = sign_button(ui, Sign::Close, 20.0, "Close first steps");
-                if tip(ui, close, "Help > First steps brings this back", None).clicked() {
-                    commands.push(Command::FirstSteps);
-                }
-            });
+        },
+        |ui| {
+            let close = sign_button(ui, "×", 20.0, "Close first steps");
+            if tip(ui, close, "Help > First steps brings this back", None).clicked() {
+                facts.send(Command::FirstSteps);
+            }
         },
     );
     if has_columns {
         ui.columns(STEPS.len(), |uis| {
             for (number, ui) in uis.iter_mut().enumerate() {
-                step(ui, number, 40.0);
+                step(ui, number);
             }
         });
     } else {
         ui.spacing_mut().item_spacing.y = 4.0;
-        (0..STEPS.len()).for_each(|number| step(ui, number, 20.0));
+        (0..STEPS.len()).for_each(|number| step(ui, number));
         ui.add_space(4.0);
     }
     ui.horizontal(|ui| {
         if let Some(first) = Stage::ALL.first() {
             let response = primary(ui, format!("Start the book at {}", first.section));
             if tip(ui, response, first.what_is_new, None).clicked() {
-                commands.push(Command::Stage(first));
+                facts.send(Command::Stage(first));
             }
         }
-        command_button(ui, facts, Command::CheckPicture, "Check my picture…", commands);
+        command_button(ui, facts, Command::CheckPicture, "Check my picture…");
     });
 }
 
 /// A step behind its number.
-fn step(ui: &mut Ui, number: usize, height: f32) {
-    let colours = theme::colours(ui);
-    ui.allocate_ui_with_layout(vec2(ui.available_width(), height), Layout::left_to_right(Align::Min), |ui| {
-        ui.set_min_height(height);
+fn step(ui: &mut Ui, number: usize) {
+    ui.horizontal_top(|ui| {
         let text = |text: RichText| Label::new(text.line_height(Some(20.0))).wrap();
-        ui.add(text(RichText::new((number + 1).to_string()).strong().color(colours.accent)));
+        let accent = theme::colours(ui).accent;
+        ui.add(text(RichText::new((number + 1).to_string()).strong().color(accent)));
         ui.add(text(RichText::new(STEPS[number])));
     });
 }

@@ -22,6 +22,14 @@ const REMOTE: [(Key, Command); 5] = [
     (Key::Period, Command::Blank),
 ];
 
+/// Keys that mean the same as others.
+const ALSO: [(Command, Modifiers, Key); 3] = [
+    (Command::Redo, Modifiers::COMMAND, Key::Y),
+    (Command::Help, Modifiers::NONE, Key::Questionmark),
+    // The Delete key of an Apple keyboard.
+    (Command::DeleteSphere, Modifiers::NONE, Key::Backspace),
+];
+
 /// Turns keys into commands. Returns whether held keys may move the camera.
 pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Vec<Command>) -> bool {
     if context.text_edit_focused() {
@@ -29,13 +37,9 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
     }
     // An open menu or list has the keys that are pressed alone.
     let has_popup = egui::Popup::is_any_open(context);
-    for (key, command) in REMOTE.into_iter().filter(|_| is_presenting && !has_popup) {
-        let presses = context.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-        (0..presses).for_each(|_| commands.push(command));
-    }
     let is_focused = context.memory(|memory| memory.focused().is_some());
     let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
-    for (command, shortcut) in by_modifiers() {
+    for (command, shortcut) in shortcuts(is_presenting) {
         // In a focused control, Tab moves on, Space presses it and arrows change it.
         let is_plain = shortcut.modifiers == Modifiers::NONE;
         let is_of_control = is_focused && keys_of_controls.contains(&shortcut.logical_key);
@@ -59,21 +63,7 @@ pub fn take_keys(context: &egui::Context, is_presenting: bool, commands: &mut Ve
             }
         }
     }
-    let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
-        commands.push(Command::Redo);
-    }
-    if has_popup {
-        return false;
-    }
-    if also(Key::Questionmark) {
-        commands.push(Command::Help);
-    }
-    // The Delete key of an Apple keyboard.
-    if also(Key::Backspace) {
-        commands.push(Command::DeleteSphere);
-    }
-    true
+    !has_popup
 }
 
 /// Takes the events that the window system sends instead of Ctrl+C, and returns how many there were.
@@ -129,8 +119,12 @@ pub fn dropped(context: &egui::Context) -> Vec<PathBuf> {
 }
 
 /// All keys of commands, those with the most modifiers first: a shortcut without Shift would take the one with it.
-fn by_modifiers() -> Vec<(Command, KeyboardShortcut)> {
-    let mut keys: Vec<_> = ROWS.iter().filter_map(|row| Some((row.command, row.keys?))).collect();
+fn shortcuts(is_presenting: bool) -> Vec<(Command, KeyboardShortcut)> {
+    let also = ALSO.map(|(command, modifiers, key)| (command, KeyboardShortcut::new(modifiers, key)));
+    let of_rows = ROWS.iter().filter_map(|row| Some((row.command, row.keys?)));
+    let remote = REMOTE.into_iter().filter(|_| is_presenting);
+    let remote = remote.map(|(key, command)| (command, KeyboardShortcut::new(Modifiers::NONE, key)));
+    let mut keys: Vec<_> = remote.chain(of_rows).chain(also).collect();
     keys.sort_by_key(|(_, shortcut)| {
         let Modifiers { command, shift, alt, .. } = shortcut.modifiers;
         std::cmp::Reverse([command, shift, alt].map(u8::from).iter().sum::<u8>())

@@ -35,8 +35,8 @@ pub struct Pixel {
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
-    hovered: Option<[u32; 2]>,
-    pixel: Option<Pixel>,
+    pub hovered: Option<[u32; 2]>,
+    pub pixel: Option<Pixel>,
     /// By pixel, film and number of samples.
     query: Query<([u32; 2], FilmId, u64), Pixel>,
 }
@@ -49,19 +49,9 @@ impl Inspector {
         }
     }
 
-    /// The pixel that the pointer was over last.
-    pub fn hovered(&self) -> Option<[u32; 2]> {
-        self.hovered
-    }
-
     /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
-    }
-
-    /// The pixel as of the last answer.
-    pub fn pixel(&self) -> Option<&Pixel> {
-        self.pixel.as_ref()
     }
 
     /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,

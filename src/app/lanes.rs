@@ -2,13 +2,12 @@
 //! tracer's.
 
 use super::answers::Answers;
-use super::dock::swatch;
 use super::facts::Facts;
-use super::model::{Device, Document};
+use super::model::{Device, Document, best_isa};
 use super::theme;
-use super::widgets::{hint, small};
+use super::widgets::{hint, small, swatch};
 use crate::backends::explain::{Activity, Timeline, timeline};
-use crate::render_cpu::{Isa, PathRecorder};
+use crate::render_cpu::PathRecorder;
 use crate::stages::Shading;
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Ui, WidgetInfo, vec2};
 
@@ -55,8 +54,7 @@ impl Lanes {
         // Those of before stay until the new ones are there; a late answer is lost with its slot.
         (self.asked, self.answers) = (Some((document.clone(), lanes)), Answers::default());
         let record = move || {
-            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
-            let recorder = PathRecorder::new(&job, isa, None);
+            let recorder = PathRecorder::new(&job, best_isa(), None);
             let size = [job.settings().width, job.settings().height];
             let paths_of = |lane: usize| -> Vec<_> {
                 let pixel = pixel_of(lane, lanes, size);

@@ -1,13 +1,13 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use super::answers::{Answer, Answers};
-use super::model::Document;
+use super::model::{Document, best_isa};
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
 use crate::job::render::{RenderJob, RenderSettings};
 use crate::numbers::heat::HeatScale;
-use crate::render_cpu::{Isa, PathRecorder};
+use crate::render_cpu::PathRecorder;
 use crate::stages::Transfer;
 use eframe::egui::Context;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -37,7 +37,7 @@ pub struct ShownLayer {
     /// 1, or the factor by which the layer is smaller than the picture.
     pub divisor: u32,
     layer: Layer,
-    image: LayerImage,
+    pub image: LayerImage,
 }
 
 /// The layer that is displayed.
@@ -57,22 +57,12 @@ impl Layers {
         self.shown.as_ref().filter(|shown| shown.layer == layer)
     }
 
-    /// The newest version of a layer.
-    pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
-        self.shown.as_mut().filter(|shown| shown.layer == layer)
-    }
-
     /// The layer and its mean at a pixel of the full-size picture.
     pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3])> {
         let shown = self.shown.as_ref()?;
         let (image, at) = (&shown.image, [x / shown.divisor, y / shown.divisor]);
         let is_inside = at[0] < image.width && at[1] < image.height;
         is_inside.then(|| (shown.layer, image.mean(at)))
-    }
-
-    /// Samples per pixel of a full-size layer; 0 while there is none.
-    pub fn samples(&self, layer: Layer) -> u64 {
-        self.shown(layer).filter(|shown| shown.divisor == 1).map_or(0, |shown| shown.image.samples)
     }
 
     /// Starts to trace `layer` of the document and takes new results. Returns why the layer cannot be traced, once.
@@ -180,9 +170,8 @@ impl Order {
         if self.cancel.load(Ordering::Relaxed) {
             return false;
         }
-        let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
         let earlier = recorder.take();
-        let paths = recorder.insert(PathRecorder::new(job, isa, earlier));
+        let paths = recorder.insert(PathRecorder::new(job, best_isa(), earlier));
         let mut image = LayerImage::new(self.layer, job);
         for index in 0..samples {
             if !image.add_sample(paths, &self.cancel) {
@@ -229,7 +218,8 @@ mod tests {
     /// Follows until the layer has all its samples.
     fn finish(layers: &mut Layers, layer: Layer, document: &Document) {
         let (begin, context) = (Instant::now(), Context::default());
-        while layers.samples(layer) < SAMPLES {
+        let is_full = |shown: &ShownLayer| shown.divisor == 1 && shown.image.samples == SAMPLES;
+        while !layers.shown(layer).is_some_and(is_full) {
             assert!(begin.elapsed() < Duration::from_secs(60), "it never came");
             std::thread::sleep(Duration::from_millis(1));
             layers.follow(&context, Some(layer), document, false);

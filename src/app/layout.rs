@@ -1,14 +1,13 @@
 //! Where everything is drawn in a frame: panels, the picture, what lies over it, and dialogs.
 
-use super::command::Command;
 use super::display::Display;
 use super::facts::Facts;
 use super::inspector::Inspector;
-use super::model::{Dock, Document, Model, Remembered, Tab, ViewState};
+use super::model::{Document, Model, Remembered, Tab, ViewState};
 use super::paths::at_same_place;
 use super::second::Second;
 use super::spheres::Selected;
-use super::viewport::{Handle, Pictures, SecondPicture, Touch};
+use super::viewport::{Handle, Pictures, Touch};
 use super::window::Window;
 use super::{bar, controls, dock, first_steps, present, right, stage_panel, status, theme};
 use eframe::egui::{self, Ui};
@@ -31,25 +30,24 @@ impl Window {
         let touch =
             egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| self.middle(ui, &facts));
         self.take_touch(ui, touch.inner, &facts);
-        let mut edits = Vec::new();
-        let outcome = self.shell.dialogs.ui(ui, &facts, (&mut edits, &mut self.commands));
-        edits.into_iter().for_each(|edit| self.edit(edit));
+        let outcome = self.shell.dialogs.ui(ui, &facts);
         self.end_dialog(&ui.ctx().clone(), outcome);
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
         }
+        facts.edits.take().into_iter().for_each(|edit| self.edit(edit));
+        self.commands.append(&mut facts.commands.take());
     }
 
     /// The panels around the picture.
     fn panels(&mut self, ui: &mut Ui, facts: &Facts) {
-        let Window { model, tracing, display, tools, commands, .. } = self;
+        let Window { model, tracing, display, tools, .. } = self;
         let selected = Selected::of(model);
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
-        bar::ui(ui, facts, commands);
-        status::ui(ui, facts, tracing.sizer.offer(), commands);
-        let mut edits = Vec::new();
+        bar::ui(ui, facts);
+        status::ui(ui, facts, tracing.sizer.offer);
         let mut tabs = Vec::new();
         if has.has_info {
             tabs.extend([Tab::Stage, Tab::Code]);
@@ -59,12 +57,13 @@ impl Window {
             tabs.push(Tab::Controls);
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
-        let mut controls = |ui: &mut Ui, remembered: &mut Remembered, commands: &mut Vec<Command>| {
-            controls::ui(ui, (document, selected.as_ref()), remembered, facts, (&mut edits, commands));
+        let mut controls = |ui: &mut Ui, remembered: &mut Remembered| {
+            controls::ui(ui, (document, selected.as_ref()), remembered, facts);
         };
         if has.has_controls && !is_narrow {
             let panel = egui::Panel::left("controls").exact_size(232.0);
-            scrolling(ui, panel, |ui| controls(ui, remembered, commands));
+            let panel = panel.frame(theme::panel(egui::Margin::ZERO));
+            panel.show(ui, |ui| right::scrolling(ui, |ui| controls(ui, remembered)));
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
@@ -75,29 +74,28 @@ impl Window {
                 match tab {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
-                            display.tone.ui(ui, view, facts, commands);
+                            display.tone.ui(ui, view, facts);
                             numbers(ui, view, facts, display, &tracing.second, &tools.inspector);
                         });
-                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts, commands));
+                        right::scrolling(ui, |ui| stage_panel::ui(ui, facts));
                     }
                     Tab::Code => tools.code.ui(ui, facts),
                     Tab::Check if is_closed => tools.check.close(),
-                    Tab::Check => tools.check.ui(ui, commands),
-                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered, commands)),
+                    Tab::Check => tools.check.ui(ui, facts),
+                    Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered)),
                 }
             });
         }
-        edits.into_iter().for_each(|edit| self.edit(edit));
     }
 
     /// The picture, with the dock and the card of first steps below.
     fn middle(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         if facts.model.has_panels() {
-            let Window { model, tools, display, commands, .. } = self;
-            dock::ui(ui, model, tools, &mut display.kept, facts, commands);
+            let Window { model, tools, display, .. } = self;
+            dock::ui(ui, model, tools, &mut display.kept, facts);
         }
         if facts.model.has_panels() && facts.model.remembered.dock.is_none() {
-            first_steps::ui(ui, facts, &mut self.commands);
+            first_steps::ui(ui, facts);
         }
         if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
@@ -112,35 +110,31 @@ impl Window {
     }
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
-        let Window { model, tracing, display, tools, commands, .. } = self;
+        let Window { model, tracing, display, tools, .. } = self;
         let selected = Selected::of(model);
         let Model { document, view, .. } = model;
         let layer = view.show().layer();
         let kept = view.kept.shown();
         let shown = match kept {
-            Some(kept) => display.kept.picture.shown_mut(kept),
-            None => tracing.main.shown_mut(),
+            Some(kept) => display.kept.picture.shown(kept),
+            None => tracing.main.shown(),
         };
         let has_film = shown.is_some();
         let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
         let pictures = Pictures {
-            main: match layer.and_then(|layer| display.layers.shown_mut(layer)) {
-                Some(layer) => Some((&mut layer.texture, layer.divisor)),
-                None => shown.map(|shown| (&mut shown.texture, shown.divisor)),
+            main: match layer.and_then(|layer| display.layers.shown(layer)) {
+                Some(layer) => Some((&layer.texture, layer.divisor > 1)),
+                None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
             },
             has_film,
             titles: titles(facts, &tracing.second),
-            second: tracing.second.shown_mut().map(|shown| SecondPicture {
-                texture: &mut shown.texture,
-                divisor: shown.divisor,
-                is_scaled,
-            }),
+            second: tracing.second.shown().map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
             paths: kept.is_none().then_some(&tools.paths),
             values: &display.values,
         };
         let handle =
             Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
-        display.viewport.ui(ui, handle, pictures, facts, commands)
+        display.viewport.ui(ui, handle, pictures, facts)
     }
 
     /// Does what the pointer did in the picture.
@@ -155,23 +149,16 @@ impl Window {
             present::magnify(ui, room, at, numbers);
         }
         self.tools.inspector.hover(touch.hovered);
-        if let Some(pixel) = touch.listed {
-            self.tools.paths.list(&self.model.document, pixel, ui.ctx());
-            self.model.remembered.dock = Some(Dock::Path);
-        }
+        self.list_paths(ui.ctx(), touch.listed);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
-        if let Some(reason) = facts.no_rays().filter(|_| touch.is_refused) {
-            self.shell.toasts.good(reason);
-        }
-        if touch.is_move || touch.edit.is_some() {
+        if touch.is_move {
             self.changes.note_move();
         }
         if let Some(sphere) = touch.select {
             self.model.selected = sphere;
         }
-        touch.edit.into_iter().for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
@@ -197,7 +184,7 @@ fn numbers(
     second: &Second,
     inspector: &Inspector,
 ) {
-    let at = inspector.pixel().map(|pixel| pixel.at);
+    let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let other = at.and_then(|at| other_pixel(view, second, facts.document(), at));
     inspector.ui(ui, facts.shown(), value, other);
@@ -207,15 +194,6 @@ fn numbers(
 fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
     match view.wiped() {
         Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
-        None => second.film()?.mean(at),
+        None => second.film.as_ref()?.mean(at),
     }
-}
-
-/// A panel whose content scrolls.
-fn scrolling(ui: &mut Ui, panel: egui::Panel, content: impl FnOnce(&mut Ui)) {
-    panel.frame(theme::panel(egui::Margin::ZERO)).show(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            egui::Frame::new().inner_margin(egui::Margin::same(16)).show(ui, content);
-        });
-    });
 }

@@ -11,48 +11,48 @@ use eframe::egui::{Atom, Button, IdSalt, Response, RichText, Stroke, Ui, vec2};
 pub const MENU_WIDTH: f32 = 248.0;
 
 /// All menus of the bar.
-pub fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn menus(ui: &mut Ui, facts: &Facts) {
     for menu in Menu::BAR {
-        ui.menu_button(menu.name(), |ui| entries(ui, menu, facts, commands));
+        ui.menu_button(menu.name(), |ui| entries(ui, menu, facts));
     }
 }
 
 /// The entries of a menu, with its submenus where they belong.
-fn entries(ui: &mut Ui, menu: Menu, facts: &Facts, commands: &mut Vec<Command>) {
+fn entries(ui: &mut Ui, menu: Menu, facts: &Facts) {
     ui.set_width(MENU_WIDTH);
     if menu == Menu::View {
-        submenu(ui, Menu::Show.name(), |ui| entries(ui, Menu::Show, facts, commands));
+        submenu(ui, Menu::Show.name(), |ui| entries(ui, Menu::Show, facts));
     }
     for row in ROWS.iter().filter(|row| row.menu == Some(menu)) {
         if row.has_line {
             ui.separator();
         }
-        item(ui, facts, commands, row.command);
+        item(ui, facts, row.command);
         match row.command {
             Command::Open => {
                 ui.add_enabled_ui(facts.recent().next().is_some(), |ui| {
-                    submenu(ui, "Open recent", |ui| places(ui, facts, facts.recent(), commands));
+                    submenu(ui, "Open recent", |ui| places(ui, facts, facts.recent()));
                 });
             }
             Command::ActualSize => {
-                submenu(ui, Menu::Bookmarks.name(), |ui| entries(ui, Menu::Bookmarks, facts, commands));
+                submenu(ui, Menu::Bookmarks.name(), |ui| entries(ui, Menu::Bookmarks, facts));
             }
             Command::FullScreen => {
                 ui.separator();
-                submenu(ui, Menu::Theme.name(), |ui| entries(ui, Menu::Theme, facts, commands));
+                submenu(ui, Menu::Theme.name(), |ui| entries(ui, Menu::Theme, facts));
             }
             _ => {}
         }
     }
     if menu == Menu::Bookmarks {
-        places(ui, facts, facts.bookmarks(), commands);
+        places(ui, facts, facts.bookmarks());
     }
 }
 
-fn places(ui: &mut Ui, facts: &Facts, all: impl Iterator<Item = Command>, commands: &mut Vec<Command>) {
+fn places(ui: &mut Ui, facts: &Facts, all: impl Iterator<Item = Command>) {
     ui.set_width(MENU_WIDTH);
     for command in all {
-        item(ui, facts, commands, command);
+        item(ui, facts, command);
     }
 }
 
@@ -69,7 +69,7 @@ fn submenu(ui: &mut Ui, name: &str, content: impl FnOnce(&mut Ui)) {
 }
 
 /// A menu entry for a command.
-pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> Response {
+pub fn item(ui: &mut Ui, facts: &Facts, command: Command) -> Response {
     let (reason, name) = (facts.disabled_reason(command), facts.name(command));
     let response = ui
         .scope(|ui| {
@@ -80,20 +80,24 @@ pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Co
         .accessible_name(name.as_str());
     if facts.is_on(command) {
         let middle = response.rect.left_center() + vec2(12.0, 0.0);
-        let mark = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
-        ui.painter().line(mark.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
+        let tick = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + vec2(x, y));
+        ui.painter().line(tick.to_vec(), Stroke::new(1.5, ui.visuals().strong_text_color()));
     }
-    if let Some(is_on) = facts.switch(command) {
-        let toggled = if is_on { Toggled::True } else { Toggled::False };
-        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(toggled));
-    }
+    name_state(&response, facts.switch(command));
     let path = facts.path(command).map(|path| path.display().to_string());
     let response = tip(ui, response, path.as_deref().unwrap_or(command.help()), reason.as_deref());
     if response.clicked() {
-        commands.push(command);
+        facts.send(command);
         ui.close();
     }
     response
+}
+
+/// Tells assistive technology whether a switch is on.
+pub fn name_state(response: &Response, switch: Option<bool>) {
+    if let Some(is_on) = switch {
+        response.ctx.accesskit_node_builder(response.id, |node| node.set_toggled(Toggled::from(is_on)));
+    }
 }
 
 /// A line with a command's name, and its keys at the right.

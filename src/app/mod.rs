@@ -1,10 +1,10 @@
 //! The window. The image refines while the user watches, and can be explored and edited meanwhile.
 //!
 //! `model` holds what the user has chosen, without widgets or drawing. Each panel is a function of the part of the
-//! model that it may change, of `Facts` to show, and of a list of [`Command`]s to which it adds; menus, keys and the
-//! palette add to the same list. Each asker of a background thread owns the slot in which its answers arrive. Only
-//! [`Window`] knows everything: it carries out the commands and decides what to render. The tracer runs on its own
-//! thread, and the window's thread never waits for it.
+//! model that it may change, and of `Facts`, which it shows and asks for [`Command`]s; so do menus, keys and the
+//! palette. Each asker of a background thread owns the slot in which its answers arrive. Only [`Window`] knows
+//! everything: it carries out the commands and decides what to render. The tracer runs on its own thread, and the
+//! window's thread never waits for it.
 
 mod answers;
 mod autosave;
@@ -63,7 +63,8 @@ mod window;
 mod wording;
 
 pub use command::{Command, Menu, ROWS};
-pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab, Theme};
+pub use eframe::egui::ThemePreference as Theme;
+pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};

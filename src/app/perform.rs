@@ -5,6 +5,7 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
+use super::kept::Subject;
 use super::model::{
     Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source, ViewState,
     With, companion, device,
@@ -15,10 +16,7 @@ use super::spheres::grip::new_body;
 use super::spheres::{self, Selected};
 use super::window::Window;
 use super::wording::{grouped, lower_first};
-use crate::film::Film;
 use crate::job::output::OutputFormat;
-use crate::stages::Stage;
-use crate::system::files::home_directory;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -94,13 +92,9 @@ impl Window {
         self.tools.forget();
     }
 
-    pub(super) fn show_stage(&mut self, stage: &'static Stage) {
-        self.show_origin(Origin::of_stage(stage));
-    }
-
     pub(super) fn step_stage(&mut self, is_next: bool) {
         if let Some(stage) = self.facts().neighbour(is_next) {
-            self.show_stage(stage);
+            self.show_origin(Origin::of_stage(stage));
         }
     }
 
@@ -244,8 +238,8 @@ impl Window {
         }
     }
 
-    pub(super) fn list_paths(&mut self, context: &Context) {
-        if let Some(pixel) = self.tools.inspector.hovered() {
+    pub(super) fn list_paths(&mut self, context: &Context, pixel: Option<[u32; 2]>) {
+        if let Some(pixel) = pixel {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }
@@ -322,31 +316,11 @@ impl Window {
 
     // Kept pictures
 
-    /// Keeps the picture once it has samples.
-    pub(super) fn keep_wanted(&mut self, context: &Context) {
-        let Window { model, tracing, display, shell, .. } = self;
-        if !display.kept.is_wanted || !tracing.main.has_samples(&model.document) {
-            return;
-        }
-        let settings = &model.document.settings;
-        let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
-        match model.view.kept.check_room(bytes) {
-            Ok(()) => {
-                display.kept.copy(context, (&model.document, &tracing.main), tracing.seconds_before);
-            }
-            Err(reason) => {
-                display.kept.is_wanted = false;
-                shell.toasts.bad(format!("Not kept: {reason}"));
-            }
-        }
-    }
-
     /// Tests whether the shown picture and the chosen kept one differ by noise alone.
     pub(super) fn ask_only_noise(&mut self, context: &Context) {
         let Window { model, tracing, display, .. } = self;
-        let kept = &model.view.kept;
-        if let Some(named) = kept.chosen().and_then(|place| kept.get(place)) {
-            display.kept.verdict.ask(context, &named.kept, (&model.document, &tracing.main));
+        if let Some(kept) = model.view.kept.meant() {
+            display.kept.verdict.ask(context, kept, (&model.document, &tracing.main));
             model.remembered.dock = Some(Dock::Kept);
         }
     }
@@ -360,25 +334,18 @@ impl Window {
 
     /// Opens the dialog of saving with this format chosen.
     pub(super) fn ask_save(&mut self, format: OutputFormat) {
-        let folder = self.folder();
-        let folder = if self.model.remembered.directory.as_ref() == Some(&folder) {
-            folder
-        } else {
-            default_folder().unwrap_or(folder)
-        };
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
-        let save = SaveBox::new(&file_name(document), folder, What::Picture(format), document.size());
+        let (name, what) = (file_name(document), What::Picture(format));
+        let save = SaveBox::new(&name, self.folder(), what, document.size());
         self.shell.dialogs.open(Dialog::Save(save));
     }
 
     /// The folder in which the user is at work.
     fn folder(&self) -> PathBuf {
-        let last = self.model.remembered.directory.clone().filter(|folder| folder.is_dir());
-        last.or_else(|| default_folder().filter(|folder| folder.is_dir()))
-            .or_else(|| std::env::current_dir().ok())
-            .or_else(home_directory)
-            .unwrap_or_default()
+        let last = self.model.remembered.recent.first().and_then(|path| path.parent());
+        let last = last.filter(|folder| folder.is_dir()).map(Path::to_owned);
+        last.or_else(default_folder).or_else(|| std::env::current_dir().ok()).unwrap_or_default()
     }
 
     pub(super) fn end_dialog(&mut self, context: &Context, outcome: Outcome) {
@@ -403,7 +370,7 @@ impl Window {
     }
 
     fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
         match what {
             What::Scene => self.files.save_scene(context, path, document),
@@ -426,14 +393,14 @@ impl Window {
 
     /// Asks before a size is rendered that needs much memory or time. Until then the picture has the size of before.
     pub(super) fn ask_about_size(&mut self) {
-        let (size, before) = (self.document().size(), self.changes.last());
+        let (size, before) = (self.document().size(), &self.changes.last);
         if size == before.size() || self.tracing.film.is_some() || self.tracing.sizer.accepted == Some(size) {
             return;
         }
         let before = if Arc::ptr_eq(&before.origin, &self.document().origin) {
             (before.size(), before.has_own_size)
         } else {
-            let room = self.display.viewport.room_pixels();
+            let room = self.display.viewport.room_pixels;
             (self.document().origin.size_in(room).unwrap_or(before.size()), true)
         };
         if let Some(large) = LargeSize::of(&self.facts(), size, before.0) {
@@ -445,7 +412,7 @@ impl Window {
 
     /// Offers the film of a window that ended early.
     pub(super) fn offer_left(&mut self) {
-        let Some((document, samples)) = self.files.autosave.left().and_then(|path| picture_of(&path)) else {
+        let Some((document, samples)) = self.autosave.left().and_then(|path| picture_of(&path)) else {
             return;
         };
         let (name, samples) = (document.place(), grouped(samples));
@@ -455,7 +422,7 @@ impl Window {
     }
 
     pub(super) fn recover(&mut self, context: &Context) {
-        let Some(path) = self.files.autosave.left() else { return };
+        let Some(path) = self.autosave.left() else { return };
         match picture_of(&path).map(|(document, _)| (document.job(1), document)) {
             Some((Ok(job), document)) => {
                 self.show_document(document);
@@ -477,21 +444,29 @@ impl Window {
     }
 
     pub(super) fn show_in_folder(&mut self, context: &Context) {
-        let Some(path) = self.model.remembered.recent.first() else { return };
-        if self.shell.dialogs.system.is_there
-            && file_manager(path).is_some_and(|mut command| command.spawn().is_ok())
-        {
+        let Some(folder) = self.model.remembered.recent.first().and_then(|path| path.parent()) else {
             return;
-        }
-        if let Some(url) = path.parent().map(companion::file_url) {
-            self.open_or_tell(context, url);
+        };
+        let manager = match std::env::consts::OS {
+            "windows" => "explorer",
+            "macos" => "open",
+            _ => "xdg-open",
+        };
+        let has_desktop = self.shell.dialogs.system.is_there;
+        if !has_desktop || process::Command::new(manager).arg(folder).spawn().is_err() {
+            self.open_url(context, companion::file_url(folder));
         }
     }
 
-    pub(super) fn open_or_tell(&mut self, context: &Context, url: String) {
-        if !self.open_page(context, url.clone()) {
+    /// Opens a page in the browser, or tells its address. Returns whether there is a browser.
+    pub(super) fn open_url(&mut self, context: &Context, url: String) -> bool {
+        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
+        if has_browser {
+            context.open_url(egui::OpenUrl::new_tab(url));
+        } else {
             self.shell.toasts.bad(format!("No browser could be started; the page is {url}"));
         }
+        has_browser
     }
 
     pub(super) fn write_companion(&mut self, context: &Context, is_quick: bool) {
@@ -509,37 +484,24 @@ impl Window {
     pub(super) fn show_companion(&mut self, context: &Context, written: Result<bool, String>) {
         let is_stopped = self.files.end_companion();
         self.shell.toasts.withdraw(Command::StopCompanion);
-        let Some(folder) = self.files.companion.clone() else { return };
+        let Some(folder) = self.files.companion_folder() else { return };
         match written {
             Ok(_) if is_stopped => {}
             Ok(true) => self.shell.toasts.good("The full companion is written; reload it in your browser"),
             Ok(false) => {
                 let url = companion::url(&folder.join("index.html"), self.document().stage());
-                if self.open_page(context, url) {
+                if self.open_url(context, url) {
                     let words = "The companion is open in your browser";
                     self.shell.toasts.good_with(words, &[Command::WholeCompanion]);
-                } else {
-                    let folder = folder.display();
-                    let words = format!("No browser could be started. The companion is in {folder}");
-                    self.shell.toasts.good(words);
                 }
             }
             Err(reason) => self.shell.toasts.bad(format!("The companion was not written: {reason}")),
         }
     }
 
-    /// Whether there is a browser to open the page with.
-    fn open_page(&mut self, context: &Context, url: String) -> bool {
-        let has_browser = !self.shell.dialogs.system.is_there || webbrowser::Browser::is_available();
-        if has_browser {
-            context.open_url(egui::OpenUrl::new_tab(url));
-        }
-        has_browser
-    }
-
     /// Copies the command that renders the picture, and says what it needs.
     pub(super) fn copy_command(&mut self, context: &Context) {
-        let subject = self.display.subject(&self.model, &self.tracing);
+        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
         let document = subject.document();
         let samples = match subject.samples() {
             samples @ 1.. if subject.is_full() => samples,
@@ -558,34 +520,5 @@ impl Window {
         } else {
             "Copied: the command line that renders this picture"
         });
-    }
-
-    pub(super) fn remember_directory(&mut self, path: &Path) {
-        if let Some(directory) = std::path::absolute(path).ok().as_deref().and_then(Path::parent) {
-            self.model.remembered.directory = Some(directory.to_owned());
-        }
-    }
-}
-
-/// The command that opens the system's file manager with this file selected, on systems that have one of their own.
-fn file_manager(path: &Path) -> Option<process::Command> {
-    #[cfg(windows)]
-    {
-        use std::os::windows::process::CommandExt;
-        let mut command = process::Command::new("explorer");
-        // Explorer wants quotes around the path alone.
-        command.raw_arg(format!("/select,\"{}\"", path.display()));
-        Some(command)
-    }
-    #[cfg(target_os = "macos")]
-    {
-        let mut command = process::Command::new("open");
-        command.arg("-R").arg(path);
-        Some(command)
-    }
-    #[cfg(not(any(windows, target_os = "macos")))]
-    {
-        let _ = path;
-        None
     }
 }

@@ -1,11 +1,10 @@
 //! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
 //! expected continuation, and the goal.
 
-use super::dock::swatch;
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
-use super::widgets::{compact, hint, tip};
+use super::widgets::{compact, hint, swatch, tip};
 use crate::numbers::statistics::fit::Point;
 use crate::progressive::{HistoryPoint, Status};
 use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, Vec2b};

@@ -2,12 +2,11 @@
 
 use super::command::Command;
 use super::files::Resumed;
-use super::model::{Dock, Document, Kept, Named, Origin, Source, Tab};
+use super::model::{Dock, Document, Kept, Origin, Source};
 use super::window::Window;
 use crate::job::saved::{Content, Opened};
 use crate::progressive::Stop;
 use eframe::egui::Context;
-use std::sync::Arc;
 
 impl Window {
     /// Takes all answers that have arrived.
@@ -15,7 +14,6 @@ impl Window {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
                 Ok(path) => {
-                    self.remember_directory(&path);
                     self.model.remembered.note_recent(&path);
                     let name = path.file_name().unwrap_or(path.as_os_str()).display();
                     self.shell.toasts.good_with(format!("Saved {name}"), &[Command::ShowInFolder]);
@@ -34,12 +32,7 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        if let Some(path) = self.tools.check.follow() {
-            self.model.remembered.note_recent(&path);
-        }
-        if self.tools.check.take_news() {
-            (self.model.remembered.has_info, self.model.remembered.tab) = (true, Tab::Check);
-        }
+        self.tools.check.follow(&mut self.model.remembered);
         while let Some(Ok((picture, what))) = self.files.copied.take() {
             self.shell.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);
@@ -56,7 +49,7 @@ impl Window {
                 Ok(resumed) => self.go_on(resumed),
                 Err(reason) => self.shell.toasts.bad(format!("Not resumed: {reason}")),
             }
-            self.files.is_restoring = false;
+            self.autosave.is_restoring = false;
         }
         while let Some(outcome) = self.files.companions.take() {
             self.show_companion(context, outcome);
@@ -71,7 +64,6 @@ impl Window {
 
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, stage, content, .. } = opened;
-        self.remember_directory(&path);
         self.model.remembered.note_recent(&path);
         let mut document = match content {
             Content::Scene => Document::new(Origin::new(recipe, Source::File(path.clone()))),
@@ -87,33 +79,32 @@ impl Window {
         self.shell.toasts.good(words);
         if let Content::Film(film) = content {
             self.tracing.adopt(film);
-            self.changes.adopt(&self.model.document);
+            self.changes.last = self.model.document.clone();
         }
     }
 
-    /// Goes on with the film of the command line, unless the picture has been changed meanwhile.
-    pub(super) fn go_on(&mut self, resumed: Resumed) {
-        let path = resumed.path.display();
-        if self.document().has_same_film(&resumed.begun) {
-            if self.files.autosave.left().as_ref() == Some(&resumed.path) {
-                self.shell.toasts.good(format!("Going on with {}", self.document().place()));
-            } else if !self.files.is_restoring {
-                let name = resumed.path.file_name().unwrap_or(resumed.path.as_os_str()).display();
-                self.shell.toasts.good(format!("Going on with {name}"));
-                self.model.remembered.note_recent(&resumed.path);
+    /// Goes on with a film, unless the picture has been changed meanwhile.
+    fn go_on(&mut self, Resumed { path, begun, film }: Resumed) {
+        let is_quiet = self.autosave.is_restoring;
+        if !self.document().has_same_film(&begun) {
+            if !is_quiet {
+                let words = "the picture was changed before it had been read; open the file to continue it";
+                self.shell.toasts.bad(format!("Not resumed from {}: {words}", path.display()));
             }
-            self.tracing.adopt(resumed.film);
-            self.changes.adopt(&self.model.document);
-        } else if !self.files.is_restoring {
-            self.shell.toasts.bad(format!(
-                "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
-            ));
+            return;
+        }
+        self.tracing.adopt(film);
+        self.changes.last = self.model.document.clone();
+        if !is_quiet {
+            self.shell.toasts.good(format!("Going on with {}", self.document().place()));
+        }
+        if !is_quiet && self.autosave.left().as_ref() != Some(&path) {
+            self.model.remembered.note_recent(&path);
         }
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let name = kept.document.title();
-        let place = self.model.view.kept.add(Named { name, kept: Arc::new(kept) });
+        let place = self.model.view.kept.add(kept);
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }

@@ -2,7 +2,7 @@
 
 use super::model::Tab;
 use super::theme;
-use super::widgets::{Sign, TABS, panel_line, sign_button, tab, tip};
+use super::widgets::{TABS, panel_line, sign_button, tab, tip};
 use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Sides, Ui};
 
 /// Points that are left for the picture.
@@ -54,7 +54,7 @@ pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
             |ui| {
                 if matches!(shown, Tab::Code | Tab::Check) {
                     let name = format!("Close {}", shown.name().to_lowercase());
-                    let response = sign_button(ui, Sign::Close, 24.0, &name);
+                    let response = sign_button(ui, "×", 24.0, &name);
                     is_closed = tip(ui, response, "Back to the stage", None).clicked();
                 }
             },

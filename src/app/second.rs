@@ -14,23 +14,15 @@ use std::sync::Arc;
 pub struct Second {
     /// `None` until a second picture is needed.
     tracer: Option<Tracer>,
-    of: Option<(Other, Arc<Origin>)>,
+    pub of: Option<(Other, Arc<Origin>)>,
     /// The picture, if it was kept.
     picture: KeptPicture,
     /// Its film when it was last read.
-    film: Option<Arc<ReferenceMeans>>,
+    pub film: Option<Arc<ReferenceMeans>>,
     films: Answers<(Arc<Origin>, Arc<ReferenceMeans>)>,
 }
 
 impl Second {
-    /// The newest second picture.
-    pub fn shown_mut(&mut self) -> Option<&mut Shown> {
-        match &self.of {
-            Some((Other::Kept(kept), _)) => self.picture.shown_mut(kept),
-            _ => self.tracer.as_mut().and_then(Tracer::shown_mut),
-        }
-    }
-
     /// The newest second picture.
     pub fn shown(&self) -> Option<&Shown> {
         match &self.of {
@@ -39,31 +31,12 @@ impl Second {
         }
     }
 
-    /// Its film, while the difference is shown.
-    pub fn film(&self) -> Option<&Arc<ReferenceMeans>> {
-        self.film.as_ref()
-    }
-
-    /// Whether a picture of the current comparison is available.
-    pub fn has_picture(&self, document: &Document, view: &ViewState) -> bool {
-        match (view.compared(document), &self.of, self.shown()) {
-            (Some(wanted), Some((kept, origin)), Some(shown)) => {
-                wanted == *kept && Arc::ptr_eq(origin, &shown.document.origin)
-            }
-            _ => false,
-        }
-    }
-
     pub fn pause(&self) {
-        if let Some(tracer) = &self.tracer {
-            tracer.pause();
-        }
+        self.tracer.iter().for_each(Tracer::pause);
     }
 
     pub fn resume(&self) {
-        if let Some(tracer) = &self.tracer {
-            tracer.resume();
-        }
+        self.tracer.iter().for_each(Tracer::resume);
     }
 
     /// Takes the film if it has been read.
@@ -174,7 +147,7 @@ mod tests {
         let answer = |second: &mut Second, origin: &Arc<Origin>| {
             second.films.answer(&context).give(Ok((Arc::clone(origin), Arc::new(film()))));
             second.receive();
-            second.film().is_some()
+            second.film.as_ref().is_some()
         };
         assert!(!answer(&mut second, &mine), "the comparison is over");
         second.of = Some((Other::Stage(stage), Arc::clone(&mine)));

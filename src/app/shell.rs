@@ -4,10 +4,9 @@ use super::dialogs::Dialogs;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::toasts::Toasts;
 use crate::system::interrupt::Interrupt;
-use anyhow::{Context as _, Result};
-use std::path::Path;
 use std::sync::Arc;
 
+#[derive(Default)]
 pub struct Shell {
     pub dialogs: Dialogs,
     pub toasts: Toasts,
@@ -24,24 +23,6 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// # Errors
-    /// If the frame log cannot be written.
-    pub fn new(frame_log: Option<&Path>, crashes_at: Option<u64>) -> Result<Self> {
-        let create =
-            |path: &Path| FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()));
-        Ok(Shell {
-            dialogs: Dialogs::default(),
-            toasts: Toasts::default(),
-            frame_log: frame_log.map(create).transpose()?,
-            frame_times: FrameTimes::default(),
-            performed: None,
-            had_focus: false,
-            is_dressed: false,
-            crashes_at,
-            interrupt: None,
-        })
-    }
-
     pub fn is_interrupted(&self) -> bool {
         self.interrupt.as_ref().is_some_and(|interrupt| interrupt.is_set())
     }

@@ -82,7 +82,7 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{Kept, Named, Tone};
+    use crate::app::model::{Kept, Tone};
     use crate::film::Film;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
@@ -122,7 +122,7 @@ mod tests {
             view.tone.expose(1.0);
             let (range, mut placement) = (view.tone.range, Placement::default());
             placement.actual_size();
-            let before = placement.zoom();
+            let before = placement.zoom;
             let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
             assert!(document.camera == home && sight.lasts(&document, &view));
             assert_eq!(view.show(), Show::of_means(stage.sight.means));
@@ -133,10 +133,10 @@ mod tests {
                 }
                 _ => {}
             }
-            assert_ne!(placement.zoom(), before);
+            assert_ne!(placement.zoom, before);
             view.tone.expose(1.0);
             sight.end(&mut document, &mut view, &mut placement);
-            assert_eq!((document.camera, placement.zoom()), (moved, before));
+            assert_eq!((document.camera, placement.zoom), (moved, before));
             assert_eq!((view.show(), view.mode()), (Show::Picture, None));
             assert_eq!(
                 view.tone,
@@ -172,8 +172,7 @@ mod tests {
         other.toggle(Mode::Difference, With::Kept(0));
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        let kept = Arc::new(kept(&document));
-        other.kept.add(Named { name: String::new(), kept });
+        other.kept.add(kept(&document));
         other.look(None);
         assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
         other.look(Some(0));

@@ -39,18 +39,14 @@ pub struct Sizer {
     is_asked: bool,
     /// A large size that the user wants.
     pub accepted: Option<[u32; 2]>,
-    offer: Option<[u32; 2]>,
+    /// The size at which the picture could be rendered anew, if it is only scaled.
+    pub offer: Option<[u32; 2]>,
 }
 
 impl Sizer {
     /// The user wants the size that the picture should have, whatever is lost.
     pub fn ask(&mut self) {
         self.is_asked = true;
-    }
-
-    /// The size at which the picture could be rendered anew, if it is only scaled.
-    pub fn offer(&self) -> Option<[u32; 2]> {
-        self.offer
     }
 
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
@@ -75,13 +71,9 @@ impl Sizer {
             return;
         }
         let is_by_hand = context.input(|input| input.pointer.any_down());
-        // The book's size changes only when the user chooses it or another picture.
-        let verdict = if is_asked || sizing == Sizing::Book {
-            Verdict::Change
-        } else {
-            verdict(present, now.duration_since(since), is_by_hand)
-        };
-        match verdict {
+        match verdict(present, now.duration_since(since), is_by_hand) {
+            // The book's size changes only when the user chooses it or another picture.
+            _ if is_asked || sizing == Sizing::Book => document.set_size(wanted),
             Verdict::Change => document.set_size(wanted),
             Verdict::Wait(time) => context.request_repaint_after(time),
             Verdict::Keep => self.offer = Some(wanted),

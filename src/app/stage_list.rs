@@ -3,13 +3,13 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::finder::Finder;
-use super::theme;
-use super::widgets::{caption, tip};
-use crate::measure::stress::{Case, shown_cases};
+use super::widgets::{caption, choice, tip};
+use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
+use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    self, ColorImage, Context, Id, Key, Modifiers, Rect, Response, Sense, Stroke, StrokeKind, TextStyle,
-    TextureHandle, Ui, WidgetInfo, vec2,
+    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Rect, Response,
+    RichText, TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
@@ -24,51 +24,34 @@ fn place() -> Id {
     Id::unique("list of stages")
 }
 
-/// A row of the list.
-#[derive(Clone, Copy, PartialEq)]
-enum Row {
-    Stage(&'static Stage),
-    Case(&'static Case),
+/// All rows: the walk through the book, what else is a stage, and the extreme scenes.
+fn rows() -> impl Iterator<Item = Command> {
+    let aside = Stage::ALL.iter().filter(|stage| !stage.is_in_book());
+    Stage::walk().chain(aside).map(Command::Stage).chain(shown_cases().iter().map(Command::Extreme))
 }
 
-impl Row {
-    fn all() -> impl Iterator<Item = Row> {
-        let aside = Stage::ALL.iter().filter(|stage| !stage.is_in_book());
-        Stage::walk().chain(aside).map(Row::Stage).chain(shown_cases().iter().map(Row::Case))
-    }
-
-    fn command(self) -> Command {
-        match self {
-            Row::Stage(stage) => Command::Stage(stage),
-            Row::Case(case) => Command::Extreme(case),
-        }
-    }
-
-    fn heading(self) -> String {
-        match self {
-            Row::Stage(stage) if stage.is_in_book() => format!("{} {}", stage.chapter(), stage.chapter_title),
-            _ => LAST_HEADING.to_owned(),
-        }
-    }
-
-    /// The words by which it is found; what is new only if nothing has them in its name.
-    fn words(self, is_long: bool) -> String {
-        let name = match self {
-            Row::Stage(Stage { section, section_title, title, id, .. }) => {
-                format!("{section} {section_title} {title} {id}")
-            }
-            Row::Case(case) => case.title().to_owned(),
-        };
-        let more = if is_long { self.command().help() } else { "" };
-        format!("{name} {} {more}", self.heading()).to_lowercase()
+fn heading_of(row: Command) -> String {
+    match row {
+        Command::Stage(stage) if stage.is_in_book() => format!("{} {}", stage.chapter(), stage.chapter_title),
+        _ => LAST_HEADING.to_owned(),
     }
 }
 
-fn found(typed: &str) -> Vec<Row> {
+/// The words by which a row is found; what is new only if nothing has them in its name.
+fn words_of(row: Command, is_long: bool) -> String {
+    let more = match row {
+        Command::Stage(Stage { section_title, id, .. }) => format!("{section_title} {id}"),
+        _ => String::new(),
+    };
+    let help = if is_long { row.help() } else { "" };
+    format!("{} {more} {} {help}", row.name(), heading_of(row)).to_lowercase()
+}
+
+fn found(typed: &str) -> Vec<Command> {
     let typed = typed.to_lowercase();
-    let having = |is_long| -> Vec<Row> {
-        let has = |row: &Row| typed.split_whitespace().all(|word| row.words(is_long).contains(word));
-        Row::all().filter(has).collect()
+    let having = |is_long| -> Vec<Command> {
+        let has = |row: &Command| typed.split_whitespace().all(|word| words_of(*row, is_long).contains(word));
+        rows().filter(has).collect()
     };
     let by_name = having(false);
     if by_name.is_empty() { having(true) } else { by_name }
@@ -76,16 +59,16 @@ fn found(typed: &str) -> Vec<Row> {
 
 /// Opens the list at the picture that is shown, or at its end.
 pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
-    let is_first = |row: &Row| match is_at_end {
-        true => row.heading() == LAST_HEADING,
-        false => facts.is_on(row.command()),
+    let is_first = |row| match is_at_end {
+        true => heading_of(row) == LAST_HEADING,
+        false => facts.is_on(row),
     };
-    let chosen = Row::all().position(|row| is_first(&row)).unwrap_or(0);
+    let chosen = rows().position(is_first).unwrap_or(0);
     context.data_mut(|data| data.insert_temp(place(), Finder::at(chosen)));
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
-pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     ui.set_width(WIDTH);
     // Tips stand beside what clips a column.
     let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
@@ -101,9 +84,9 @@ pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         "No stage is called that. Press Escape to see all.",
     );
     let mut heading = String::new();
-    let draw = |ui: &mut Ui, row: &Row, is_chosen| {
-        if row.heading() != heading {
-            heading = row.heading();
+    let draw = |ui: &mut Ui, row: &Command, is_chosen| {
+        if heading_of(*row) != heading {
+            heading = heading_of(*row);
             caption(ui, &format!("  {heading}"));
         }
         row_ui(ui, *row, is_chosen)
@@ -111,50 +94,27 @@ pub fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let (found, run) = finder.ui(ui, words, height, found, draw);
     ui.data_mut(|data| data.insert_temp(place(), finder));
     if let Some(run) = run {
-        commands.push(found[run].command());
+        facts.send(found[run]);
         ui.close();
     }
 }
 
-fn row_ui(ui: &mut Ui, row: Row, is_chosen: bool) -> Response {
-    let picture = match row {
-        Row::Stage(stage) => thumbnail(ui.ctx(), stage),
-        Row::Case(_) => None,
-    };
-    let height = if picture.is_some() { 52.0 } else { 28.0 };
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
-    let name = row.command().name();
-    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, &name));
-    if !ui.is_rect_visible(rect) {
-        return response;
-    }
-    let colours = theme::colours(ui);
-    let painter = ui.painter();
-    if is_chosen || response.hovered() {
-        painter.rect_filled(rect, 4, if is_chosen { colours.tint } else { colours.hovered });
-    }
-    if is_chosen {
-        painter.rect_stroke(rect, 4, Stroke::new(1.0, colours.accent), StrokeKind::Inside);
-    }
-    let [small, body] = [TextStyle::Small, TextStyle::Body].map(|style| style.resolve(ui.style()));
-    let text_at = |x: f32, y: f32| rect.left_center() + vec2(x, y);
-    match (row, picture) {
-        (Row::Stage(stage), Some(picture)) => {
-            let place = Rect::from_min_size(rect.left_top() + vec2(8.0, 6.0), PICTURE);
-            painter.image(
-                picture.id(),
-                place,
-                Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0)),
-                egui::Color32::WHITE,
-            );
-            let color = if is_chosen { colours.text } else { colours.weak };
-            let left = egui::Align2::LEFT_CENTER;
-            painter.text(text_at(92.0, -9.0), left, stage.section, small, color);
-            painter.text(text_at(92.0, 8.0), left, stage.title, body, colours.strong);
+fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool) -> Response {
+    let button = match row {
+        Command::Stage(stage) if let Some(picture) = thumbnail(ui.ctx(), stage) => {
+            let mut words = LayoutJob::default();
+            let number = RichText::new(format!("{}\n", stage.section)).small().weak();
+            for text in [number, RichText::new(stage.title).strong()] {
+                text.append_to(&mut words, ui.style(), FontSelection::Default, Align::Center);
+            }
+            let picture = Image::new((picture.id(), PICTURE));
+            choice(ui, is_chosen, (picture, words, Atom::grow())).min_size(vec2(ui.available_width(), 52.0))
         }
-        _ => _ = painter.text(text_at(8.0, 0.0), egui::Align2::LEFT_CENTER, name, body, colours.strong),
-    }
-    tip(ui, response, row.command().help(), None)
+        _ => choice(ui, is_chosen, (row.name(), Atom::grow())).min_size(vec2(ui.available_width(), 28.0)),
+    };
+    let response = ui.add(button.frame_when_inactive(is_chosen));
+    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_chosen, row.name()));
+    tip(ui, response, row.help(), None)
 }
 
 macro_rules! pictures {
@@ -207,10 +167,10 @@ mod tests {
     fn every_stage_has_its_picture_and_is_found() {
         for stage in Stage::ALL {
             assert!(image_of(stage).is_some(), "{}", stage.id);
-            assert!(found(stage.section).contains(&Row::Stage(stage)), "{}", stage.id);
+            assert!(found(stage.section).contains(&Command::Stage(stage)), "{}", stage.id);
         }
-        assert_eq!(Row::all().count(), Stage::ALL.len() + shown_cases().len());
-        assert!(found("schl") == [Row::Stage(Stage::find("glass-schlick").unwrap())]);
+        assert_eq!(rows().count(), Stage::ALL.len() + shown_cases().len());
+        assert!(found("schl") == [Command::Stage(Stage::find("glass-schlick").unwrap())]);
         assert!(found("no such words").is_empty());
     }
 }

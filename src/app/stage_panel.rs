@@ -3,25 +3,27 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Document, With, partner};
-use super::widgets::{About, add_command, choice, command_button, hint, primary, small, switch, tip};
+use super::widgets::{
+    add_command, choice, command_button, command_switch, hint, primary, small, tip, with_keys,
+};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
 use eframe::egui::{Button, Label, Link, RichText, Ui};
 
-pub fn ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let document = facts.document();
     match (document.stage(), document.case()) {
-        (Some(stage), _) => stage_ui(ui, stage, facts, commands),
-        (None, Some(case)) => case_ui(ui, case, facts, commands),
+        (Some(stage), _) => stage_ui(ui, stage, facts),
+        (None, Some(case)) => case_ui(ui, case, facts),
         (None, None) => recipe_ui(ui, document),
     }
-    compare_ui(ui, facts, commands);
+    compare_ui(ui, facts);
     // At the end, so that it moves nothing.
     if document.has_changed_scene() || document.camera != document.origin.recipe.camera {
         ui.add_space(8.0);
         let what = if document.stage().is_some() { "stage" } else { "picture" };
         hint(ui, &format!("You changed this {what}."));
-        command_button(ui, facts, Command::ResetAll, "Reset all", commands);
+        command_button(ui, facts, Command::ResetAll, "Reset all");
     }
 }
 
@@ -40,13 +42,13 @@ pub fn paragraph(ui: &mut Ui, heading: &str, text: &str) {
     ui.add(Label::new(RichText::new(text).line_height(Some(20.0))).wrap());
 }
 
-fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts) {
     title(ui, &format!("{} {}", stage.chapter(), stage.chapter_title), stage.title);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
         let book = format!("{} in the book", stage.section);
         for (name, command) in [(book.as_str(), Command::Book), ("Companion", Command::Companion)] {
-            add_command(ui, facts, command, Link::new(name), commands);
+            add_command(ui, facts, command, Link::new(name));
         }
     });
     for (heading, text) in
@@ -54,28 +56,23 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
     {
         paragraph(ui, heading, text);
     }
-    show_me(ui, stage, facts, commands);
+    show_me(ui, stage, facts);
 }
 
 /// A button that shows what to look for, and then says what is seen.
-fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts) {
     let command = Command::ShowMe;
     let reason = facts.disabled_reason(command);
     ui.add_space(4.0);
-    let response = match () {
-        () if facts.has_sight => ui.button("Return"),
-        // The card of the first steps has the one button to press next.
-        () if facts.model.has_first_steps || reason.is_some() => {
-            ui.add_enabled(reason.is_none(), Button::new("Show me"))
-        }
-        () => primary(ui, "Show me"),
+    // The card of the first steps has the one button to press next.
+    let response = if facts.has_sight || facts.model.has_first_steps || reason.is_some() {
+        let label = if facts.has_sight { "Return" } else { "Show me" };
+        ui.add_enabled(reason.is_none(), Button::new(label))
+    } else {
+        primary(ui, "Show me")
     };
-    let help = match facts.has_sight {
-        true => "Goes back to how it was before Show me (Escape)",
-        false => "Shows you where to look: sets zoom, view or wipe; again returns (H)",
-    };
-    if tip(ui, response, help, reason.as_deref()).clicked() {
-        commands.push(command);
+    if tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref()).clicked() {
+        facts.send(command);
     }
     if facts.has_sight {
         let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));
@@ -84,7 +81,7 @@ fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command
 }
 
 /// The picture to compare with and how, if there is one that teaches something.
-fn compare_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn compare_ui(ui: &mut Ui, facts: &Facts) {
     let is_book = facts.model.view.with() == With::Book;
     let other = match facts.document().stage().and_then(partner) {
         _ if is_book => "The book\u{2019}s arithmetic".to_owned(),
@@ -96,16 +93,7 @@ fn compare_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     ui.add_space(-4.0);
     ui.add(Label::new(other).wrap());
     let wipe = if is_book { Command::BookArithmetic } else { Command::Wipe };
-    let commanded = [wipe, Command::Difference].map(|command| (command, facts.disabled_reason(command)));
-    let [(_, no_wipe), (_, no_difference)] = &commanded;
-    let about = [
-        About::new("Wipe", "Drag a divider between the two (C)").disabled_if(no_wipe.as_deref()),
-        About::new("Difference", "Where the two differ, and by how much (X)")
-            .disabled_if(no_difference.as_deref()),
-    ];
-    let chosen = [wipe, Command::Difference].into_iter().find(|command| facts.is_on(*command));
-    let options = [(Some(wipe), about[0]), (Some(Command::Difference), about[1])];
-    commands.extend(switch(ui, 0.0, chosen, &options).flatten());
+    command_switch(ui, facts, 0.0, &[("Wipe", wipe), ("Difference", Command::Difference)]);
 }
 
 /// Text about a scene that is not a stage.
@@ -116,7 +104,7 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
-fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>) {
+fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts) {
     title(ui, case.family.title, case.title());
     let watch = case.watch.map_or("", |watch| watch.look_for);
     for (heading, text) in [
@@ -129,7 +117,7 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     ui.add_space(4.0);
     let command = Command::BookArithmetic;
     let button = choice(ui, facts.is_on(command), command.name());
-    add_command(ui, facts, command, button, commands);
+    add_command(ui, facts, command, button);
 }
 
 #[cfg(test)]
@@ -141,28 +129,22 @@ mod tests {
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
 
-    struct Panel {
-        facts: Facts,
-        commands: Vec<Command>,
-    }
-
-    fn panel(words: &str) -> Harness<'static, Panel> {
-        let panel = Panel { facts: facts_of(words), commands: Vec::new() };
-        let draw = |ui: &mut Ui, Panel { facts, commands }: &mut Panel| super::ui(ui, facts, commands);
-        dressed([270.0, 900.0]).build_ui_state(draw, panel)
+    fn panel(words: &str) -> Harness<'static, Facts> {
+        let draw = |ui: &mut Ui, facts: &mut Facts| super::ui(ui, facts);
+        dressed([270.0, 900.0]).build_ui_state(draw, facts_of(words))
     }
 
     #[test]
     fn spheres_and_materials_are_counted_as_edited() {
         let mut harness = panel("--scene field:20 --size 32x18");
-        let shown = |harness: &Harness<'_, Panel>| {
-            let scene = harness.state().facts.document().scene();
+        let shown = |harness: &Harness<'_, Facts>| {
+            let scene = harness.state().document().scene();
             let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
             assert!(harness.query_by_label(&words).is_some(), "{words}");
             words
         };
         let before = shown(&harness);
-        let document = &mut harness.state_mut().facts.model.document;
+        let document = &mut harness.state_mut().model.document;
         let mut scene = document.scene().clone();
         let material = scene.materials[0].clone();
         scene.materials.extend([material.clone(), material]);

@@ -14,7 +14,7 @@ use crate::film::Film;
 use crate::job::render::BackendInfo;
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
-    self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText,
+    self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
     Stroke, Ui, accesskit::Live,
 };
 
@@ -31,38 +31,12 @@ const TERMS: &str = "A path is one random way of light, followed back from the c
                      finished picture, in per cent of white.";
 
 /// Draws the bar. `offered` is the size at which a scaled picture can be rendered.
-pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
     let panel =
         egui::Panel::bottom("status").exact_size(HEIGHT).frame(theme::panel(Margin::symmetric(16, 4)));
     let shown = panel.show(ui, |ui| {
-        ui.horizontal_centered(|ui| {
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                details(ui, facts);
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    let sentence = sentence(facts);
-                    let is_fault = facts.invalid.is_some() || matches!(facts.status.phase, Phase::Failed(_));
-                    let color = if is_fault { theme::colours(ui).bad } else { ui.visuals().text_color() };
-                    let response = ui.add(Label::new(RichText::new(&sentence).color(color)).truncate());
-                    announce(&response, &sentence);
-                    let doubt =
-                        facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
-                    tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
-                    left_out(ui, facts.status.rejected_samples);
-                    let is_inside = spheres::inside(facts.document()) && facts.document().case().is_none();
-                    if is_inside || facts.is_lost {
-                        ui.label(match is_inside {
-                            true => "The camera is inside a sphere.",
-                            false => "Nothing but sky or ground is in sight.",
-                        });
-                        command_button(ui, facts, Command::Home, "Home", commands);
-                    } else if let Some([width, height]) = offered {
-                        ui.label("This picture is scaled.");
-                        let name = format!("Render at {width} × {height}");
-                        command_button(ui, facts, Command::Size(Sizing::Viewport), &name, commands);
-                    }
-                });
-            });
-        });
+        let sides = Sides::new().height(ui.available_height()).shrink_left().truncate();
+        sides.show(ui, |ui| sentence_ui(ui, facts, offered), |ui| details(ui, facts));
     });
     if let Some(share) = share(facts) {
         let rect = shown.response.rect;
@@ -70,6 +44,30 @@ pub fn ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>, commands: &mut 
         let color = if facts.model.is_paused { colours.weak } else { colours.accent };
         let end = rect.left() + rect.width() * share as f32;
         ui.painter().hline(rect.left()..=end, rect.top() + 1.0, Stroke::new(2.0, color));
+    }
+}
+
+/// The sentence, and what the user can do about the picture.
+fn sentence_ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
+    let sentence = sentence(facts);
+    let is_fault = facts.invalid.is_some() || matches!(facts.status.phase, Phase::Failed(_));
+    let color = if is_fault { theme::colours(ui).bad } else { ui.visuals().text_color() };
+    let response = ui.label(RichText::new(&sentence).color(color));
+    announce(&response, &sentence);
+    let doubt = facts.status.doubt.as_ref().map_or_else(String::new, |doubt| format!(". {doubt}"));
+    tip(ui, response, &format!("{ERROR_HELP}{doubt}"), None);
+    left_out(ui, facts.status.rejected_samples);
+    let is_inside = spheres::inside(facts.document()) && facts.document().case().is_none();
+    if is_inside || facts.is_lost {
+        ui.label(match is_inside {
+            true => "The camera is inside a sphere.",
+            false => "Nothing but sky or ground is in sight.",
+        });
+        command_button(ui, facts, Command::Home, "Home");
+    } else if let Some([width, height]) = offered {
+        ui.label("This picture is scaled.");
+        let name = format!("Render at {width} × {height}");
+        command_button(ui, facts, Command::Size(Sizing::Viewport), &name);
     }
 }
 
@@ -105,13 +103,9 @@ pub fn sentence(facts: &Facts) -> String {
         return format!("Not rendered: {reason}");
     }
     let kept = &facts.model.view.kept;
-    if let Some((place, named)) = kept.looked().and_then(|place| Some((place, kept.get(place)?))) {
-        let samples = grouped(named.kept.samples());
-        let name = &named.name;
-        return format!(
-            "Kept {}: {name}, {samples} samples per pixel. Escape returns to the picture",
-            place + 1
-        );
+    if let Some((place, shown)) = kept.looked().zip(kept.shown()) {
+        let (title, samples) = (kept.title(place), grouped(shown.samples()));
+        return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {
         return checked.clone();
@@ -232,13 +226,6 @@ fn figures(facts: &Facts) -> Vec<(&'static str, String)> {
         ("Rays per path", if has_paths { format!("{rays:.1} on average") } else { unknown() }),
         ("Processor", processors(status).unwrap_or_else(unknown)),
         ("Lanes", lanes.unwrap_or_else(unknown)),
-        (
-            "Samples left out",
-            match status.rejected_samples {
-                0 => "none".to_owned(),
-                count => grouped(count),
-            },
-        ),
         ("Memory of this picture", format!("{:.1} MB", bytes as f64 / 1e6)),
     ]
 }

@@ -1,22 +1,23 @@
 //! A picture as a texture of the window.
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A picture, and its texture once it was drawn.
 pub struct Texture {
     image: Arc<ColorImage>,
-    handle: Option<(TextureHandle, TextureOptions)>,
+    handle: RefCell<Option<(TextureHandle, TextureOptions)>>,
 }
 
 impl Texture {
     /// Makes it from three bytes per pixel, top row first. The texture of `earlier` is reused.
     pub fn new([width, height]: [u32; 2], rgb8: &[u8], earlier: Option<Texture>) -> Self {
         let image = Arc::new(ColorImage::from_rgb([width as usize, height as usize], rgb8));
-        let handle = earlier.and_then(|earlier| earlier.handle).map(|(mut handle, options)| {
-            handle.set(Arc::clone(&image), options);
-            (handle, options)
-        });
+        let handle = RefCell::new(earlier.and_then(|earlier| earlier.handle.into_inner()));
+        if let Some((handle, options)) = &mut *handle.borrow_mut() {
+            handle.set(Arc::clone(&image), *options);
+        }
         Texture { image, handle }
     }
 
@@ -31,8 +32,8 @@ impl Texture {
     }
 
     /// The texture for drawing, with square or smoothed pixels.
-    pub fn id(&mut self, context: &Context, options: TextureOptions) -> TextureId {
-        match &mut self.handle {
+    pub fn id(&self, context: &Context, options: TextureOptions) -> TextureId {
+        match &mut *self.handle.borrow_mut() {
             Some((handle, old)) => {
                 if *old != options {
                     handle.set(Arc::clone(&self.image), options);
@@ -57,7 +58,7 @@ mod tests {
     #[test]
     fn a_pixel_has_its_colour_and_a_new_picture_the_same_texture() {
         let context = Context::default();
-        let mut first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);
+        let first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);
         assert_eq!(
             [[0, 0], [1, 0], [0, 1]].map(|at| first.colour(at)),
             [[1, 2, 3], [4, 5, 6], [7, 8, 9]].map(Some)
@@ -78,7 +79,7 @@ mod tests {
             "it is smoothed at once"
         );
         uploaded.clear();
-        let mut second = Texture::new([1, 3], &[0; 9], Some(first));
+        let second = Texture::new([1, 3], &[0; 9], Some(first));
         assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]), "it is uploaded at once");
         assert_eq!(second.id(&context, smooth), id);
         context.tex_manager().write().take_delta().clear();

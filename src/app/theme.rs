@@ -1,6 +1,5 @@
 //! Colours, fonts and distances: subdued greys, and one accent colour, the blue of the book's sky.
 
-use super::model::Theme;
 use eframe::egui::style::{HandleShape, ScrollStyle, Spacing};
 use eframe::egui::{
     self, Color32, Context, CornerRadius, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui,
@@ -85,15 +84,6 @@ pub fn install(context: &Context) {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         context.style_mut_of(theme, |style| dress(style, theme == egui::Theme::Dark));
     }
-}
-
-/// Chooses a theme.
-pub fn choose(context: &Context, theme: Theme) {
-    context.set_theme(match theme {
-        Theme::System => egui::ThemePreference::System,
-        Theme::Dark => egui::ThemePreference::Dark,
-        Theme::Light => egui::ThemePreference::Light,
-    });
 }
 
 fn dress(style: &mut Style, is_dark: bool) {

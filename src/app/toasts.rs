@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::theme;
-use super::widgets::{Sign, sign_button};
+use super::widgets::sign_button;
 use crate::system::console;
 use eframe::egui::{self, Align2, Id, Label, Rect, RichText, accesskit::Live, vec2};
 use std::time::{Duration, Instant};
@@ -166,7 +166,7 @@ impl Toast {
                     }
                 });
             });
-            is_closed |= sign_button(ui, Sign::Close, 20.0, "Close this message").clicked();
+            is_closed |= sign_button(ui, "×", 20.0, "Close this message").clicked();
         });
         is_closed
     }

@@ -6,10 +6,12 @@ use super::kept::{FilmId, Query, Subject};
 use super::model::{Channel, Show, Tone, ViewState};
 use super::theme;
 use super::widgets::{
-    About, Header, Number, check, compact, entry, fold, hint, list, row, small, switch, tip,
+    About, Header, Number, add_command, compact, entry, fold, hint, list, row, small, switch, tip,
 };
 use crate::film::Histogram;
-use eframe::egui::{self, Align2, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    self, Align2, Checkbox, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
+};
 use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
@@ -36,8 +38,7 @@ impl ToneUi {
             return;
         }
         let key = (subject.film_id(), white, subject.samples());
-        let is_same =
-            self.query.asked().is_some_and(|(film, of_white, _)| (*film, *of_white) == (key.0, white));
+        let is_same = self.query.asked.is_some_and(|(film, of_white, _)| (film, of_white) == (key.0, white));
         let wait = self.asked_at.map_or(Duration::ZERO, |at| INTERVAL.saturating_sub(at.elapsed()));
         if is_same && !wait.is_zero() {
             context.request_repaint_after(wait);
@@ -47,7 +48,7 @@ impl ToneUi {
     }
 
     /// Draws what is shown and how bright, and the histogram.
-    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts, commands: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, view: &mut ViewState, facts: &Facts) {
         self.is_open = false;
         let (show, channel) = (view.show(), view.tone.channel);
         let mut summary = vec![show.name().trim_end_matches('…').to_lowercase()];
@@ -65,17 +66,13 @@ impl ToneUi {
                     let (command, reason) = (Command::Show(show), facts.useless_show(show));
                     let about = About::new(show.name(), command.help()).disabled_if(reason.as_deref());
                     if entry(ui, facts.is_on(command), about) {
-                        commands.push(command);
+                        facts.send(command);
                     }
                 }
             });
             let mut is_denoised = view.is_denoised;
-            let reason = facts.disabled_reason(Command::Denoise);
-            let (name, help) = (Command::Denoise.name(), Command::Denoise.help());
-            let about = About::new(&name, help);
-            if check(ui, about.disabled_if(reason.as_deref()), &mut is_denoised).changed() {
-                commands.push(Command::Denoise);
-            }
+            let denoise = Checkbox::new(&mut is_denoised, Command::Denoise.name());
+            add_command(ui, facts, Command::Denoise, denoise);
             let reason = facts.no_exposure();
             brightness_ui(ui, &mut view.tone, reason.as_deref());
             match &self.histogram {

@@ -117,11 +117,6 @@ impl Tracer {
     }
 
     /// The newest picture.
-    pub fn shown_mut(&mut self) -> Option<&mut Shown> {
-        self.shown.as_mut()
-    }
-
-    /// The newest picture.
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
     }

@@ -27,9 +27,8 @@ pub struct Tracing {
     pub film: Option<Film>,
     /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
-    /// The run and how many of its messages and failures have been seen.
-    seen_messages: (u64, usize),
-    seen_failures: (u64, usize),
+    /// The run, and how many of its messages and failures have been seen.
+    seen: (u64, usize, usize),
 }
 
 impl Tracing {
@@ -43,8 +42,7 @@ impl Tracing {
             seconds_before: Some(0.0),
             film: None,
             invalid: None,
-            seen_messages: (0, 0),
-            seen_failures: (0, 0),
+            seen: (0, 0, 0),
         })
     }
 
@@ -106,7 +104,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film()),
+            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film.as_ref()),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
@@ -121,7 +119,11 @@ impl Tracing {
     /// Shows the render's new messages. If the chosen device has failed, chooses the one that goes on.
     pub fn report(&mut self, device: &mut Device, toasts: &mut Toasts) {
         let status = self.main.status();
-        for message in unseen(self.seen_messages, status) {
+        let (messages, failures) = match self.seen {
+            (run, messages, failures) if run == status.run => (messages, failures),
+            _ => (0, 0),
+        };
+        for message in &status.messages[messages..] {
             if status.given_up.is_empty() {
                 toasts.warn(message, status.run);
             } else {
@@ -131,17 +133,10 @@ impl Tracing {
         if status.samples_per_pixel > 0 {
             toasts.end_warnings(status.run);
         }
-        self.seen_messages = (status.run, status.messages.len());
-        let (run, seen) = self.seen_failures;
-        let (next, seen) = device_after(*device, if run == status.run { seen } else { 0 }, status);
+        let (next, failures) = device_after(*device, failures, status);
         *device = next;
-        self.seen_failures = (status.run, seen);
+        self.seen = (status.run, status.messages.len(), failures);
     }
-}
-
-fn unseen((run, seen): (u64, usize), status: &Status) -> &[String] {
-    let seen = if run == status.run { seen } else { 0 };
-    status.messages.get(seen..).unwrap_or_default()
 }
 
 /// The device that the switch shows, and how many failures it has answered to: once `chosen` has failed, the one that
@@ -161,15 +156,6 @@ fn device_after(chosen: Device, seen: usize, status: &Status) -> (Device, usize)
 mod tests {
     use super::*;
     use crate::job::render::BackendInfo;
-
-    #[test]
-    fn each_message_of_a_run_is_shown_once() {
-        let messages = ["a", "b"].map(str::to_owned).to_vec();
-        let status = Status { run: 2, messages, ..Status::default() };
-        assert_eq!(unseen((1, 1), &status), ["a", "b"], "those of another run");
-        assert_eq!(unseen((2, 1), &status), ["b"]);
-        assert!(unseen((2, 2), &status).is_empty());
-    }
 
     #[test]
     fn only_a_failure_of_the_chosen_device_changes_the_choice() {

@@ -5,15 +5,18 @@ use super::facts::Facts;
 use super::theme;
 use eframe::egui::collapsing_header::{CollapsingState, paint_default_icon};
 use eframe::egui::{
-    self, Align, Button, Color32, ComboBox, CornerRadius, DragValue, Id, Key, Label, Layout, Painter, Pos2,
+    self, Align, Atom, Button, Color32, ComboBox, CornerRadius, DragValue, Id, IntoAtoms, Key, Label, Layout,
     Rect, RectAlign, Response, RichText, Role, Sense, Sides, Slider, SliderClamping, Stroke, Tooltip, Ui,
-    UiBuilder, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
+    UiBuilder, Vec2, Widget, WidgetInfo, WidgetText, pos2, response::Flags, vec2,
 };
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
 /// Width of a field for a number, points.
 pub const FIELD: f32 = 64.0;
+
+/// Space between the controls of a group, points.
+const SPACING: f32 = 8.0;
 
 /// Height of a row of tabs, points.
 pub const TABS: f32 = 40.0;
@@ -159,25 +162,34 @@ pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
 }
 
 /// A button for a command, under this name.
-pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str, commands: &mut Vec<Command>) {
-    add_command(ui, facts, command, Button::new(name), commands);
+pub fn command_button(ui: &mut Ui, facts: &Facts, command: Command, name: &str) {
+    add_command(ui, facts, command, Button::new(name));
 }
 
 /// A control for a command, with its help and keys as tooltip.
-pub fn add_command(
-    ui: &mut Ui,
-    facts: &Facts,
-    command: Command,
-    control: impl Widget,
-    commands: &mut Vec<Command>,
-) -> Response {
+pub fn add_command(ui: &mut Ui, facts: &Facts, command: Command, control: impl Widget) -> Response {
     let reason = facts.disabled_reason(command);
     let response = ui.add_enabled(reason.is_none(), control);
     let response = tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref());
     if response.clicked() {
-        commands.push(command);
+        facts.send(command);
     }
     response
+}
+
+/// Buttons of commands, of which at most one is on, each at least `width` wide.
+pub fn command_switch(ui: &mut Ui, facts: &Facts, width: f32, named: &[(&str, Command)]) {
+    let words = |(_, command): &(&str, Command)| {
+        (with_keys(ui, command.help(), *command), facts.disabled_reason(*command))
+    };
+    let words: Vec<_> = named.iter().map(words).collect();
+    let options = named.iter().zip(&words).map(|((name, command), (help, reason))| {
+        (Some(*command), About::new(name, help).disabled_if(reason.as_deref()))
+    });
+    let on = named.iter().map(|(_, command)| *command).find(|command| facts.is_on(*command));
+    if let Some(Some(command)) = switch(ui, width, on, &options.collect::<Vec<_>>()) {
+        facts.send(command);
+    }
 }
 
 /// A help with the keys of a command.
@@ -189,9 +201,9 @@ pub fn with_keys(ui: &Ui, help: &str, command: Command) -> String {
 }
 
 /// A button that is tinted while it is on.
-pub fn choice<'a>(ui: &Ui, is_on: bool, text: impl Into<WidgetText>) -> Button<'a> {
+pub fn choice<'a>(ui: &Ui, is_on: bool, content: impl IntoAtoms<'a>) -> Button<'a> {
     let stroke = if is_on { Stroke::new(1.0, theme::colours(ui).accent) } else { Stroke::NONE };
-    Button::new(text.into()).selected(is_on).stroke(stroke)
+    Button::new(content).selected(is_on).stroke(stroke)
 }
 
 /// Buttons of which one is on, side by side, each at least `width` wide. Returns the one that was clicked.
@@ -258,13 +270,14 @@ pub struct Number<'a> {
     limits: RangeInclusive<f64>,
     suffix: &'a str,
     speed: Option<f64>,
-    scale: Option<f64>,
+    /// The largest of the numbers that it belongs to: beside that, rounding noise is 0.
+    scale: f64,
     is_whole: bool,
 }
 
 impl<'a> Number<'a> {
     pub fn new(about: About<'a>, limits: RangeInclusive<f64>) -> Self {
-        Number { about, limits, suffix: "", speed: None, scale: None, is_whole: false }
+        Number { about, limits, suffix: "", speed: None, scale: 0.0, is_whole: false }
     }
 
     /// What stands after the number.
@@ -318,6 +331,14 @@ impl<'a> Number<'a> {
         tip(ui, response, self.about.help, self.about.disabled_reason)
     }
 
+    /// The field alone, for a whole number.
+    pub fn whole_field(self, ui: &mut Ui, width: f32, value: &mut u32) -> Response {
+        let mut number = f64::from(*value);
+        let response = Number { is_whole: true, ..self }.field(ui, width, &mut number);
+        *value = number as u32;
+        response
+    }
+
     /// A label at the left and the field at the right.
     pub fn row(&self, ui: &mut Ui, value: &mut f64) -> Response {
         row(ui, self.about, |ui| self.field(ui, FIELD, value))
@@ -359,11 +380,8 @@ impl<'a> Number<'a> {
     }
 
     fn text(&self, n: f64) -> String {
-        match self.scale {
-            _ if self.is_whole => with_minus(&format!("{n:.0}")),
-            Some(scale) => compact(rounded(n, scale, 5)),
-            None => compact(n),
-        }
+        let scale = self.scale.max(n.abs());
+        if self.is_whole { with_minus(&format!("{n:.0}")) } else { compact(rounded(n, scale, 5)) }
     }
 }
 
@@ -385,7 +403,7 @@ fn fields(
 ) {
     ui.horizontal(|ui| {
         let width = ((ui.available_width() - 16.0) / 3.0).floor();
-        let scale = Some(value.abs().max_element());
+        let scale = value.abs().max_element();
         for (component, name) in names.into_iter().enumerate() {
             let name = format!("{}, {name}", about.name);
             let about = About { name: &name, ..about };
@@ -436,9 +454,9 @@ fn with_minus(text: &str) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// A number with so many digits of `scale`, so that rounding noise beside a large number is 0.
+/// A number with so many digits of `scale`.
 fn rounded(n: f64, scale: f64, digits: i32) -> f64 {
-    let step = 10_f64.powi(scale.abs().log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
+    let step = 10_f64.powi(scale.log10().floor().clamp(-300.0, 300.0) as i32 + 1 - digits);
     let rounded = (n / step).round() * step;
     if rounded.is_finite() { rounded } else { n }
 }
@@ -453,7 +471,7 @@ pub fn point_words(point: DVec3) -> String {
 #[derive(Clone, Copy, Default)]
 pub struct Header<'a> {
     pub title: &'a str,
-    /// The group's values, shown while it is folded.
+    /// The group's values, shown while it is folded and as they were.
     pub summary: &'a str,
     /// The name of the button that resets the group, if something in it was changed.
     pub reset: Option<&'a str>,
@@ -464,10 +482,10 @@ pub struct Header<'a> {
 /// A group of controls that is always open. Returns whether the button that resets it was clicked.
 pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> bool {
     ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        ui.spacing_mut().item_spacing.y = 0.0;
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
         let is_reset = header_row(ui, rect, header, true);
-        ui.spacing_mut().item_spacing.y = spacing;
+        ui.spacing_mut().item_spacing.y = SPACING;
         ui.scope(body);
         is_reset
     })
@@ -477,7 +495,7 @@ pub fn group(ui: &mut Ui, header: Header<'_>, body: impl FnOnce(&mut Ui)) -> boo
 /// A group of controls that folds when its header is clicked. Returns whether the button that resets it was clicked.
 pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&mut Ui)) -> bool {
     ui.scope(|ui| {
-        let spacing = std::mem::take(&mut ui.spacing_mut().item_spacing.y);
+        ui.spacing_mut().item_spacing.y = 0.0;
         let id = ui.make_persistent_id(header.title);
         let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::click());
@@ -492,10 +510,9 @@ pub fn fold(ui: &mut Ui, header: Header<'_>, is_open: bool, body: impl FnOnce(&m
         let icon = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(10.0, 10.0));
         paint_default_icon(ui, state.openness(ui.ctx()), &response.clone().with_new_rect(icon));
         let is_reset = header_row(ui, rect.with_min_x(rect.left() + 16.0), header, state.is_open());
-        ui.spacing_mut().item_spacing.y = spacing;
+        ui.spacing_mut().item_spacing.y = SPACING;
         state.show_body_unindented(ui, |ui| {
             body(ui);
-            ui.add_space(8.0 - spacing);
         });
         is_reset
     })
@@ -514,10 +531,11 @@ fn header_row(ui: &mut Ui, rect: Rect, header: Header<'_>, is_open: bool) -> boo
         },
         |ui| {
             if let Some(name) = header.reset {
-                let response = sign_button(ui, Sign::Reset, 16.0, name);
+                let response = ui.link(RichText::new("Reset").small());
+                named(&response, name);
                 is_reset = tip(ui, response, "Back to the stage\u{2019}s own values", None).clicked();
             }
-            if !is_open && !header.summary.is_empty() {
+            if !is_open && !header.summary.is_empty() && header.reset.is_none() {
                 small(ui, header.summary);
             }
         },
@@ -552,63 +570,23 @@ pub fn panel_line(ui: &mut Ui) {
     );
 }
 
-/// A sign that is painted, because the font doesn't have it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    Reset,
-    Close,
-    Previous,
-    Next,
-    Alert,
+/// A button without a frame that shows a sign of the font. `name` is for assistive technology.
+pub fn sign_button(ui: &mut Ui, sign: &str, size: f32, name: &str) -> Response {
+    let text = RichText::new(sign).size(0.75 * size);
+    let button = Button::new((Atom::grow(), text, Atom::grow())).frame_when_inactive(false).gap(0.0);
+    let added = ui.scope(|ui| {
+        ui.spacing_mut().button_padding = Vec2::ZERO;
+        ui.add_sized([size, size], button)
+    });
+    named(&added.inner, name);
+    added.inner
 }
 
-/// A button without a frame that shows a sign. `name` is for assistive technology.
-pub fn sign_button(ui: &mut Ui, sign: Sign, size: f32, name: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(size), Sense::click());
-    let enabled = ui.is_enabled();
-    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, name));
-    let colours = theme::colours(ui);
-    if response.hovered() {
-        ui.painter().rect_filled(rect, 4, colours.hovered);
-    }
-    let color = match sign {
-        Sign::Reset => colours.accent,
-        _ if response.hovered() => colours.strong,
-        _ => colours.text,
-    };
-    paint_sign(ui.painter(), rect, sign, color);
-    response
-}
-
-/// Paints a sign of 16 points into the middle of `rect`.
-pub fn paint_sign(painter: &Painter, rect: Rect, sign: Sign, color: Color32) {
-    let middle = rect.center();
-    let at = |x: f32, y: f32| middle + vec2(x, y);
-    let stroke = Stroke::new(1.5, color);
-    let lines = |points: Vec<Pos2>| painter.line(points, stroke);
-    match sign {
-        Sign::Reset => {
-            // Counterclockwise round the right side, from the lower left to the arrowhead at the upper left.
-            let arc = (0..=24).map(|step| {
-                let (sine, cosine) = (150.0 - 12.5 * step as f32).to_radians().sin_cos();
-                at(5.0 * cosine, 5.0 * sine)
-            });
-            lines(arc.collect());
-            lines(vec![at(-5.0, -6.0), at(-5.0, -2.5), at(-1.5, -2.5)]);
-        }
-        Sign::Close => {
-            lines(vec![at(-4.0, -4.0), at(4.0, 4.0)]);
-            lines(vec![at(-4.0, 4.0), at(4.0, -4.0)]);
-        }
-        Sign::Previous => _ = lines(vec![at(2.0, -4.0), at(-2.0, 0.0), at(2.0, 4.0)]),
-        Sign::Next => _ = lines(vec![at(-2.0, -4.0), at(2.0, 0.0), at(-2.0, 4.0)]),
-        Sign::Alert => {
-            painter.circle_filled(middle, 8.0, color);
-            let ground = painter.ctx().global_style().visuals.panel_fill;
-            painter.line_segment([at(0.0, -4.5), at(0.0, 1.0)], Stroke::new(1.5, ground));
-            painter.circle_filled(at(0.0, 4.0), 1.0, ground);
-        }
-    }
+/// An entry of a legend.
+pub fn swatch(ui: &mut Ui, colour: Color32, name: &str) {
+    let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+    ui.painter().rect_filled(rect, 2, colour);
+    small(ui, name);
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use super::command::Command;
 use super::display::Display;
 use super::facts::Facts;
 use super::files::Files;
+use super::frame_log::FrameLog;
 use super::input;
 use super::kept::Subject;
 use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
@@ -18,6 +19,8 @@ use crate::cli::WindowOptions;
 use crate::job::recipe::Recipe;
 use anyhow::{Context as _, Result};
 use eframe::egui;
+use std::cell::RefCell;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// The window of the program.
@@ -31,6 +34,7 @@ pub struct Window {
     pub display: Display,
     pub tools: Tools,
     pub files: Files,
+    pub autosave: Autosave,
     pub shell: Shell,
     /// What is to be done in this frame.
     pub commands: Vec<Command>,
@@ -58,8 +62,8 @@ impl Window {
         if let Some(file) = &options.file {
             remembered.note_recent(file);
         }
-        let mut files = Files::new(Autosave::new(options.state_directory.as_deref(), options.autosave_every));
-        let last = files.autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
+        let mut autosave = Autosave::new(options.state_directory.as_deref(), options.autosave_every);
+        let last = autosave.last().filter(|_| !options.is_fresh && !options.is_picture_given);
         let last = last.and_then(|path| Some((picture_of(&path)?.0, path)));
         let mut document = match &last {
             Some((document, _)) => document.clone(),
@@ -67,12 +71,17 @@ impl Window {
             None => Document::new(Origin::usual()),
         };
         document.stop = options.stop.unwrap_or(document.stop);
-        files.is_restoring = last.is_some();
+        autosave.is_restoring = last.is_some();
+        let mut files = Files::default();
         files.pending_resume = match (options.resume, last) {
             (Some(path), _) => Some((path, options.recipe.job()?)),
             (None, Some((document, path))) => Some((path, document.job(1)?)),
             (None, None) => None,
         };
+        let create = |path: &PathBuf| {
+            FrameLog::create(path).with_context(|| format!("cannot write {}", path.display()))
+        };
+        let frame_log = options.frame_log.as_ref().map(create).transpose()?;
         let view = if options.is_fresh || options.is_picture_given { ViewState::default() } else { view };
         Ok(Window {
             changes: Changes::new(document.clone()),
@@ -92,7 +101,8 @@ impl Window {
             display: Display::default(),
             tools: Tools::default(),
             files,
-            shell: Shell::new(options.frame_log.as_deref(), options.crashes_at)?,
+            autosave,
+            shell: Shell { frame_log, crashes_at: options.crashes_at, ..Shell::default() },
             commands: Vec::new(),
         })
     }
@@ -111,19 +121,21 @@ impl Window {
         Facts {
             status: self.tracing.main.status().clone(),
             seconds_before: self.tracing.seconds_before,
-            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(other)),
-            redo: self.changes.later().map(|other| self.document().difference(other)),
+            undo: self.changes.earlier(self.document()).map(|other| self.document().difference(&other)),
+            redo: self.changes.later(self.document()).map(|other| self.document().difference(&other)),
             is_coarse: self.tracing.main.is_coarse(),
             has_picture: self.tracing.main.has_picture(self.document()),
-            is_moving: self.changes.is_in_gesture(),
+            is_moving: self.changes.is_in_gesture,
             is_held: self.tracing.main.is_held(),
             is_lost: self.display.is_lost,
             checked: self.tools.check.words().filter(|_| self.model.shows(Tab::Check)),
-            has_pixel: self.tools.inspector.hovered().is_some(),
+            has_pixel: self.tools.inspector.hovered.is_some(),
             has_paths: self.tools.paths.len() > 0,
             has_sight: self.display.sight.is_some(),
             invalid: self.tracing.invalid.clone(),
             model: self.model.clone(),
+            commands: RefCell::default(),
+            edits: RefCell::default(),
         }
     }
 
@@ -150,7 +162,7 @@ impl Window {
             return;
         }
         theme::install(context);
-        theme::choose(context, self.model.remembered.theme);
+        context.set_theme(self.model.remembered.theme);
         // A frame can take long while the device prepares a large scene.
         context.options_mut(|options| options.input_options.max_click_duration = 5.0);
         self.tracing.main.wake(context);
@@ -219,7 +231,7 @@ impl Window {
         self.model.selected = self.model.selected.filter(|sphere| *sphere < count);
         if let Err(error) = self.document().camera.validate() {
             self.shell.toasts.bad(error.to_string());
-            self.model.document.camera = self.changes.last().camera;
+            self.model.document.camera = self.changes.last.camera;
         }
         self.ask_about_size();
         let document = &self.model.document;
@@ -227,8 +239,9 @@ impl Window {
         if !document.is_from_file && document.origin.usual_stop().samples.is_none() {
             self.model.own_stop = document.own_stop();
         }
-        let room = self.display.viewport.room_pixels();
-        self.tracing.follow_size(context, &mut self.model, room, self.files.needs_film());
+        let room = self.display.viewport.room_pixels;
+        let needs_film = self.files.needs_film() || self.autosave.is_restoring;
+        self.tracing.follow_size(context, &mut self.model, room, needs_film);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
             self.model.view.look(None);
@@ -242,17 +255,17 @@ impl Window {
         }
         self.leave_useless_views();
         let has_second = self.tracing.follow(context, &self.model, &self.changes);
-        let Window { model, tracing, display, tools, files, shell, .. } = self;
+        let Window { model, tracing, display, tools, files, autosave, shell, .. } = self;
         display.follow(context, model, tracing, is_moving, &mut shell.toasts);
-        let subject = Subject::new(&model.view, (&model.document, &tracing.main), None);
+        let subject = Subject::new(&model.view, &model.document, tracing);
         if let Some(found) = display.denoising.follow(context, &subject, model.view.is_denoised) {
             model.view.denoised = Some(found);
         }
-        let subject = display.subject(model, tracing);
+        let subject = Subject::new(&model.view, &model.document, tracing);
         files.follow(context, &subject);
         files.follow_sized(context, &mut shell.toasts);
-        if !files.is_restoring
-            && let Some(reason) = files.autosave.follow(context, &model.document, tracing)
+        if !autosave.is_restoring
+            && let Some(reason) = autosave.follow(context, &model.document, tracing)
         {
             let words =
                 format!("Not saved by itself: {reason}; rendering goes on, and saving is tried again");
@@ -262,7 +275,7 @@ impl Window {
         if !has_second {
             model.view.end_comparison();
         }
-        self.keep_wanted(context);
+        display.kept.follow(context, &model.document, tracing);
     }
 }
 
@@ -295,7 +308,7 @@ impl Drop for Window {
 
 impl Window {
     fn end(&mut self) {
-        self.files.autosave.end(&self.model, &mut self.tracing, self.files.is_restoring);
+        self.autosave.end(&self.model, &mut self.tracing);
     }
 }
 

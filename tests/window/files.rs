@@ -109,7 +109,7 @@ fn failures_are_told_and_what_is_shown_stays() {
     name_file(&mut harness, Command::Save, &directory.path().join("no/such/place.png"));
     harness.run_steps(3);
     assert!(harness.state().has_dialog(), "the name can be corrected");
-    assert_eq!(harness.state_mut().remembered_mut().directory, None, "the next dialog does not start there");
+    assert!(harness.state_mut().remembered_mut().recent.is_empty(), "the next dialog does not start there");
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn a_file_is_replaced_only_with_a_warning() {
     harness.get_by_label("Replace").click();
     until(&mut harness, "the file", says("Saved mine.png"));
     assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
-    assert_eq!(harness.state_mut().remembered_mut().directory.as_deref(), Some(directory.path()));
+    assert_eq!(harness.state_mut().remembered_mut().recent, [path]);
 }
 
 #[test]

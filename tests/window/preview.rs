@@ -25,6 +25,10 @@ fn a_large_picture_is_coarse_while_it_moves_and_gets_finer_afterwards() {
         harness.step();
         divisors.push(harness.state().shown().unwrap().1);
     }
-    assert!(divisors.is_sorted_by(|a, b| a >= b), "{divisors:?}");
+    // On a busy machine, the last preview of the move is coarser than the first.
+    divisors.dedup();
+    let coarsest = divisors.iter().max().unwrap();
+    let after_move = divisors.iter().skip_while(|divisor| *divisor != coarsest);
+    assert!(after_move.is_sorted_by(|a, b| a >= b), "{divisors:?}");
     until(&mut harness, "the picture", has_samples(1));
 }

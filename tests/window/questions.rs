@@ -31,7 +31,7 @@ pub trait Ask {
     fn is_up_to_date(&self) -> bool;
 
     /// The kept pictures by name, with their samples per pixel.
-    fn kept(&self) -> Vec<(&str, u64)>;
+    fn kept(&self) -> Vec<(String, u64)>;
 
     /// The place of the kept picture that is shown.
     fn looked(&self) -> Option<usize>;
@@ -117,8 +117,8 @@ impl Ask for Window {
         self.tracing.main.shown().is_some_and(|shown| shown.document.has_same_film(self.shown_document()))
     }
 
-    fn kept(&self) -> Vec<(&str, u64)> {
-        self.model.view.kept.iter().map(|named| (named.name.as_str(), named.kept.samples())).collect()
+    fn kept(&self) -> Vec<(String, u64)> {
+        self.model.view.kept.iter().map(|kept| (kept.document.title(), kept.samples())).collect()
     }
 
     fn looked(&self) -> Option<usize> {
@@ -126,7 +126,11 @@ impl Ask for Window {
     }
 
     fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
-        self.display.kept.verdict.words()
+        let answer = self.display.kept.verdict.answer.as_ref()?;
+        Some(match answer {
+            Ok(answer) => Ok((answer.headline, answer.words.as_str())),
+            Err(reason) => Err(reason.as_str()),
+        })
     }
 
     fn disabled_reason(&self, command: Command) -> Option<String> {
@@ -146,7 +150,13 @@ impl Ask for Window {
     }
 
     fn has_other_picture(&self) -> bool {
-        self.tracing.second.has_picture(self.shown_document(), &self.model.view)
+        let (second, wanted) = (&self.tracing.second, self.model.view.compared(self.shown_document()));
+        match (wanted, &second.of, second.shown()) {
+            (Some(wanted), Some((other, origin)), Some(shown)) => {
+                wanted == *other && std::sync::Arc::ptr_eq(origin, &shown.document.origin)
+            }
+            _ => false,
+        }
     }
 
     fn divider(&self) -> f32 {
@@ -158,15 +168,16 @@ impl Ask for Window {
     }
 
     fn layer_samples(&self) -> u64 {
-        self.show().layer().map_or(0, |layer| self.display.layers.samples(layer))
+        let shown = self.show().layer().and_then(|layer| self.display.layers.shown(layer));
+        shown.filter(|shown| shown.divisor == 1).map_or(0, |shown| shown.image.samples)
     }
 
     fn picture_rect(&self) -> egui::Rect {
-        self.display.viewport.placement.rect()
+        self.display.viewport.placement.rect
     }
 
     fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
-        self.tools.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
+        self.tools.inspector.pixel.as_ref().map(|pixel| (pixel.at, pixel.mean))
     }
 
     fn is_presenting(&self) -> bool {
@@ -186,7 +197,7 @@ impl Ask for Window {
     }
 
     fn checked(&self) -> Option<&str> {
-        self.tools.check.answer().map(|answer| answer.title.as_str())
+        self.tools.check.shown.as_ref().map(|(answer, _)| answer.title.as_str())
     }
 
     fn is_paused(&self) -> bool {

@@ -104,7 +104,7 @@ fn a_kept_picture_is_moved_by_itself_and_no_edge_comes_into_the_room() {
 }
 
 #[test]
-fn numbers_and_a_grid_are_in_large_pixels() {
+fn numbers_are_in_large_pixels() {
     let mut harness = open("--stage normals --size 8x5 --samples 1 --device cpu");
     until(&mut harness, "a picture", has_samples(1));
     let [red, ..] = harness.state().shown_pixel([0, 0]).unwrap();

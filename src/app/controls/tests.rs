@@ -7,37 +7,30 @@ use eframe::egui::{self, Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 
-struct Panel {
-    facts: Facts,
-    edits: Vec<Edit>,
-    commands: Vec<Command>,
-}
-
 /// The panel of a window of this command line, as wide as in the window.
-fn panel(words: &str) -> Harness<'static, Panel> {
-    let panel = Panel { facts: facts_of(words), edits: Vec::new(), commands: Vec::new() };
-    let draw = |ui: &mut Ui, Panel { facts, edits, commands }: &mut Panel| {
+fn panel(words: &str) -> Harness<'static, Facts> {
+    let draw = |ui: &mut Ui, facts: &mut Facts| {
         let (mut document, mut remembered) = (facts.model.document.clone(), facts.model.remembered.clone());
         let selected = Selected::of(&facts.model);
         egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 8)).show(ui, |ui| {
             ui.set_min_width(200.0);
             let chosen = (&mut document, selected.as_ref());
-            super::ui(ui, chosen, &mut remembered, facts, (edits, commands));
+            super::ui(ui, chosen, &mut remembered, facts);
         });
         (facts.model.document, facts.model.remembered) = (document, remembered);
     };
-    let mut harness = dressed([232.0, 720.0]).build_ui_state(draw, panel);
+    let mut harness = dressed([232.0, 720.0]).build_ui_state(draw, facts_of(words));
     harness.run_steps(3);
     harness
 }
 
-fn field<'h>(harness: &'h Harness<'_, Panel>, name: &'h str) -> Node<'h> {
+fn field<'h>(harness: &'h Harness<'_, Facts>, name: &'h str) -> Node<'h> {
     let mut named = harness.get_all_by_label(name);
     named.find(|node| [Role::SpinButton, Role::TextInput].contains(&node.accesskit_node().role())).unwrap()
 }
 
 /// Types a text into a field and presses Enter.
-fn set(harness: &mut Harness<'_, Panel>, name: &str, text: &str) {
+fn set(harness: &mut Harness<'_, Facts>, name: &str, text: &str) {
     field(harness, name).click();
     harness.run_steps(3);
     field(harness, name).type_text(text);
@@ -49,7 +42,7 @@ fn set(harness: &mut Harness<'_, Panel>, name: &str, text: &str) {
 #[test]
 fn a_typed_number_is_applied_once_and_within_its_limits() {
     let mut harness = panel("--stage book");
-    let vfov = |harness: &Harness<'_, Panel>| harness.state().facts.document().camera.vfov_degrees;
+    let vfov = |harness: &Harness<'_, Facts>| harness.state().document().camera.vfov_degrees;
     field(&harness, "Field of view").click();
     harness.run_steps(3);
     field(&harness, "Field of view").type_text("45");
@@ -75,24 +68,24 @@ fn a_typed_number_is_applied_once_and_within_its_limits() {
 fn a_group_can_be_reset_only_if_it_was_changed() {
     let mut harness = panel("--stage book");
     assert!(harness.query_by_label("Reset lens").is_none());
-    let original = harness.state().facts.document().camera;
+    let original = harness.state().document().camera;
     set(&mut harness, "Focus distance", "7");
-    assert_eq!(harness.state().facts.document().camera.focus_distance, Some(7.0));
+    assert_eq!(harness.state().document().camera.focus_distance, Some(7.0));
     harness.get_by_label("Reset lens").click();
     harness.run_steps(3);
-    assert_eq!(harness.state().facts.document().camera, original);
+    assert_eq!(harness.state().document().camera, original);
     assert!(harness.query_by_label("Reset lens").is_none());
 }
 
 #[test]
 fn another_kind_of_material_keeps_the_colour() {
     let mut harness = panel("--stage glass-schlick");
-    harness.state_mut().facts.model.selected = Some(1);
+    harness.state_mut().model.selected = Some(1);
     harness.run_steps(3);
     harness.get_by_label("Metal").click();
     harness.run_steps(2);
-    let edit = harness.state_mut().edits.pop();
-    let body = Body::of(harness.state().facts.document().scene(), 1).unwrap();
+    let edit = harness.state_mut().edits.get_mut().pop();
+    let body = Body::of(harness.state().document().scene(), 1).unwrap();
     let material = Material::Metal { albedo: body.material.albedo().unwrap(), fuzz: 0.0 };
     assert_eq!(edit, Some(Edit::Change(1, Body { material, ..body })));
 }
@@ -112,6 +105,6 @@ fn one_limit_at_a_time_ends_the_render() {
         harness.run_steps(3);
         harness.get_all_by_label(name).last().unwrap().click();
         harness.run_steps(3);
-        assert_eq!(harness.state().facts.document().stop, expected, "{name}");
+        assert_eq!(harness.state().document().stop, expected, "{name}");
     }
 }

@@ -6,7 +6,7 @@ use crate::app::facts::Facts;
 use crate::app::model::Document;
 use crate::app::status::time;
 use crate::app::theme;
-use crate::app::widgets::{About, Number, hint, named, primary, small};
+use crate::app::widgets::{About, FIELD, Number, named, primary, small};
 use crate::film::Film;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::plain_name;
@@ -15,7 +15,7 @@ use crate::progressive::{Phase, Status};
 use crate::system::files::pictures_directory;
 use crate::system::memory;
 use eframe::egui::text::{CCursor, CCursorRange};
-use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui, vec2};
+use eframe::egui::{self, Align, Key, Label, Layout, Stroke, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -41,14 +41,14 @@ impl What {
     }
 }
 
-/// What a file is chosen for.
+/// What a file or a folder is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     Open,
     /// To check the picture of the user's own program.
     Check,
-    /// To change name and folder in the dialog of saving.
-    Place(What),
+    /// The folder in which the dialog of saving saves.
+    Folder,
 }
 
 impl Purpose {
@@ -56,31 +56,20 @@ impl Purpose {
         match self {
             Purpose::Open => "Open",
             Purpose::Check => "Check my picture",
-            Purpose::Place(_) => "Save",
+            Purpose::Folder => "Folder",
         }
     }
 
-    fn is_saving(self) -> bool {
-        matches!(self, Purpose::Place(_))
+    /// Opens the system's dialog, and blocks until it is closed.
+    fn choose(self, from: &Path) -> Option<PathBuf> {
+        let dialog = rfd::FileDialog::new().set_title(self.title()).set_directory(from);
+        let endings: &[&str] = match self {
+            Purpose::Open => &["png", "ppm", "exr", "toml"],
+            Purpose::Check => &["png", "ppm"],
+            Purpose::Folder => return dialog.pick_folder(),
+        };
+        dialog.add_filter(endings.join(", "), endings).pick_file()
     }
-
-    fn endings(self) -> Vec<&'static str> {
-        match self {
-            Purpose::Open => vec!["png", "ppm", "exr", "toml"],
-            Purpose::Check => vec!["png", "ppm"],
-            Purpose::Place(what) => vec![what.ending()],
-        }
-    }
-}
-
-/// The path with this ending, which is added if the name has another.
-fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
-    if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
-        return path;
-    }
-    let mut name = path.into_os_string();
-    name.push(format!(".{ending}"));
-    name.into()
 }
 
 /// The system's file dialog.
@@ -100,7 +89,7 @@ impl System {
         self.chosen.take()?.ok()
     }
 
-    /// Opens the dialog at a folder or a file, on a thread of its own, because it can block for any time.
+    /// Opens the dialog at a folder, on a thread of its own, because it can block for any time.
     pub fn ask(&mut self, context: &egui::Context, purpose: Purpose, from: PathBuf) {
         if self.chosen.is_open() {
             return;
@@ -111,21 +100,10 @@ impl System {
         }
         let choose = move || {
             let begin = Instant::now();
-            let (folder, name) = match from.file_name().filter(|_| !from.is_dir()) {
-                Some(name) => (from.parent().unwrap_or(&from), name.to_string_lossy().into_owned()),
-                None => (from.as_path(), String::new()),
-            };
             // The system shows nothing where there is no folder, such as the usual one before the first picture.
-            let folder = folder.ancestors().find(|folder| folder.is_dir()).unwrap_or(folder);
-            let endings = purpose.endings();
-            let dialog = rfd::FileDialog::new()
-                .set_title(purpose.title())
-                .add_filter(endings.join(", "), &endings)
-                .set_directory(folder);
-            let path =
-                if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
+            let path = purpose.choose(from.ancestors().find(|folder| folder.is_dir()).unwrap_or(&from));
             match path {
-                None if begin.elapsed() >= System::SEEN => answer.end(),
+                None if begin.elapsed() >= System::SEEN => drop(answer),
                 path => answer.give(Ok((purpose, from, path))),
             }
         };
@@ -166,16 +144,6 @@ fn missing_folder(path: &Path) -> Option<String> {
     (!is_default).then(|| format!("The folder {} is not there: choose another", folder.display()))
 }
 
-/// Says why a path cannot be used, or that its file would be replaced.
-fn note(ui: &mut Ui, reason: Option<&str>, is_replaced: bool) {
-    let [bad, warn] = [ui.visuals().error_fg_color, ui.visuals().warn_fg_color];
-    match reason {
-        Some(reason) => ui.colored_label(bad, reason),
-        None if is_replaced => ui.colored_label(warn, "A file of this name is there already."),
-        None => ui.label(""),
-    };
-}
-
 /// Focuses a field of text, all of which is selected, until something else takes the focus.
 fn focus(ui: &Ui, field: &egui::Response, text: &str) {
     // Enter, which takes the focus, is still to be seen.
@@ -212,7 +180,7 @@ enum Size {
 /// Name, folder, format and size of what is saved.
 pub struct SaveBox {
     name: String,
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
     what: What,
     size: Size,
     other: [u32; 2],
@@ -223,15 +191,15 @@ impl SaveBox {
         SaveBox { name: name.to_owned(), folder, what, size: Size::Seen, other: size }
     }
 
-    /// Takes name and folder from the system's dialog.
-    pub(super) fn place(&mut self, path: &Path) {
-        if let (Some(folder), Some(stem)) = (path.parent(), path.file_stem()) {
-            (self.folder, self.name) = (folder.to_owned(), stem.to_string_lossy().into_owned());
-        }
-    }
-
+    /// The path with the ending, which is added if the name has another.
     fn path(&self) -> PathBuf {
-        with_ending(self.folder.join(self.name.trim()), self.what.ending())
+        let (path, ending) = (self.folder.join(self.name.trim()), self.what.ending());
+        if path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending)) {
+            return path;
+        }
+        let mut name = path.into_os_string();
+        name.push(format!(".{ending}"));
+        name.into()
     }
 
     fn pixels(&self, size: Size, shown: &Document) -> [u32; 2] {
@@ -259,7 +227,7 @@ impl SaveBox {
         self.what = of_ending.map_or(self.what, |(what, ..)| what);
         labelled(ui, "Folder", |ui| {
             if system.is_there && ui.button("Change…").clicked() {
-                system.ask(ui.ctx(), Purpose::Place(self.what), self.path());
+                system.ask(ui.ctx(), Purpose::Folder, self.folder.clone());
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let folder = Label::new(self.folder.display().to_string()).truncate();
@@ -277,19 +245,17 @@ impl SaveBox {
         let (path, shown) = (self.path(), facts.shown());
         let size = self.pixels(self.size, shown);
         let (reason, is_replaced) = (missing_folder(&path), path.exists());
-        if reason.is_none() && !is_replaced && self.what != What::Scene && shown.size() != size {
-            hint(ui, "Renders first, and you can go on meanwhile.");
-        } else {
-            note(ui, reason.as_deref(), is_replaced);
-        }
-        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
-        let pressed = ui.horizontal(|ui| {
-            if let What::Picture(format) = self.what {
-                ui.weak(format!("About {}", memory::words(file_bytes(format, size, shown))));
+        let colours = theme::colours(ui);
+        match &reason {
+            Some(reason) => ui.colored_label(colours.bad, reason),
+            None if is_replaced => ui.colored_label(colours.warn, "A file of this name is there already."),
+            None if self.what != What::Scene && shown.size() != size => {
+                ui.weak("Renders first, and you can go on meanwhile.")
             }
-            buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable)
-        });
-        match pressed.inner {
+            None => ui.label(""),
+        };
+        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
+        match buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable) {
             Some(true) => Outcome::Save(self.what, size, path),
             Some(false) => Outcome::Close,
             None => Outcome::Stay,
@@ -319,10 +285,8 @@ impl SaveBox {
         if self.size == Size::Other {
             ui.horizontal(|ui| {
                 for (name, side) in ["Width", "Height"].into_iter().zip(&mut self.other) {
-                    let mut value = f64::from(*side);
-                    let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT)).whole();
-                    number.field(ui, 64.0, &mut value);
-                    *side = value as u32;
+                    let number = Number::new(About::new(name, "Pixels"), 1.0..=f64::from(SIZE_LIMIT));
+                    number.whole_field(ui, FIELD, side);
                 }
             });
         }
@@ -332,11 +296,7 @@ impl SaveBox {
 /// A label, and what follows it over the rest of the width, from the right to the left.
 fn labelled<R>(ui: &mut Ui, label: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
-        let size = vec2(64.0, 24.0);
-        ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_size(size);
-            ui.label(label);
-        });
+        ui.add_sized([64.0, 24.0], Label::new(label).halign(Align::Min));
         ui.with_layout(Layout::right_to_left(Align::Center), add).inner
     })
     .inner
@@ -365,17 +325,6 @@ pub fn file_name(document: &Document) -> String {
         _ => return plain_name(&document.name()),
     };
     title.replace(['/', '\\', ':', '?', '*', '"', '<', '>', '|'], "")
-}
-
-/// Roughly.
-fn file_bytes(format: OutputFormat, [width, height]: [u32; 2], document: &Document) -> u64 {
-    let pixels = u64::from(width) * u64::from(height);
-    match format {
-        OutputFormat::Png => pixels,
-        OutputFormat::P6 => 3 * pixels,
-        OutputFormat::Pfm => 12 * pixels,
-        OutputFormat::Exr => Film::bytes(width, height, document.settings.half_count()) / 2,
-    }
 }
 
 /// Samples per pixel that the picture has when it is done, as far as is known.

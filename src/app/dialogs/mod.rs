@@ -9,10 +9,8 @@ mod sky;
 pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
 pub use help::Keys;
 
-use super::command::Command;
 use super::facts::Facts;
 use super::finder::Finder;
-use super::model::Edit;
 use eframe::egui::{self, Context, Id, Modal, PointerState, Ui};
 use std::path::PathBuf;
 
@@ -75,12 +73,7 @@ impl Dialogs {
     }
 
     /// Draws the dialog. Returns how it closes.
-    pub fn ui(
-        &mut self,
-        ui: &mut Ui,
-        facts: &Facts,
-        (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
-    ) -> Outcome {
+    pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) -> Outcome {
         if let Some(pointer) = self.pointer.take() {
             ui.ctx().input_mut(|input| input.pointer = pointer);
         }
@@ -92,10 +85,10 @@ impl Dialogs {
             ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
                 Dialog::Palette(finder) => {
-                    palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts, commands)
+                    palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts)
                 }
                 Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
-                Dialog::Sky => sky::ui(ui, facts, edits),
+                Dialog::Sky => sky::ui(ui, facts),
                 Dialog::About => about::ui(ui, facts),
                 Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
                 Dialog::Path(field) => field.ui(ui),
@@ -113,8 +106,8 @@ impl Dialogs {
     pub fn chosen(&mut self) -> Option<Outcome> {
         let (purpose, from, path) = self.system.chosen()?;
         match (purpose, path, &mut self.open) {
-            (Purpose::Place(_), Some(path), Some(Dialog::Save(save))) => save.place(&path),
-            (Purpose::Place(_), ..) => self.system.is_there = false,
+            (Purpose::Folder, Some(folder), Some(Dialog::Save(save))) => save.folder = folder,
+            (Purpose::Folder, ..) => self.system.is_there = false,
             (_, Some(path), _) => return Some(Outcome::Named(purpose, path)),
             (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }
@@ -140,7 +133,7 @@ mod tests {
             let mut harness = part([800.0, 600.0], |ui| {
                 dialogs.begin(ui.ctx());
                 let behind = ui.ctx().input(|input| input.pointer.hover_pos());
-                dialogs.ui(ui, &facts, (&mut Vec::new(), &mut Vec::new()));
+                dialogs.ui(ui, &facts);
                 seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
             });
             rest_at(&mut harness, egui::pos2(400.0, 300.0));

@@ -4,11 +4,10 @@ use super::Outcome;
 use crate::app::command::{Command, ROWS};
 use crate::app::facts::Facts;
 use crate::app::finder::Finder;
-use crate::app::menu::line;
+use crate::app::menu::{line, name_state};
 use crate::app::widgets::{caption, hint};
 use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
-use eframe::egui::accesskit::Toggled;
 use eframe::egui::{Response, RichText, Ui, vec2};
 
 /// What an empty box offers.
@@ -94,13 +93,7 @@ fn found(text: &str, facts: &Facts) -> Vec<Found> {
 }
 
 /// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
-pub(super) fn ui(
-    finder: &mut Finder,
-    ui: &mut Ui,
-    height: f32,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) -> Outcome {
+pub(super) fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
     ui.set_width(ui.available_width());
     let words = (
         "Command",
@@ -122,7 +115,7 @@ pub(super) fn ui(
     about(ui, facts, hovered.or(finder.chosen(&found).map(|found| found.command)));
     match run {
         Some(run) => {
-            commands.push(found[run].command);
+            facts.send(found[run].command);
             Outcome::Close
         }
         None => Outcome::Stay,
@@ -132,18 +125,10 @@ pub(super) fn ui(
 /// A command, whether it is on, and its keys.
 fn row(ui: &mut Ui, facts: &Facts, command: Command, name: &str, is_chosen: bool) -> Response {
     let is_enabled = facts.disabled_reason(command).is_none();
-    let switch = facts.switch(command);
-    let state = match switch {
-        Some(true) => RichText::new("on").strong(),
-        _ => RichText::new(""),
-    };
-    let gap = if switch == Some(true) { "  " } else { "" };
-    let response =
-        ui.add_enabled(is_enabled, line(ui, command, (name, gap, state), is_chosen)).accessible_name(name);
-    if let Some(is_on) = switch {
-        let toggled = if is_on { Toggled::True } else { Toggled::False };
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_toggled(toggled));
-    }
+    let [gap, state] = if facts.is_on(command) { ["  ", "on"] } else { ["", ""] };
+    let line = line(ui, command, (name, gap, RichText::new(state).strong()), is_chosen);
+    let response = ui.add_enabled(is_enabled, line).accessible_name(name);
+    name_state(&response, facts.switch(command));
     response
 }
 
@@ -161,7 +146,7 @@ fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::Theme;
+    use crate::app::Theme;
     use crate::app::tests::facts_of;
 
     #[test]

@@ -9,7 +9,7 @@ use eframe::egui::Ui;
 const HELP: &str = "The sky is the only lamp of the book: what it sends is what lights the scene.";
 
 /// Draws the dialog. The picture shows a change at once.
-pub(super) fn ui(ui: &mut Ui, facts: &Facts, edits: &mut Vec<Edit>) -> Outcome {
+pub(super) fn ui(ui: &mut Ui, facts: &Facts) -> Outcome {
     let (mut sky, own) = (facts.document().scene().sky, facts.document().origin.recipe.scene.sky);
     let reset = (sky != own).then_some("Reset sky");
     let header = Header { title: "Sky colours", reset, ..Header::default() };
@@ -25,7 +25,7 @@ pub(super) fn ui(ui: &mut Ui, facts: &Facts, edits: &mut Vec<Edit>) -> Outcome {
         sky = own;
     }
     if sky != facts.document().scene().sky {
-        edits.push(Edit::Sky(sky));
+        facts.edit(Edit::Sky(sky));
     }
     hint(ui, HELP);
     if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }

@@ -13,10 +13,11 @@ use std::sync::Arc;
 /// Deviations of noise that hardly any block exceeds.
 const CLEAR: f64 = 4.0;
 
-struct Answer {
+/// The answer in two sentences.
+pub struct Answer {
     is_equal: bool,
-    headline: &'static str,
-    words: String,
+    pub headline: &'static str,
+    pub words: String,
 }
 
 /// The answer about a kept picture, or that it is awaited.
@@ -24,14 +25,15 @@ struct Answer {
 pub struct Verdict {
     /// The kept picture and the run of the render that it is compared with.
     of: Option<(u64, u64)>,
-    answer: Option<Result<Answer, String>>,
+    /// None until it is there; else the answer, or why there is none.
+    pub answer: Option<Result<Answer, String>>,
     answers: Answers<Answer>,
 }
 
 impl Verdict {
     /// Compares a kept picture with the one that `main` traces for `live`. An earlier question is forgotten.
     pub fn ask(&mut self, context: &egui::Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
-        let of = Some((kept.number(), main.status().run));
+        let of = Some((kept.number, main.status().run));
         *self = Verdict { of, ..Verdict::default() };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
         let answer = self.answers.promise(context);
@@ -44,14 +46,6 @@ impl Verdict {
     /// Takes the answer.
     pub fn receive(&mut self) {
         self.answer = self.answers.take().or(self.answer.take());
-    }
-
-    /// The answer in two sentences, or why there is none.
-    pub fn words(&self) -> Option<Result<(&str, &str), &str>> {
-        self.answer.as_ref().map(|answer| match answer {
-            Ok(answer) => Ok((answer.headline, answer.words.as_str())),
-            Err(reason) => Err(reason.as_str()),
-        })
     }
 
     /// Draws the answer, if it is about this kept picture and this run. Returns whether it is.

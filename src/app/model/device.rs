@@ -81,7 +81,12 @@ impl Device {
     }
 
     pub fn help(self) -> &'static str {
-        self.words()[2]
+        match (self, adapter()) {
+            (Device::Gpu, Ok(adapter)) if adapter.is_software => {
+                "Trace with a program on the processor, since there is no graphics card; slower than CPU"
+            }
+            _ => self.words()[2],
+        }
     }
 
     /// The device of a backend.
@@ -139,6 +144,11 @@ pub fn core_count() -> usize {
 fn threads_of_window() -> Option<usize> {
     let cores = core_count();
     (cores > 2).then(|| cores - 1)
+}
+
+/// The best level of this processor.
+pub fn best_isa() -> Isa {
+    Isa::available().into_iter().max().unwrap_or(Isa::Portable)
 }
 
 /// The lane counts for which this processor has kernels.

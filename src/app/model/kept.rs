@@ -3,7 +3,7 @@
 use super::Document;
 use crate::film::Film;
 use crate::progressive::{ReferenceMeans, Status};
-use crate::system::memory::words;
+use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::{RgbImage, imageops};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -12,18 +12,19 @@ use std::sync::{Arc, OnceLock};
 const SMALL: u32 = 264;
 
 /// A small copy of the picture of a film.
-fn small_copy(film: &Film, document: &Document) -> RgbImage {
+fn small_copy(film: &Film, document: &Document) -> ColorImage {
     let (width, height) = (film.width(), film.height());
     let rgb8 = film.to_rgb8(document.rules().transfer);
     let full = RgbImage::from_raw(width, height, rgb8).unwrap_or_default();
     let scale = (f64::from(SMALL) / f64::from(width.max(height))).min(1.0);
     let [width, height] = [width, height].map(|side| ((f64::from(side) * scale).round() as u32).max(1));
-    imageops::thumbnail(&full, width, height)
+    ColorImage::from_rgb([width as usize, height as usize], &imageops::thumbnail(&full, width, height))
 }
 
 /// A picture that was kept. It never changes.
-#[derive(Debug)]
 pub struct Kept {
+    /// A number that no other kept picture has.
+    pub number: u64,
     /// What it shows.
     pub document: Document,
     /// Its exact sums.
@@ -32,25 +33,37 @@ pub struct Kept {
     pub status: Arc<Status>,
     /// Tracing time of the samples from before that render, if known.
     pub seconds_before: Option<f64>,
-    /// A small copy.
-    pub thumbnail: RgbImage,
-    number: u64,
+    small: ColorImage,
+    texture: OnceLock<TextureHandle>,
     means: OnceLock<Arc<ReferenceMeans>>,
+}
+
+impl std::fmt::Debug for Kept {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "Kept {}", self.number)
+    }
 }
 
 impl Kept {
     /// Keeps a film of `document` that has samples.
     pub fn new(document: Document, film: Film, status: Arc<Status>, seconds_before: Option<f64>) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
-        let thumbnail = small_copy(&film, &document);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let (film, means) = (Arc::new(film), OnceLock::new());
-        Kept { document, film, status, seconds_before, thumbnail, number, means }
+        Kept {
+            number: COUNT.fetch_add(1, Ordering::Relaxed),
+            small: small_copy(&film, &document),
+            document,
+            film: Arc::new(film),
+            status,
+            seconds_before,
+            texture: OnceLock::new(),
+            means: OnceLock::new(),
+        }
     }
 
-    /// A number that no other kept picture has.
-    pub fn number(&self) -> u64 {
-        self.number
+    /// A small picture of it.
+    pub fn thumbnail(&self, context: &Context) -> &TextureHandle {
+        let load = || context.load_texture("kept", self.small.clone(), TextureOptions::LINEAR);
+        self.texture.get_or_init(load)
     }
 
     /// Samples per pixel.
@@ -87,51 +100,46 @@ impl Kept {
     }
 }
 
-/// How many bytes the kept pictures may take together.
-pub const BYTES_LIMIT: u64 = 4_000_000_000;
-
-/// A kept picture in the list.
-#[derive(Clone, Debug)]
-pub struct Named {
-    pub name: String,
-    pub kept: Arc<Kept>,
-}
-
 /// The list of kept pictures, oldest first. Places count from 0; the user sees them from 1.
 #[derive(Clone, Debug, Default)]
 pub struct KeptList {
-    pictures: Vec<Named>,
+    pictures: Vec<Arc<Kept>>,
     looked: Option<usize>,
     chosen: Option<usize>,
 }
 
 impl KeptList {
-    pub fn iter(&self) -> impl Iterator<Item = &Named> {
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<Kept>> {
         self.pictures.iter()
     }
 
-    pub fn get(&self, place: usize) -> Option<&Named> {
+    pub fn get(&self, place: usize) -> Option<&Arc<Kept>> {
         self.pictures.get(place)
     }
 
     /// As it is called in sentences.
     pub fn title(&self, place: usize) -> String {
-        self.get(place).map_or_else(String::new, |named| format!("{}: {}", place + 1, named.name))
+        self.get(place).map_or_else(String::new, |kept| format!("{}: {}", place + 1, kept.document.title()))
     }
 
-    /// The picture that is shown instead of the traced one.
+    /// The place of the picture that is shown instead of the traced one.
     pub fn looked(&self) -> Option<usize> {
         self.looked
     }
 
     /// The kept picture that is shown instead of the traced one.
     pub fn shown(&self) -> Option<&Arc<Kept>> {
-        self.get(self.looked?).map(|named| &named.kept)
+        self.get(self.looked?)
+    }
+
+    /// The place of the picture that commands mean.
+    pub fn chosen(&self) -> Option<usize> {
+        self.chosen
     }
 
     /// The picture that commands mean.
-    pub fn chosen(&self) -> Option<usize> {
-        self.chosen
+    pub fn meant(&self) -> Option<&Arc<Kept>> {
+        self.get(self.chosen?)
     }
 
     pub fn choose(&mut self, place: usize) {
@@ -146,26 +154,9 @@ impl KeptList {
         self.chosen = self.looked.or(self.chosen);
     }
 
-    /// Says why there is no memory for another picture, if so.
-    ///
-    /// # Errors
-    /// If the kept pictures would take more than [`BYTES_LIMIT`].
-    pub fn check_room(&self, bytes: u64) -> Result<(), String> {
-        let held = self.bytes();
-        if held.saturating_add(bytes) <= BYTES_LIMIT {
-            return Ok(());
-        }
-        Err(format!(
-            "the picture takes {} and the kept ones take {}, but together they may take {}; delete one, or save it as a film",
-            words(bytes),
-            words(held),
-            words(BYTES_LIMIT)
-        ))
-    }
-
     /// Adds a picture and chooses it. Returns its place.
-    pub fn add(&mut self, named: Named) -> usize {
-        self.pictures.push(named);
+    pub fn add(&mut self, kept: Kept) -> usize {
+        self.pictures.push(Arc::new(kept));
         let place = self.pictures.len() - 1;
         self.chosen = Some(place);
         place
@@ -184,7 +175,7 @@ impl KeptList {
 
     /// What all of them take in memory.
     pub fn bytes(&self) -> u64 {
-        self.iter().map(|named| named.kept.bytes()).sum()
+        self.iter().map(|kept| kept.bytes()).sum()
     }
 }
 

@@ -2,39 +2,14 @@
 
 use super::Model;
 use super::{Device, Sizing, ViewState, device};
-use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use eframe::Storage;
-use serde::{Deserialize, Serialize, Serializer};
+use eframe::egui::ThemePreference;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// How many files are remembered.
 pub const RECENT_LIMIT: usize = 8;
-
-/// The colour theme of the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Theme {
-    /// The theme of the desktop.
-    #[default]
-    System,
-    /// Light text on a dark background.
-    Dark,
-    /// Dark text on a light background.
-    Light,
-}
-
-impl Theme {
-    pub const ALL: [Theme; 3] = [Theme::System, Theme::Dark, Theme::Light];
-
-    /// Its name, one sentence about it, and other words by which the palette finds it.
-    pub fn words(self) -> [&'static str; 3] {
-        match self {
-            Theme::System => ["As the system", "Follows the system", "theme"],
-            Theme::Dark => ["Dark", "Light text on dark panels", "theme night"],
-            Theme::Light => ["Light", "Dark text on light panels", "theme bright"],
-        }
-    }
-}
 
 /// The tabs of the dock under the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,7 +44,7 @@ pub struct Bookmark {
 #[serde(default)]
 pub struct Remembered {
     /// The colour theme.
-    pub theme: Theme,
+    pub theme: ThemePreference,
     /// Whether panels are shown at all.
     pub has_panels: bool,
     /// Whether the left panel is shown.
@@ -90,24 +65,16 @@ pub struct Remembered {
     pub threads: Option<usize>,
     /// Saved cameras.
     pub bookmarks: Vec<Bookmark>,
-    /// The directory of the last saved file.
-    #[serde(serialize_with = "if_unicode")]
-    pub directory: Option<PathBuf>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
     /// The card with the first steps was closed: it does not come back by itself.
     pub is_greeted: bool,
 }
 
-/// A path that is not Unicode has no place in a text. An error would keep all settings from being stored.
-fn if_unicode<S: Serializer>(path: &Option<PathBuf>, serializer: S) -> Result<S::Ok, S::Error> {
-    path.as_ref().filter(|path| path.to_str().is_some()).serialize(serializer)
-}
-
 impl Default for Remembered {
     fn default() -> Self {
         Remembered {
-            theme: Theme::System,
+            theme: ThemePreference::System,
             has_panels: true,
             has_controls: true,
             has_info: true,
@@ -118,7 +85,6 @@ impl Default for Remembered {
             lanes: None,
             threads: None,
             bookmarks: Vec::new(),
-            directory: None,
             recent: Vec::new(),
             is_greeted: false,
         }
@@ -153,8 +119,7 @@ impl Stored {
 impl Remembered {
     /// Lanes per packet: the chosen number, or as many as a register holds.
     pub fn lanes_in_use(&self) -> usize {
-        let best = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
-        self.lanes.unwrap_or_else(|| best.native_lanes())
+        self.lanes.unwrap_or_else(|| device::best_isa().native_lanes())
     }
 
     /// Remembers a file that was opened or saved. A path that is not Unicode is not remembered: it could not be stored.

@@ -98,7 +98,7 @@ impl Show {
         match self {
             Show::Error => View::StandardError,
             Show::Occupancy => View::Occupancy,
-            Show::Luminance => tone.of_luminance(),
+            Show::Luminance => View::Luminance(tone.range),
             Show::Picture | Show::Normals | Show::Albedo | Show::Bounces => tone.of_picture(),
         }
     }
@@ -106,7 +106,7 @@ impl Show {
     /// The scale, if the view is a heat map.
     pub fn scale(self, tone: &Tone) -> Option<HeatScale> {
         match self {
-            Show::Luminance => Some(tone.scale()),
+            Show::Luminance => Some(HeatScale::luminance(tone.range)),
             Show::Bounces => Some(HeatScale::RAYS),
             Show::Error => Some(HeatScale::ERROR),
             Show::Occupancy => Some(HeatScale::OCCUPANCY),

@@ -1,6 +1,5 @@
 //! How bright the picture is shown. Files are saved without it.
 
-use crate::numbers::heat::HeatScale;
 use crate::progressive::View;
 use eframe::egui::Key;
 use serde::{Deserialize, Serialize};
@@ -78,16 +77,6 @@ impl Tone {
             None if self.exposure == 0.0 => View::Picture,
             channel => View::Exposed(self.exposure, channel.map(|channel| channel as usize)),
         }
-    }
-
-    /// The luminance view.
-    pub fn of_luminance(&self) -> View {
-        View::Luminance(self.range)
-    }
-
-    /// The scale of the luminance view.
-    pub fn scale(&self) -> HeatScale {
-        HeatScale::luminance(self.range)
     }
 }
 

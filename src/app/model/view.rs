@@ -218,16 +218,11 @@ impl ViewState {
 
     /// The other picture that `document` is compared with; `None` without a comparison or a suitable picture.
     pub fn compared(&self, document: &Document) -> Option<Other> {
-        self.mode.and_then(|_| self.other(document))
-    }
-
-    /// The picture with which `document` can be compared, if any.
-    fn other(&self, document: &Document) -> Option<Other> {
+        let mode = self.mode?;
         if let With::Kept(place) = self.with {
-            let kept = &self.kept.get(place)?.kept;
+            let kept = self.kept.get(place)?;
             // A difference of scaled pictures would show the scaling.
-            let is_possible =
-                self.mode == Some(Mode::Wipe) || kept.size() == self.shown_document(document).size();
+            let is_possible = mode == Mode::Wipe || kept.size() == self.shown_document(document).size();
             return is_possible.then(|| Other::Kept(Arc::clone(kept)));
         }
         match document.stage().filter(|_| self.with == With::Stage) {
@@ -243,7 +238,7 @@ impl ViewState {
     /// The kept picture at the other side of a wipe, which is as large as the shown one.
     pub fn wiped(&self) -> Option<&Arc<Kept>> {
         let place = self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe))?;
-        self.kept.get(place).map(|named| &named.kept)
+        self.kept.get(place)
     }
 }
 

@@ -5,9 +5,9 @@ mod side;
 mod tab;
 
 use super::answers::Answers;
-use super::model::Document;
+use super::model::{Document, best_isa};
 use crate::backends::explain::{Step, steps};
-use crate::render_cpu::{Isa, PathRecorder};
+use crate::render_cpu::PathRecorder;
 use crate::scene::Sphere;
 use eframe::egui;
 
@@ -49,8 +49,7 @@ impl Paths {
         let Ok(job) = document.job(1) else { return };
         let (count, document) = (count_in(document), document.clone());
         let record = move || {
-            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
-            let recorder = PathRecorder::new(&job, isa, None);
+            let recorder = PathRecorder::new(&job, best_isa(), None);
             let path = |sample| {
                 let record = recorder.record(pixel, sample);
                 let steps = steps(&job, pixel, sample, &record).into_iter();

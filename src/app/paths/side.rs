@@ -53,7 +53,10 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
     painter.rect_filled(rect, 4, colours.surround);
     let Some((first, _)) = path.first() else { return };
     let scene = document.scene();
-    let touched = || path.iter().filter_map(|(step, _)| step.hit).map(|hit| &scene.spheres[hit.sphere]);
+    let mut touched: Vec<usize> = path.iter().filter_map(|(step, _)| Some(step.hit?.sphere)).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let touched = || touched.iter().map(|sphere| &scene.spheres[*sphere]);
     let hits: Vec<DVec3> = path.iter().filter_map(|(step, _)| step.hit).map(|hit| hit.point).collect();
 
     // The plane through up and the direction in which the path reaches farthest.
@@ -98,12 +101,7 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
             circle(&view, &painter, sphere.center, radius, Stroke::new(1.0, colours.line));
         }
     }
-    let mut named = Vec::new();
     for sphere in touched() {
-        if named.iter().any(|known| std::ptr::eq(*known, sphere)) {
-            continue;
-        }
-        named.push(sphere);
         if is_ground(sphere) {
             let line = ground(&view, sphere);
             if let Some(last) = line.last() {
@@ -112,16 +110,13 @@ pub(super) fn ui(ui: &mut Ui, path: &Path, at: usize, document: &Document) {
             painter.line(line, Stroke::new(1.0, colours.edge));
         } else {
             circle(&view, &painter, sphere.center, sphere.radius, Stroke::new(1.0, colours.text));
-            let top = view.place(sphere.center + up * sphere.radius);
-            label(
-                top - vec2(0.0, 2.0),
-                Align2::CENTER_BOTTOM,
-                match scene.material_of(sphere).look() {
-                    Look::Matte => "matte ball",
-                    Look::Mirror { .. } => "metal ball",
-                    Look::Glass { .. } => "glass ball",
-                },
-            );
+            let top = view.place(sphere.center + up * sphere.radius) - vec2(0.0, 2.0);
+            let name = match scene.material_of(sphere).look() {
+                Look::Matte => "matte ball",
+                Look::Mirror { .. } => "metal ball",
+                Look::Glass { .. } => "glass ball",
+            };
+            label(top, Align2::CENTER_BOTTOM, name);
         }
     }
 

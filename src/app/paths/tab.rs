@@ -2,12 +2,10 @@
 
 use super::{Path, Paths, is_ground, side};
 use crate::app::theme;
-use crate::app::widgets::{Sign, compact, hint, point_words, sign_button, small, tip};
+use crate::app::widgets::{choice, compact, hint, point_words, sign_button, small, tip};
 use crate::backends::explain::{Event, Lobe};
 use crate::scene::Scene;
-use eframe::egui::{
-    Align, Atom, Button, Frame, Label, Layout, Margin, RichText, ScrollArea, Sides, Stroke, Ui, vec2,
-};
+use eframe::egui::{Align, Atom, Label, Layout, Margin, RichText, ScrollArea, Sides, Ui, vec2};
 
 /// The largest width of the list, points.
 const LIST: f32 = 352.0;
@@ -45,8 +43,8 @@ impl Paths {
                     |ui| {
                         let last = listed.paths.len() - 1;
                         for (sign, name, to) in [
-                            (Sign::Next, "Next path", (self.selected + 1).min(last)),
-                            (Sign::Previous, "Previous path", self.selected.saturating_sub(1)),
+                            ("›", "Next path", (self.selected + 1).min(last)),
+                            ("‹", "Previous path", self.selected.saturating_sub(1)),
                         ] {
                             let response = ui
                                 .add_enabled_ui(to != self.selected, |ui| sign_button(ui, sign, 24.0, name));
@@ -76,34 +74,24 @@ impl Paths {
 }
 
 fn points_ui(ui: &mut Ui, path: &Path, point: &mut usize, scene: &Scene) {
-    let colours = theme::colours(ui);
     let shown = *point;
     for at in 0..=path.len() {
-        let name = title(path, at, scene);
-        let number = RichText::new((at + 1).to_string()).color(colours.weak);
-        if at != shown {
-            let button = Button::new((number, &name, Atom::grow())).frame_when_inactive(false);
-            if ui.add(button.min_size(vec2(ui.available_width(), 24.0))).clicked() {
-                *point = at;
-            }
+        let (is_shown, number) = (at == shown, RichText::new((at + 1).to_string()).weak());
+        let button = choice(ui, is_shown, (number, title(path, at, scene), Atom::grow()));
+        let button = button.min_size(vec2(ui.available_width(), 24.0)).frame_when_inactive(is_shown);
+        let response = ui.add(button);
+        if response.clicked() {
+            *point = at;
+        }
+        if !is_shown {
             continue;
         }
-        let frame = Frame::new().fill(colours.tint).stroke(Stroke::new(1.0, colours.accent));
-        let response = frame.corner_radius(4).inner_margin(Margin::symmetric(8, 4)).show(ui, |ui| {
-            ui.set_width(ui.available_width());
-            ui.horizontal_top(|ui| {
-                ui.label(number.color(colours.text));
-                ui.vertical(|ui| {
-                    ui.label(RichText::new(&name).color(colours.strong));
-                    let words = match at.checked_sub(1).and_then(|before| path.get(before)) {
-                        Some((_, sentence)) => sentence,
-                        None => "The path goes backwards: from the eye to where the light may come from.",
-                    };
-                    ui.add(Label::new(words).wrap());
-                });
-            });
-        });
-        let response = tip(ui, response.response, &figures(path, at), None);
+        let words = match at.checked_sub(1).and_then(|before| path.get(before)) {
+            Some((_, sentence)) => sentence,
+            None => "The path goes backwards: from the eye to where the light may come from.",
+        };
+        theme::panel(Margin::symmetric(8, 4)).show(ui, |ui| ui.add(Label::new(words).wrap()));
+        let response = tip(ui, response, &figures(path, at), None);
         let place = ui.scope_id().with("scrolled to");
         if ui.data(|data| data.get_temp(place)) != Some(at) {
             ui.data_mut(|data| data.insert_temp(place, at));

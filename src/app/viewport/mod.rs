@@ -5,14 +5,14 @@ pub mod paint;
 mod placement;
 mod selection;
 
-pub use paint::{Pictures, SecondPicture};
+pub use paint::Pictures;
 pub use placement::Placement;
 
 use super::command::Command;
 use super::dock::MENU;
 use super::facts::Facts;
 use super::menu;
-use super::model::{Document, Edit, Mode};
+use super::model::{Document, Mode};
 use super::navigation;
 use super::spheres::Selected;
 use super::widgets::compact;
@@ -39,8 +39,8 @@ pub struct Viewport {
     is_dragging_divider: bool,
     /// The pixel where the context menu was opened.
     menu_at: Option<[u32; 2]>,
-    room: Option<Rect>,
-    room_pixels: [u32; 2],
+    pub room: Option<Rect>,
+    pub room_pixels: [u32; 2],
     selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
@@ -58,34 +58,21 @@ pub struct Handle<'a> {
 /// What the user does in a frame.
 #[derive(Default)]
 pub struct Touch {
-    /// The camera was moved.
+    /// The camera or a sphere was moved.
     pub is_move: bool,
-    /// The camera would have moved, but the stage traces no rays.
-    pub is_refused: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
     pub listed: Option<[u32; 2]>,
-    /// What a click has done, in words.
+    /// What a click has done, or why it does nothing, in words.
     pub said: Option<String>,
     /// The sphere that the user selected; the inner `None` stands for no sphere.
     pub select: Option<Option<usize>>,
-    pub edit: Option<Edit>,
     /// The area of the viewport.
     pub room: Option<Rect>,
 }
 
 impl Viewport {
-    /// The area of the viewport when it was last drawn.
-    pub fn room(&self) -> Option<Rect> {
-        self.room
-    }
-
-    /// The room for the picture when it was last drawn, pixels of the screen.
-    pub fn room_pixels(&self) -> [u32; 2] {
-        self.room_pixels
-    }
-
     /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
     pub fn aim(&self) -> [f64; 2] {
         const FOREGROUND: [f64; 2] = [0.5, 0.7];
@@ -93,14 +80,7 @@ impl Viewport {
     }
 
     /// Draws the picture and handles input on it.
-    pub fn ui(
-        &mut self,
-        ui: &mut Ui,
-        handle: Handle<'_>,
-        pictures: Pictures<'_>,
-        facts: &Facts,
-        commands: &mut Vec<Command>,
-    ) -> Touch {
+    pub fn ui(&mut self, ui: &mut Ui, handle: Handle<'_>, pictures: Pictures<'_>, facts: &Facts) -> Touch {
         let Handle { camera, divider, selected } = handle;
         let (view, live) = (&facts.model.view, facts.document());
         let is_kept = view.kept.looked().is_some();
@@ -117,7 +97,9 @@ impl Viewport {
             is_held = true;
         }
         if !is_held {
-            (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, live);
+            let (is_dragged, edit) = self.selection.handle(ui, &response, rect, selected, live);
+            (is_held, touch.is_move) = (is_dragged, edit.is_some());
+            edit.into_iter().for_each(|edit| facts.edit(edit));
         }
         if is_held {
             self.moving = Moving::default();
@@ -147,7 +129,7 @@ impl Viewport {
                 touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
             }
         }
-        if response.context_menu(|ui| context_menu(ui, facts, commands)).is_some() {
+        if response.context_menu(|ui| context_menu(ui, facts)).is_some() {
             // The entries mean the pixel where the menu was opened.
             touch.hovered = self.menu_at;
         }
@@ -165,7 +147,7 @@ impl Viewport {
             (false, Some(parked)) => self.placement = parked,
             (_, parked) => self.parked = parked,
         }
-        let is_of_sight = matches!(self.placement.zoom(), Zoom::Part(_));
+        let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
         if !facts.has_sight && (is_presenting || is_of_sight) {
             self.placement.fit();
         }
@@ -181,7 +163,7 @@ impl Viewport {
             self.is_dragging_divider = false;
             return false;
         }
-        let rect = self.placement.rect();
+        let rect = self.placement.rect;
         let is_near = |at: Pos2| (at.x - rect.lerp_inside(vec2(*divider, 0.0)).x).abs() < GRIP;
         if response.drag_started_by(PointerButton::Primary) {
             self.is_dragging_divider = ui.input(|input| input.pointer.press_origin()).is_some_and(is_near);
@@ -208,11 +190,11 @@ impl Viewport {
         camera: &mut Camera,
         touch: &mut Touch,
     ) {
-        let rect = self.placement.rect();
+        let rect = self.placement.rect;
         let at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         let Some(at) = at.filter(|_| response.clicked()) else { return };
-        if live.no_rays().is_some() {
-            touch.is_refused = true;
+        if let Some(reason) = live.no_rays() {
+            touch.said = Some(reason.to_owned());
             return;
         }
         let place = place_at(rect, at);
@@ -244,7 +226,7 @@ fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
 }
 
 /// The menu of a right click.
-fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn context_menu(ui: &mut Ui, facts: &Facts) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
     let is_kept = facts.model.view.kept.looked().is_some();
@@ -257,13 +239,13 @@ fn context_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         false => &[C::ListPaths, C::CopyPicture, C::Keep],
     };
     for command in of_sphere {
-        menu::item(ui, facts, commands, *command);
+        menu::item(ui, facts, *command);
     }
     if !of_sphere.is_empty() {
         ui.separator();
     }
     for command in of_picture {
-        menu::item(ui, facts, commands, *command);
+        menu::item(ui, facts, *command);
     }
 }
 

@@ -38,7 +38,7 @@ impl Moving {
             let scroll = input.smooth_scroll_delta().y;
             (input.modifiers, scroll, input.zoom_delta(), input.pointer.press_origin())
         });
-        let (rect, delta) = (placement.rect(), response.drag_delta());
+        let (rect, delta) = (placement.rect, response.drag_delta());
         let point = |camera: &Camera, at: Pos2| {
             let pick = rect.contains(at).then(|| document.pick(camera, place_at(rect, at)));
             Some(pick??.point)
@@ -75,9 +75,9 @@ impl Moving {
                 moved = navigation::dolly(&moved, towards, (-f64::from(scroll) * DOLLY_PER_POINT).exp());
             }
         }
-        if document.no_rays().is_some() {
+        if let Some(reason) = document.no_rays() {
             self.pivot = None;
-            touch.is_refused |= moved != *camera;
+            touch.said = (moved != *camera).then(|| reason.to_owned());
         } else if moved != *camera {
             *camera = moved;
             touch.is_move = true;

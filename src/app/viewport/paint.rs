@@ -7,49 +7,37 @@ use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::app::widgets::{Sign, paint_sign};
 use crate::numbers::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
 use eframe::egui::text::{LayoutJob, TextWrapping};
 use eframe::egui::{
-    self, Align2, Color32, CornerRadius, Painter, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
-    vec2,
+    self, Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Stroke, TextStyle, TextureId,
+    TextureOptions, Ui, pos2, vec2,
 };
 
-const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
+/// All of a texture.
+pub const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
-
-/// From this many screen pixels per pixel on, a grid parts the pixels.
-const GRID: f32 = 16.0;
 
 /// From an edge of the picture to the words in its corner, in points.
 const CORNER: f32 = 8.0;
 
 /// The pictures to draw.
 pub struct Pictures<'a> {
-    /// The picture or a layer of it, and the factor by which it is smaller.
-    pub main: Option<(&'a mut Texture, u32)>,
+    /// The picture or a layer of it, and whether it is always smooth: previews and pictures of another size are.
+    pub main: Option<(&'a Texture, bool)>,
     /// Whether there is a picture of the film.
     pub has_film: bool,
-    /// The second picture.
-    pub second: Option<SecondPicture<'a>>,
+    /// The picture at the other side of a wipe.
+    pub second: Option<(&'a Texture, bool)>,
     /// Paths to draw over the picture, if it is the traced one.
     pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
     pub titles: [String; 2],
-}
-
-/// The picture at the other side of a wipe.
-pub struct SecondPicture<'a> {
-    pub texture: &'a mut Texture,
-    /// The factor by which it is smaller than its full size.
-    pub divisor: u32,
-    /// Its full size is another than that of the first picture.
-    pub is_scaled: bool,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -62,41 +50,29 @@ pub(super) fn paint(
     facts: &Facts,
 ) {
     let painter = ui.painter().with_clip_rect(room);
-    let times = placement.times();
-    let options = |divisor: u32, is_scaled: bool| {
-        // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
-        // are always smooth.
-        let is_exact = (times - 1.0).abs() < 1e-4;
-        let is_square = divisor == 1 && !is_scaled && (is_exact || times >= SQUARES);
-        if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
+    let times = placement.times;
+    let id = |texture: &Texture, is_smooth: bool| {
+        // Smooth until pixels are large, except where each is one of the screen's.
+        let is_square = !is_smooth && ((times - 1.0).abs() < 1e-4 || times >= SQUARES);
+        texture.id(ui.ctx(), if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR })
     };
     let Pictures { main, has_film, second, paths, values, titles } = pictures;
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::colours(ui).surround);
     let view = &facts.model.view;
-    if let Some((texture, divisor)) = main {
-        painter.image(texture.id(ui.ctx(), options(divisor, false)), rect, WHOLE, Color32::WHITE);
-        if times >= GRID && divisor == 1 {
-            paint_grid(&painter, rect, document.size());
-        }
+    if let Some((texture, is_smooth)) = main {
+        painter.image(id(texture, is_smooth), rect, WHOLE, Color32::WHITE);
         values.paint(ui, room, rect, document.size(), |at| texture.colour(at));
     }
     let corners = rect.intersect(room);
     let [theirs, mine] = &titles;
     match (view.mode(), second) {
-        (Some(Mode::Wipe), Some(second)) => {
-            let texture = second.texture.id(ui.ctx(), options(second.divisor, second.is_scaled));
-            let x = rect.lerp_inside(vec2(divider, 0.0)).x;
-            let side = Rect { max: pos2(x, rect.bottom()), ..rect };
-            painter.image(texture, side, Rect { max: pos2(divider, 1.0), ..WHOLE }, Color32::WHITE);
-            self::divider(&painter, corners, x);
-            title(ui, &painter, Rect { max: pos2(x, corners.bottom()), ..corners }, Align2::LEFT_TOP, theirs);
-            title(ui, &painter, Rect { min: pos2(x, corners.top()), ..corners }, Align2::RIGHT_TOP, mine);
+        (Some(Mode::Wipe), Some((texture, is_smooth))) => {
+            wipe(ui, &painter, rect, divider, id(texture, is_smooth), [theirs, mine]);
         }
         (Some(Mode::Difference), _) => {
-            let text = format!("Difference from {theirs}");
-            title(ui, &painter, corners, Align2::LEFT_TOP, &text);
+            title(ui, &painter, corners, Align2::LEFT_TOP, &format!("Difference from {theirs}"));
         }
         _ => {}
     }
@@ -137,35 +113,24 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
+/// Draws a picture over another one, left of a divider, and the titles of both.
+pub fn wipe(ui: &Ui, painter: &Painter, rect: Rect, divider: f32, left: TextureId, titles: [&str; 2]) {
+    let x = rect.lerp_inside(vec2(divider, 0.0)).x;
+    painter.image(left, rect.with_max_x(x), WHOLE.with_max_x(divider), Color32::WHITE);
+    let seen = rect.intersect(painter.clip_rect());
+    paint_divider(painter, seen, x);
+    title(ui, painter, seen.with_max_x(x), Align2::LEFT_TOP, titles[0]);
+    title(ui, painter, seen.with_min_x(x), Align2::RIGHT_TOP, titles[1]);
+}
+
 /// The divider of a wipe, with a round handle.
-pub fn divider(painter: &Painter, rect: Rect, x: f32) {
+fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     const HANDLE: f32 = 24.0;
     painter.vline(x, rect.y_range(), Stroke::new(4.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
     let knob = pos2(x, rect.center().y);
     painter.circle(knob, 0.5 * HANDLE, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
-    for (sign, along) in [(Sign::Previous, -4.0), (Sign::Next, 4.0)] {
-        let place = Rect::from_center_size(knob + vec2(along, 0.0), vec2(10.0, 10.0));
-        paint_sign(painter, place, sign, Color32::from_gray(30));
-    }
-}
-
-/// A line of 1 point between pixels.
-fn paint_grid(painter: &Painter, rect: Rect, [width, height]: [u32; 2]) {
-    let (clip, stroke) =
-        (rect.intersect(painter.clip_rect()), Stroke::new(1.0, Color32::from_gray(128).gamma_multiply(0.5)));
-    for (count, axis) in [(width, 0), (height, 1)] {
-        for line in 1..count {
-            let at = rect.min[axis] + rect.size()[axis] * line as f32 / count as f32;
-            if clip.min[axis] < at && at < clip.max[axis] {
-                if axis == 0 {
-                    painter.vline(at, clip.y_range(), stroke)
-                } else {
-                    painter.hline(clip.x_range(), at, stroke)
-                };
-            }
-        }
-    }
+    painter.text(knob, Align2::CENTER_CENTER, "‹ ›", FontId::proportional(16.0), Color32::from_gray(30));
 }
 
 /// A title in a corner of the area, cut if it has no room.
@@ -174,12 +139,8 @@ pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str)
     plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
 }
 
-/// Words on a plate, readable on any picture and within the painter's area.
-pub(super) fn label(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str) {
-    plate(ui, painter, at, anchor, text, f32::INFINITY);
-}
-
-fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
+/// Words on a plate, readable on any picture, within the painter's area, and cut to this width.
+pub(super) fn plate(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, width: f32) {
     let font = TextStyle::Small.resolve(ui.style());
     let pad = vec2(0.65, 0.35) * font.size;
     let mut job = LayoutJob::simple_singleline(text.to_owned(), font, ui.visuals().strong_text_color());

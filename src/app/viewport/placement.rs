@@ -19,13 +19,13 @@ const ZOOM_LIMITS: [f32; 2] = [0.05, 128.0];
 /// The position and scale of the picture.
 #[derive(Clone)]
 pub struct Placement {
-    zoom: Zoom,
+    pub zoom: Zoom,
     /// Offset of the picture's middle from the middle of the viewport, in points.
     pan: Vec2,
     /// Screen pixels per picture pixel when it was last drawn.
-    times: f32,
+    pub times: f32,
     /// Where the picture was last drawn.
-    rect: Rect,
+    pub rect: Rect,
 }
 
 impl Default for Placement {
@@ -35,21 +35,6 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// The chosen scale.
-    pub fn zoom(&self) -> Zoom {
-        self.zoom
-    }
-
-    /// Screen pixels per picture pixel when it was last drawn.
-    pub fn times(&self) -> f32 {
-        self.times
-    }
-
-    /// Where the picture was last drawn, in points.
-    pub fn rect(&self) -> Rect {
-        self.rect
-    }
-
     /// Fits the whole picture into the viewport.
     pub fn fit(&mut self) {
         self.zoom = Zoom::Fit;
@@ -159,12 +144,12 @@ mod tests {
     fn a_zoom_at_the_pointer_leaves_there_what_is_there() {
         for at in [pos2(150.0, 300.0), pos2(700.0, 200.0), ROOM.center(), pos2(880.0, 560.0)] {
             let mut placement = placed(1.0);
-            let under = |placement: &Placement| (at - placement.rect().min) / placement.times();
+            let under = |placement: &Placement| (at - placement.rect.min) / placement.times;
             for factor in [1.25, 3.0, 0.5, 1.7] {
                 let before = under(&placement);
                 placement.zoom_at(at, factor);
                 placement.place(ROOM, SIZE, 1.0);
-                let off = (under(&placement) - before) * placement.times();
+                let off = (under(&placement) - before) * placement.times;
                 // The corner is aligned to a whole pixel.
                 assert!(off.length() < 1.5, "{at}, {factor}: off by {off} points");
             }
@@ -181,7 +166,7 @@ mod tests {
             assert!(placement.place(ROOM, SIZE, 1.0).expand(0.5).contains_rect(ROOM), "{pan}");
         }
         // The last pan is not swallowed by what went too far.
-        assert_eq!(placement.rect().left(), ROOM.left() - 800.0 + 30.0);
+        assert_eq!(placement.rect.left(), ROOM.left() - 800.0 + 30.0);
         placement.zoom_by(0.1);
         placement.place(ROOM, SIZE, 1.0);
         placement.pan_by(vec2(50.0, 50.0));
@@ -195,15 +180,15 @@ mod tests {
     fn points_count_in_pixels_of_the_screen_and_zooms_have_limits() {
         for scale in [1.0, 1.5, 2.0] {
             let mut placement = placed(scale);
-            assert!((placement.rect().size() - ROOM.size()).length() < 1e-3);
-            assert!((placement.times() - 2.5 * scale).abs() < 1e-5, "{scale}");
+            assert!((placement.rect.size() - ROOM.size()).length() < 1e-3);
+            assert!((placement.times - 2.5 * scale).abs() < 1e-5, "{scale}");
             placement.show_part([0.5, 0.5, 1.0, 1.0]);
             let rect = placement.place(ROOM, SIZE, scale);
             assert!((rect.size() - 2.0 * ROOM.size()).length() < 1e-3, "{scale}: {rect}");
             assert!(rect.lerp_inside(vec2(0.75, 0.75)).distance(ROOM.center()) < 1.0, "{scale}: {rect}");
             for (factor, limit) in [(1e6, 128.0), (1e-9, 0.05)] {
                 placement.zoom_by(factor);
-                assert_eq!(placement.zoom(), Zoom::Times(limit));
+                assert_eq!(placement.zoom, Zoom::Times(limit));
                 placement.place(ROOM, SIZE, scale);
             }
         }

@@ -1,6 +1,6 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
-use super::paint::label;
+use super::paint::plate;
 use super::{place_at, point_at};
 use crate::app::model::{Body, Document, Edit};
 use crate::app::spheres::Selected;
@@ -97,7 +97,7 @@ impl Selection {
         let in_sight = points.into_iter().flatten().filter(|at| clip.contains(*at));
         let around = Rect::from_points(&in_sight.collect::<Vec<_>>());
         let top = if around.is_finite() { around.center_top() } else { clip.center_top() };
-        label(ui, painter, top - vec2(0.0, 8.0), Align2::CENTER_BOTTOM, &text);
+        plate(ui, painter, top - vec2(0.0, 8.0), Align2::CENTER_BOTTOM, &text, f32::INFINITY);
     }
 }
 
