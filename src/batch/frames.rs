@@ -5,7 +5,7 @@ use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{ended, write_figures};
 use crate::cli::terminal::{Display, print_beside};
-use crate::cli::{FramesOptions, JsonTarget};
+use crate::cli::FramesOptions;
 use crate::film::{Film, key};
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     make_directory(&options.names.directory).map_err(Failure::Input)?;
     let first = options.names.path(options.frames.start);
-    let json = options.json.as_ref().and_then(JsonTarget::file);
+    let json = options.json.as_deref();
     for path in [Some(first.as_path()), json].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
@@ -52,8 +52,8 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
         outcome => outcome.err(),
     };
     run.display.clear();
-    let printed = print_beside(options.json.as_ref(), &format!("{}\n", run.text()));
-    let figures = printed.and(write_figures(&run.json(), options.json.as_ref()));
+    let printed = print_beside(options.json.as_deref(), &format!("{}\n", run.text()));
+    let figures = printed.and(write_figures(&run.json(), options.json.as_deref()));
     ended(failure, figures, &interrupt)
 }
 

@@ -2,7 +2,7 @@
 
 use super::raw::{ProgressChoice, RawPicture};
 use super::render::RenderFlags;
-use super::values::{JsonTarget, parse_turn, range};
+use super::values::{parse_turn, range};
 use super::{Line, check_paths, sources};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
@@ -80,7 +80,7 @@ pub struct FramesOptions {
     pub names: FrameNames,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// The command that renders them.
     pub command: String,
 }
@@ -97,10 +97,8 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
     };
     let names = names(out)?;
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
-    let json = flags.files.json.as_ref().and_then(JsonTarget::file);
-    let frame_files = files.iter().map(|file| ("a frame of the animation", Some(file.as_path())));
-    let outputs: Vec<_> = std::iter::once(("--json", json)).chain(frame_files).collect();
-    check_paths(&[("--scene", sources::scene_file(flags.picture.scene.as_deref()))], &outputs)?;
+    let outputs = files.iter().chain(&flags.files.json).map(PathBuf::as_path);
+    check_paths(sources::scene_file(flags.picture.scene.as_deref()), outputs)?;
     Ok(FramesOptions {
         recipe: chosen.recipe,
         job,

@@ -17,17 +17,16 @@ mod values;
 
 pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
-pub use diff::{DiffOptions, PathChoice};
+pub use diff::DiffOptions;
 pub use direct::{
     CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
 };
-pub use paths::{NamedPath, check_paths};
+pub use paths::check_paths;
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::ReportOptions;
 pub use sources::DEFAULT_SCENE;
-pub use values::JsonTarget;
 
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
@@ -109,7 +108,7 @@ enum RawCommand {
     /// Show a path as two backends trace it, side by side, and where the paths part
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
-    Diff(Box<diff::RawDiff>),
+    Diff(Box<DiffOptions>),
     /// Tell whether two pictures are equal apart from noise, and where they are not
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
@@ -194,7 +193,7 @@ fn request(raw: Raw, line: &Line) -> Result<Request> {
             Request::Merge(Box::new(MergeOptions { program: line.program.clone(), ..*merge }))
         }
         Some(RawCommand::Info(options)) => Request::Info(options),
-        Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
+        Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(raw.check()?)),
         Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(raw.check()?)),
         Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
         Some(RawCommand::Stress(raw)) => Request::Stress(raw),

@@ -2,7 +2,7 @@
 
 use super::raw::{ProgressChoice, RawPicture};
 use super::sources::{self, SampleFlags};
-use super::values::{JsonTarget, parse_duration, whole};
+use super::values::{parse_duration, whole};
 use super::{Line, backend};
 use crate::backends::BackendChoice;
 use crate::job::plan::{Format, Manifest};
@@ -77,7 +77,7 @@ pub struct PartOptions {
     pub every: Duration,
     /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,

@@ -1,6 +1,6 @@
 //! The flags of a picture, which rendering, planning and comparing share, and the values that several commands take.
 
-use super::values::{finite_number, parse_size, parse_vector, whole};
+use super::values::{number, parse_size, parse_vector, whole};
 use crate::job::recipe::Recipe;
 use crate::job::render::{DEPTH_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
@@ -47,13 +47,13 @@ pub(super) struct CameraFlags {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     vup: Option<DVec3>,
     #[arg(help = format!("Vertical field of view, {} to {} degrees", VFOV_LIMITS_DEGREES[0], VFOV_LIMITS_DEGREES[1]),
-          long, value_name = "DEGREES", value_parser = finite_number("20"), allow_hyphen_values = true)]
+          long, value_name = "DEGREES", value_parser = number(.., "a number, such as 20"), allow_hyphen_values = true)]
     vfov: Option<f64>,
     /// Angle of the cone from the focus point to the lens, from 0 (a pinhole) to below 179 degrees
-    #[arg(long, value_name = "DEGREES", value_parser = finite_number("0.6"), allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = number(.., "a number, such as 0.6"), allow_hyphen_values = true)]
     defocus_angle: Option<f64>,
     /// Distance to the plane in focus, above 0 scene units
-    #[arg(long, value_name = "UNITS", value_parser = finite_number("10"), allow_hyphen_values = true)]
+    #[arg(long, value_name = "UNITS", value_parser = number(.., "a number, such as 10"), allow_hyphen_values = true)]
     pub focus_distance: Option<f64>,
 }
 

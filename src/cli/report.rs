@@ -1,8 +1,8 @@
 //! The flags of `weekender report`.
 
 use super::raw::ProgressChoice;
-use super::values::{backend_named, parse_rmse, parse_seconds, parse_size, whole};
-use super::{NamedPath, check_paths, sources};
+use super::sources;
+use super::values::{backend_named, number, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
@@ -49,7 +49,8 @@ pub struct ReportOptions {
           default_value = "1024")]
     pub max_samples: u64,
     /// Also report the seconds needed to reach this RMSE, and mark it in the plot
-    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, default_value = "0.01")]
+    #[arg(long, value_name = "RMSE", default_value = "0.01",
+          value_parser = number(f64::MIN_POSITIVE..=100.0, "above 0 and at most 100, such as 0.005"))]
     target: f64,
     /// The backend that renders the references, named as for --backends
     #[arg(long, value_name = "BACKEND", default_value = "reference")]
@@ -70,9 +71,6 @@ const BASELINE: &str = "c89";
 
 /// Target errors that every report has.
 const TARGETS: [f64; 2] = [0.01, 0.001];
-
-/// The files that a report writes to its directory.
-const REPORT_FILES: [&str; 3] = ["report.json", "report.md", "error-vs-time.svg"];
 
 impl ReportOptions {
     /// Returns an error if there is no such backend or flags conflict; `command` is what the report says of itself.
@@ -119,7 +117,7 @@ impl ReportOptions {
     /// The scenes at their final size.
     ///
     /// # Errors
-    /// If one is unknown, too large or named twice, or if the report would replace an input.
+    /// If one is unknown, too large or named twice.
     pub fn scenes(&self) -> Result<Vec<Recipe>> {
         let mut scenes: Vec<Recipe> =
             self.scenes.iter().map(|name| sources::scene(name)).collect::<Result<_>>()?;
@@ -133,15 +131,7 @@ impl ReportOptions {
             // A film, its reference, and the denoised one.
             scenes[index].job()?.check_memory(4)?;
         }
-        self.check_paths()?;
         Ok(scenes)
-    }
-
-    fn check_paths(&self) -> Result<()> {
-        let files = REPORT_FILES.map(|name| self.out.join(name));
-        let inputs = self.scenes.iter().map(|scene| ("--scenes", sources::scene_file(Some(scene))));
-        let outputs = files.iter().map(|file| ("a file of --out,", Some(file.as_path())));
-        check_paths(&inputs.collect::<Vec<NamedPath>>(), &outputs.collect::<Vec<NamedPath>>())
     }
 
     /// Target errors; the first is marked in the plot.

@@ -112,26 +112,27 @@ fn diff_takes_sides_and_place_from_flags() {
         Ok(Request::Diff(options)) => *options,
         other => panic!("{other:?}"),
     };
-    let flags = "--pixel 0,0 --sides gpu,portable --adapter some";
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
-    assert_eq!(compared(flags).sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
+    let sides = compared("--pixel 0,0 --sides gpu,portable --adapter some").sides().unwrap();
+    assert_eq!(sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
     for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
-        assert!(refused(&format!("diff --find --sides {sides}")).contains("reference"), "{sides}");
+        let error = compared(&format!("--find --sides {sides}")).sides().unwrap_err().to_string();
+        assert!(error.contains("reference"), "{sides}: {error}");
     }
-    let given = |x, y, sample| PathChoice::Given { pixel: [x, y], sample };
-    for (flags, width, path) in [
-        ("--pixel 19,9 --sample 7 --size 20x10", 20, given(19, 9, 7)),
-        ("--find", 200, PathChoice::Find { samples: 4 }),
-        ("--find=9 --size 300x10", 300, PathChoice::Find { samples: 9 }),
+    let error = compared("--pixel 0,0 --sides portable,reference --adapter some").sides().unwrap_err();
+    assert!(error.to_string().contains("--adapter needs the side gpu in --sides"), "{error}");
+    for (flags, width, find) in [
+        ("--pixel 19,9 --sample 7 --size 20x10", 20, None),
+        ("--find", 200, Some(4)),
+        ("--find=9 --size 300x10", 300, Some(9)),
     ] {
-        let DiffOptions { job, path: found, .. } = compared(&format!("--sides portable,reference {flags}"));
-        assert_eq!((job.settings().width, found), (width, path), "{flags}");
+        let options = compared(flags);
+        assert_eq!((options.job().unwrap().1.settings().width, options.find), (width, find), "{flags}");
     }
-    for (flags, part) in [
-        ("--pixel 20,9 --size 20x10", "the last one is 19,9"),
-        ("--pixel 0,0 --adapter some", "--adapter needs the side gpu in --sides"),
-    ] {
-        let error = refused(&format!("diff --sides portable,reference {flags}"));
-        assert!(error.contains(part), "{error}");
-    }
+    let pixel = |flags: &str| {
+        let options = compared(&format!("--size 20x10 {flags}"));
+        options.pixel(&options.job().unwrap().1).map_err(|error| error.to_string())
+    };
+    assert_eq!(pixel("--pixel 19,9"), Ok([19, 9]));
+    assert!(pixel("--pixel 20,9").unwrap_err().contains("the last one is 19,9"));
 }

@@ -10,14 +10,15 @@ use super::table::counted;
 use super::{Candidate, Source, Stop, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
-use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::cli::{BenchOptions, BenchScene};
 use crate::denoise;
 use crate::job::render::RenderJob;
-use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
+use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -41,8 +42,8 @@ const WARM_UP_SECONDS: f64 = 0.2;
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::Input)?;
     let levels = options.levels();
-    let json = &options.json;
-    check_outputs(json.as_ref(), None).map_err(Failure::Input)?;
+    let json = options.json.as_deref();
+    json.map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);
@@ -58,12 +59,12 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let mut figures = bench.figures;
     figures.interrupted = interrupt.is_set();
     figures.warnings = warnings(&figures, machine.load_at_start);
-    let written = write(json.as_ref(), &machine, &figures);
+    let written = write(json, &machine, &figures);
     measured.and(written).map_err(Failure::Run)?;
     Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
-fn write(json: Option<&JsonTarget>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
+fn write(json: Option<&Path>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
     // Write the file even if printing failed.
     let printed = terminal::print_beside(json, &text::text(machine, figures));
     if let Some(target) = json {

@@ -13,7 +13,7 @@ use super::machine::Machine;
 use super::progress::Progress;
 use super::{Candidate, Source, Stop, write_json};
 use crate::cli::terminal::print;
-use crate::cli::{JsonTarget, ReportOptions};
+use crate::cli::ReportOptions;
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
@@ -135,7 +135,7 @@ impl<'a> Report<'a> {
     fn write(&self) -> Result<()> {
         let (out, targets) = (&self.options.out, self.options.targets());
         let findings = Findings::of(&self.data, &targets);
-        write_json(&JsonTarget::File(out.join("report.json")), &self.machine, &findings)?;
+        write_json(&out.join("report.json"), &self.machine, &findings)?;
         write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
         let figure = figure::figure(&self.data, &findings.curves, targets[0]);
         write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;

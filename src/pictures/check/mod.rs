@@ -19,12 +19,12 @@ pub use judge::{Finding, judge, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 
-use super::answer::{Verdict, check_outputs, deliver, lines};
+use super::answer::{Verdict, deliver, lines};
 use crate::cli::terminal::Display;
 use crate::cli::{CheckOptions, ProgressChoice};
 use crate::numbers::heat::HeatScale;
 use crate::system::failure::Failure;
-use crate::system::files::{make_directory, replace_file};
+use crate::system::files::{check_writable, make_directory, replace_file};
 use anyhow::{Context, Result};
 use image::{ImageFormat, RgbImage};
 use serde_json::json;
@@ -41,7 +41,7 @@ pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
 fn checked(options: &CheckOptions) -> Result<ExitCode> {
     options.out.iter().try_for_each(|directory| make_directory(directory))?;
     let files = options.pictures();
-    check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
+    files.iter().chain(&options.json).try_for_each(|file| check_writable(file))?;
     let mine = Mine::read(&options.picture)?;
     let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
     let finding = judge(&mine, options.stage, |what| display.update(0, || what))?;
@@ -52,7 +52,7 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
         replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
     }
     let text = text(&options.picture, &mine, &finding, &files);
-    deliver(options.json.as_ref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
+    deliver(options.json.as_deref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
     Ok(finding.answer(&mine).verdict().exit_code())
 }
 

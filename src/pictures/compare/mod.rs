@@ -4,11 +4,12 @@ mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
-use super::answer::{Verdict, check_outputs, deliver, lines};
+use super::answer::{Verdict, deliver, lines};
 use super::picture::Picture;
 use crate::cli::CompareOptions;
 use crate::numbers::statistics::blocks::{Block, SUM_DEVIATIONS};
 use crate::system::failure::Failure;
+use crate::system::files::check_writable;
 use anyhow::{Result, bail};
 use serde_json::json;
 use std::process::ExitCode;
@@ -23,8 +24,8 @@ pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
 }
 
 fn compared(options: &CompareOptions) -> Result<ExitCode> {
-    let json = options.json.as_ref();
-    check_outputs(json, None)?;
+    let json = options.json.as_deref();
+    json.map_or(Ok(()), check_writable)?;
     let sides =
         [Picture::read(&options.first, options.encoding)?, Picture::read(&options.second, options.encoding)?];
     let comparison = compare_sides(&sides)?;
