@@ -27,7 +27,7 @@ impl Bench<'_> {
             }
             let mut device = DeviceFigures { device: pair[0].name.clone(), rows: Vec::new(), skipped };
             for scene in scenes.iter().take_while(|_| device.skipped.is_none()) {
-                self.progress.at(&format!("{}: {}", scene.name, device.device), 0.0);
+                self.progress.at(&format!("{}: {}", scene.name, device.device));
                 let row = self.gain(scene, &mut pair);
                 if !self.is_cancelled() || row.gain.is_some() {
                     device.rows.push(row);

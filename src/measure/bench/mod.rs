@@ -168,7 +168,7 @@ impl Bench<'_> {
         'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
-                    self.progress.at(&format!("{scene}: {}", row.name), 0.0);
+                    self.progress.at(&format!("{scene}: {}", row.name));
                     let outcome = match turn {
                         0 => self
                             .affordable_samples(candidate, job, samples)

@@ -96,7 +96,7 @@ impl<'a> Report<'a> {
     }
 
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
-        self.progress.at(&format!("reference of {}", recipe.name), 0.0);
+        self.progress.at(&format!("reference of {}", recipe.name));
         let job = reference::job_of(recipe).map_err(anyhow::Error::from)?;
         let mut exact = Candidate::backend("reference", self.options.reference()?);
         let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
@@ -117,7 +117,7 @@ impl<'a> Report<'a> {
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
         let seconds = self.options.time_limit / f64::from(self.options.seeds);
-        self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler), 0.0);
+        self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler));
         let limits = Limits { seconds, samples: self.options.max_samples };
         let job = job(recipe, sampler, seed)?;
         let (about, prepare_seconds, [raw, denoised]) =

@@ -94,7 +94,7 @@ fn suite(
     // Write the figures even if the table cannot be printed.
     let mut printed = terminal::print_beside(json.as_deref(), &report::head());
     for case in chosen {
-        progress.at(&case.id, 0.0);
+        progress.at(&case.id);
         let found = suite.run(case, interrupt);
         if interrupt.load(Ordering::Relaxed) {
             report.interrupted = true;
