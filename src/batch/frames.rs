@@ -4,8 +4,8 @@
 use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{ended, write_figures};
-use crate::cli::terminal::{Display, print_beside};
 use crate::cli::FramesOptions;
+use crate::cli::terminal::{Display, print_beside};
 use crate::film::{Film, key};
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;

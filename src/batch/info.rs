@@ -1,7 +1,7 @@
 //! `weekender info`: what a film, picture, scene file or plan says about itself.
 
-use crate::cli::terminal::{print, write_json};
 use crate::cli::InfoOptions;
+use crate::cli::terminal::{print, write_json};
 use crate::film::{CheckpointError, checkpoint, key};
 use crate::job::plan::Plan;
 use crate::job::recipe::{Recipe, file};

@@ -19,8 +19,8 @@ pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
-use crate::cli::terminal::{self, print, print_beside};
 use crate::cli::BatchOptions;
+use crate::cli::terminal::{self, print, print_beside};
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
 use crate::scene::builtin::BuiltinScene;

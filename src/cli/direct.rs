@@ -1,7 +1,7 @@
 //! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
-use super::raw::ProgressChoice;
 use super::check_paths;
+use super::raw::ProgressChoice;
 use super::values::{Auto, parse_levels};
 use crate::backends::BackendChoice;
 use crate::job::output::Encoding;

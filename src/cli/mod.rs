@@ -32,7 +32,6 @@ use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell::Shell;
 use anyhow::Result;
-use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -159,8 +158,7 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let matches =
-        command().try_get_matches_from(&arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
+    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
@@ -168,17 +166,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
     let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
     request(raw, &line).map_err(Failure::Input)
-}
-
-/// Adds a tip if the value of a flag has a decimal comma.
-fn hinted(mut error: clap::Error) -> clap::Error {
-    let value = error.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
-    let is_number = |text: &str| text.replacen(',', ".", 1).parse::<f64>().is_ok();
-    if value.contains(',') && is_number(&value) && !error.to_string().contains("commas") {
-        let tip = format!("write a point: {}", value.replace(',', "."));
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-    }
-    error
 }
 
 fn request(raw: Raw, line: &Line) -> Result<Request> {

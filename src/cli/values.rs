@@ -144,7 +144,6 @@ pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "must be from 0.1s to 30d, with s, m, h or d after the number, such as 90s".to_owned())
 }
 
-
 /// A parser of ranges that end at `limit` at most, of which `example` is one.
 pub(super) fn range<T>(
     limit: T,

@@ -27,8 +27,7 @@ impl Progress {
         let share = (self.done / self.total).min(1.0);
         let left = time_left(share, self.begin.elapsed())
             .map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        self.display
-            .announce((share * BAR_STEPS) as u64, || format!("{:3.0} % {what}{left}", 100.0 * share));
+        self.display.announce((share * BAR_STEPS) as u64, || format!("{:3.0} % {what}{left}", 100.0 * share));
     }
 
     pub fn finished(&mut self, amount: f64) {

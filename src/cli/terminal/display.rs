@@ -25,7 +25,13 @@ pub enum Display {
 impl Display {
     /// Depends on `choice` and on whether there is a terminal. The bar has `steps` and looks as indicatif's
     /// `template` says, where `prefix` fills the placeholder of that name. Lines are at least `interval` apart.
-    pub fn new(choice: ProgressChoice, steps: u64, template: &'static str, prefix: &str, interval: Duration) -> Self {
+    pub fn new(
+        choice: ProgressChoice,
+        steps: u64,
+        template: &'static str,
+        prefix: &str,
+        interval: Duration,
+    ) -> Self {
         match (choice, stderr().is_terminal()) {
             (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
             (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },

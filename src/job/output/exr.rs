@@ -1,13 +1,14 @@
 //! OpenEXR as any program writes it.
 
-use super::limits::{check_memory, invalid, pixel_count};
+use super::limits::{check_memory, pixel_count};
 use super::read::{ReadPicture, Values};
 use crate::film::checkpoint;
-use exr::error::{Error, Result};
+use anyhow::{Context, Result, anyhow, bail};
+use exr::error::Error;
 use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
 use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, Seek};
+use std::io::{BufRead, Seek};
 
 /// Three channels that make a picture.
 struct Layer<'a> {
@@ -20,19 +21,15 @@ struct Layer<'a> {
 }
 
 /// Reads the layer with this name, or the only one.
-pub(super) fn read(
-    mut reader: impl BufRead + Seek,
-    length: u64,
-    layer: Option<&str>,
-) -> io::Result<ReadPicture> {
+pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&str>) -> Result<ReadPicture> {
     let meta = MetaData::read_from_buffered(&mut reader, false).map_err(|error| unreadable(&error))?;
     for header in &meta.headers {
-        checkpoint::check_length(header, length).map_err(invalid)?;
+        checkpoint::check_length(header, length).map_err(|reason| anyhow!(reason))?;
         size(header.layer_size, header.channels.bytes_per_pixel)?;
     }
     // Each of the two ways refuses files that the other reads: the first those with a wrong number of chunks, the second
     // those with an odd header.
-    let mut decoded = |is_pedantic: bool| -> Result<FlatImage> {
+    let mut decoded = |is_pedantic: bool| -> exr::error::Result<FlatImage> {
         reader.rewind()?;
         let builder =
             reading().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
@@ -109,11 +106,11 @@ fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
     if colour.is_empty() { grey } else { colour }
 }
 
-fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
+fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Result<&'a Layer<'a>> {
     if let Some(name) = name {
         let found = layers.iter().find(|layer| layer.name == name);
-        return found.ok_or_else(|| {
-            invalid(format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers)))
+        return found.with_context(|| {
+            format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers))
         });
     }
     let usual: Vec<&Layer> = layers.iter().filter(|layer| layer.name.is_empty()).collect();
@@ -123,12 +120,12 @@ fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io:
         ([], _) => {
             let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
             let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
-            Err(invalid(format!(
+            bail!(
                 "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
                 channels.join(", ")
-            )))
+            )
         }
-        _ => Err(invalid(format!("it has several layers; choose one as FILE:LAYER: {}", names(layers)))),
+        _ => bail!("it has several layers; choose one as FILE:LAYER: {}", names(layers)),
     }
 }
 
@@ -166,19 +163,19 @@ fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
 }
 
 /// Width and height, if there is memory for a picture and as many more bytes for each pixel.
-fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> io::Result<(u32, u32)> {
+fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> Result<(u32, u32)> {
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     pixel_count(width, height)?;
     check_memory(width, height, bytes as u64)?;
     Ok((width, height))
 }
 
-fn unreadable(error: &Error) -> io::Error {
+fn unreadable(error: &Error) -> anyhow::Error {
     let text = error.to_string();
     let remedy = match error {
         Error::NotSupported(_) if text.contains("compression") => "save it with another, such as ZIP",
         Error::NotSupported(_) => "save it as a flat picture with R, G and B of the same size",
         _ => "check whether the file is complete",
     };
-    invalid(format!("{text}; {remedy}"))
+    anyhow!("{text}; {remedy}")
 }

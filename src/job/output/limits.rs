@@ -1,23 +1,18 @@
 //! What is checked before a picture is read.
 
 use crate::system::memory;
-use std::io;
-
-pub(super) fn invalid(reason: impl ToString) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
-}
+use anyhow::{Result, ensure};
 
 /// Largest number of pixels that is read.
 pub(super) const PIXEL_LIMIT: u64 = 1 << 28;
 
 /// Number of pixels, or an error if the size is out of range.
-pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
+pub(super) fn pixel_count(width: u32, height: u32) -> Result<usize> {
     let count = u64::from(width) * u64::from(height);
-    if !(1..=PIXEL_LIMIT).contains(&count) {
-        return Err(invalid(format!(
-            "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
-        )));
-    }
+    ensure!(
+        (1..=PIXEL_LIMIT).contains(&count),
+        "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
+    );
     Ok(count as usize)
 }
 
@@ -26,9 +21,8 @@ pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
 const BYTES_PER_PIXEL: u64 = 80;
 
 /// Returns an error if the picture would not fit into memory, with `more` bytes for each pixel than usual.
-pub(super) fn check_memory(width: u32, height: u32, more: u64) -> io::Result<()> {
+pub(super) fn check_memory(width: u32, height: u32, more: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
     let what = || format!("a picture of {width}x{height} pixels");
-    memory::check(what, bytes, "close other programs or make it smaller")
-        .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
+    Ok(memory::check(what, bytes, "close other programs or make it smaller")?)
 }

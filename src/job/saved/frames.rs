@@ -1,7 +1,7 @@
 //! Checks whether the file of a frame exists and is right.
 
 use crate::film::key;
-use crate::job::output::{check_frame, read_description};
+use crate::job::output::{read_description, read_picture};
 use crate::job::recipe::{Recipe, file};
 use std::path::Path;
 
@@ -12,7 +12,7 @@ pub fn is_whole_frame(path: &Path, recipe: &Recipe, software: &str) -> bool {
         found.recipe() == file::to_picture_toml(recipe)
             && found.get(key::SAMPLES) == Some(&samples)
             && found.get(key::SOFTWARE) == Some(software)
-    }) && check_frame(path, [recipe.settings.width, recipe.settings.height]).is_ok()
+    }) && read_picture(path, None).is_ok()
 }
 
 #[cfg(test)]
@@ -46,7 +46,12 @@ mod tests {
         description.set(key::SAMPLES, 1);
         write(&description);
         assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
-        std::fs::write(&path, "no picture").unwrap();
-        assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+        description.set(key::SAMPLES, 2);
+        write(&description);
+        let whole = std::fs::read(&path).unwrap();
+        for damaged in [&whole[..whole.len() - 30], b"no picture"] {
+            std::fs::write(&path, damaged).unwrap();
+            assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+        }
     }
 }

@@ -12,27 +12,26 @@ pub use replaced::Replaced;
 pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
-use crate::job::output::{OutputError, read_description};
+use crate::job::output::read_description;
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
 use crate::system::files::ShownPath;
+use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be opened or resumed. The message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    #[error(transparent)]
-    Scene(#[from] file::FileError),
     /// The film is damaged, of another version, or cannot be read; or a film is needed, and this is none.
     #[error(transparent)]
     Film(CheckpointError),
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
-    Picture(OutputError),
-    /// The recipe in the file is missing or cannot be rendered, or the film does not match it.
-    #[error("{} {what}", path.shown())]
-    Recipe { path: PathBuf, what: String },
+    Picture(anyhow::Error),
+    /// The scene file or the recipe cannot be read or rendered, or the film does not match it.
+    #[error(transparent)]
+    Recipe(#[from] anyhow::Error),
     #[error(
         "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
         path.shown()
@@ -82,10 +81,9 @@ impl Saved {
     /// # Errors
     /// [`OpenError::Recipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
-        let no_recipe = |what| OpenError::Recipe { path: self.path.clone(), what };
         let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
-            .map_err(|reason| no_recipe(format!("has a recipe that cannot be read: {reason}")))?;
+            .map_err(|reason| anyhow!("{label} has a recipe that cannot be read: {reason}"))?;
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let name = self.description.get(key::SCENE).map(str::to_owned).or(stem).unwrap_or(label);
         Ok(Recipe { name, ..recipe })
@@ -168,8 +166,9 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if let Content::Film(saved) = &content
         && !job.fits(&saved.film)
     {
-        let what = "is a film that does not have the size that its recipe says; render it again".to_owned();
-        return Err(OpenError::Recipe { path: path.to_owned(), what });
+        let path = path.shown();
+        let what = "is a film that does not have the size that its recipe says; render it again";
+        return Err(anyhow!("{path} {what}").into());
     }
     Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
 }
@@ -209,10 +208,8 @@ pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
 }
 
 fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
-    recipe.job().map_err(|reason| {
-        let what = format!("has a recipe that cannot be rendered: {reason}");
-        OpenError::Recipe { path: path.to_owned(), what }
-    })
+    let path = path.shown();
+    Ok(recipe.job().map_err(|reason| anyhow!("{path} has a recipe that cannot be rendered: {reason}"))?)
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {
