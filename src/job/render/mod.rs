@@ -184,11 +184,16 @@ impl Stats {
     }
 }
 
-/// The features that a kernel has code for.
+/// What a renderer has made for its job; empty without one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct KernelContents {
+pub struct KernelInfo {
+    /// The kernel, and how long it took to compile.
+    pub about: String,
+    /// The features that it has code for.
     pub present: String,
     pub left_out: Vec<&'static str>,
+    /// Wall time of building the hierarchy; zero if there is none.
+    pub hierarchy_time: Duration,
 }
 
 /// Occupancy of packets in each tile of a picture.
@@ -268,24 +273,14 @@ pub trait Renderer: Send {
         Vec::new()
     }
 
-    /// Wall time of building the prepared job's hierarchy; zero if it has none.
-    fn hierarchy_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
     /// Total time of all dispatches so far by the device's own clock; `None` without one.
     fn device_time(&self) -> Option<Duration> {
         None
     }
 
-    /// Describes the prepared job's kernel and the time it took to compile.
-    fn kernel(&self) -> String {
-        String::new()
-    }
-
-    /// What the prepared job's kernel has and leaves out; both empty if no job is prepared.
-    fn kernel_contents(&self) -> KernelContents {
-        KernelContents::default()
+    /// Describes what it has made for the prepared job.
+    fn kernel(&self) -> KernelInfo {
+        KernelInfo::default()
     }
 
     /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.

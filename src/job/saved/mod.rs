@@ -105,7 +105,7 @@ impl Saved {
     }
 
     /// The film with its tracing time and backend; `None` for a picture.
-    fn into_film(self) -> Option<SavedFilm> {
+    pub fn into_film(self) -> Option<SavedFilm> {
         let (seconds, backend) = (self.seconds(), self.description.get(key::BACKEND).map(str::to_owned));
         self.film.map(|film| SavedFilm { film, seconds, backend })
     }
@@ -121,19 +121,6 @@ pub struct SavedFilm {
     pub backend: Option<String>,
 }
 
-/// The content of a file besides its recipe.
-#[derive(Debug)]
-pub enum Content {
-    /// Nothing else: the file is a scene file.
-    Scene,
-    Picture {
-        /// Samples per pixel, if the file says so.
-        samples: Option<u64>,
-    },
-    /// A film whose shape matches the recipe.
-    Film(SavedFilm),
-}
-
 /// A file that was opened.
 #[derive(Debug)]
 pub struct Opened {
@@ -142,10 +129,8 @@ pub struct Opened {
     pub recipe: Recipe,
     /// The validated job of the recipe.
     pub job: RenderJob,
-    /// The stage that the description names. The recipe may have been changed since.
-    pub stage: Option<&'static Stage>,
-    /// What the file contains besides the recipe.
-    pub content: Content,
+    /// The picture or the film, whose shape matches the recipe; `None` for a scene file.
+    pub saved: Option<Saved>,
 }
 
 /// Opens a scene file (its name ends in .toml), a picture or a film.
@@ -156,21 +141,17 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let recipe = file::load(path)?;
         let job = job_of(path, &recipe)?;
-        return Ok(Opened { path: path.to_owned(), recipe, job, stage: None, content: Content::Scene });
+        return Ok(Opened { path: path.to_owned(), recipe, job, saved: None });
     }
     let saved = Saved::read(path)?;
     let recipe = saved.recipe()?;
     let job = job_of(path, &recipe)?;
-    let (stage, samples) = (saved.stage(), saved.samples());
-    let content = saved.into_film().map_or(Content::Picture { samples }, Content::Film);
-    if let Content::Film(saved) = &content
-        && !job.fits(&saved.film)
-    {
+    if saved.film.as_ref().is_some_and(|film| !job.fits(film)) {
         let path = path.shown();
         let what = "is a film that does not have the size that its recipe says; render it again";
         return Err(anyhow!("{path} {what}").into());
     }
-    Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
+    Ok(Opened { path: path.to_owned(), recipe, job, saved: Some(saved) })
 }
 
 /// Opens a film and returns its job and the film.
@@ -179,13 +160,11 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
 /// [`OpenError`]; pictures and scene files are refused.
 pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
     checkpoint::read_head(path).map_err(OpenError::Film)?;
-    match open(path)? {
-        Opened { job, content: Content::Film(film), .. } => Ok((job, film)),
-        _ => {
-            let reason = checkpoint::load(path).err();
-            Err(OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() })))
-        }
-    }
+    let Opened { job, saved, .. } = open(path)?;
+    saved.and_then(Saved::into_film).map(|film| (job, film)).ok_or_else(|| {
+        let reason = checkpoint::load(path).err();
+        OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() }))
+    })
 }
 
 /// Reads the film of `job` in order to resume it.

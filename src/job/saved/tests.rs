@@ -30,15 +30,16 @@ fn film_opens_with_samples_and_description() {
         [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
     let path = written(&directory, "a.exr", &entries);
     let opened = open(&path).unwrap();
-    assert_eq!((opened.recipe.name.as_str(), opened.stage.map(|stage| stage.id)), ("balls", Some("metal")));
-    let Content::Film(read) = opened.content else { panic!("no film") };
+    let saved = opened.saved.unwrap();
+    assert_eq!((opened.recipe.name.as_str(), saved.stage().map(|stage| stage.id)), ("balls", Some("metal")));
+    let read = saved.into_film().unwrap();
     assert_eq!(read.film, film(&[]).1);
     assert_eq!((read.seconds, read.backend.as_deref()), (Some(2.5), Some("cpu")));
     assert_eq!(opened.job, film(&[]).0.job().unwrap());
     // The recipe's name does not matter.
     let renamed = directory.path().join("renamed.png");
     std::fs::rename(&path, &renamed).unwrap();
-    assert!(matches!(open(&renamed).unwrap().content, Content::Film(_)));
+    assert!(open(&renamed).unwrap().saved.unwrap().film.is_some());
 }
 
 #[test]
@@ -47,8 +48,9 @@ fn picture_has_samples_and_is_named_after_its_file() {
     for (entry, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
         let path = written(&directory, "plain.png", &[(key::SAMPLES, entry)]);
         let opened = open(&path).unwrap();
-        let Content::Picture { samples: found } = opened.content else { panic!("{entry}") };
-        assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
+        let saved = opened.saved.unwrap();
+        assert!(saved.film.is_none(), "{entry}");
+        assert_eq!((saved.samples(), opened.recipe.name.as_str()), (samples, "plain"));
         assert!(matches!(open_film(&path), Err(OpenError::Film(CheckpointError::NotExr { .. }))));
     }
 }
@@ -107,7 +109,7 @@ fn refusal_depends_on_the_kind_of_file() {
     assert!(matches!(error("missing.exr"), OpenError::Film(CheckpointError::Input(_))));
     // A picture that has a description is a picture by any name, and a scene file by any case.
     std::fs::rename(written(&directory, "a.png", &[]), at("b.exr")).unwrap();
-    assert!(matches!(open(&at("b.exr")).unwrap().content, Content::Picture { .. }));
+    assert!(open(&at("b.exr")).unwrap().saved.unwrap().film.is_none());
     std::fs::write(at("scene.TOML"), file::to_toml(&film(&[]).0)).unwrap();
-    assert!(matches!(open(&at("scene.TOML")).unwrap().content, Content::Scene));
+    assert!(open(&at("scene.TOML")).unwrap().saved.is_none());
 }

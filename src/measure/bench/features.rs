@@ -89,7 +89,7 @@ impl Bench<'_> {
         let contents = |candidate: &mut Candidate| -> Result<_, Stop> {
             let renderer = candidate.start()?;
             renderer.prepare(job, cancel)?;
-            Ok(renderer.kernel_contents())
+            Ok(renderer.kernel())
         };
         let (kernel, never) = (contents(own)?, contents(general)?.left_out);
         row.kernel = kernel.present;
