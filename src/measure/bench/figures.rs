@@ -144,11 +144,6 @@ impl Spread {
     fn of_speeds(runs: &[Run], count: fn(&Run) -> u64) -> Option<Self> {
         Spread::of(runs.iter().map(|run| count(run) as f64 / run.seconds))
     }
-
-    /// The range as a share of the median.
-    pub fn share(self) -> f64 {
-        (self.max - self.min) / self.median
-    }
 }
 
 impl Run {

@@ -26,9 +26,6 @@ use std::time::{Duration, Instant};
 /// System load above which the figures are doubtful.
 const LOAD_LIMIT: f64 = 0.5;
 
-/// Figures are doubtful if the range of the runs exceeds this share of their median.
-const SPREAD_LIMIT: f64 = 0.1;
-
 /// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
 
@@ -58,7 +55,11 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     bench.progress.clear();
     let mut figures = bench.figures;
     figures.interrupted = interrupt.is_set();
-    figures.warnings = warnings(&figures, machine.load_at_start);
+    figures.warnings.extend(machine.load_at_start.filter(|load| *load > LOAD_LIMIT).map(|load| {
+        format!(
+            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
+        )
+    }));
     let written = write(json, &machine, &figures);
     measured.and(written).map_err(Failure::Run)?;
     Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
@@ -235,45 +236,9 @@ fn affordable(samples: u64, least: u64, seconds_per_sample: f64, limit_seconds: 
     chosen
 }
 
-fn warnings(figures: &BenchFigures, load: Option<f64>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(load) = load.filter(|load| *load > LOAD_LIMIT) {
-        warnings.push(format!(
-            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
-        ));
-    }
-    let spreads = spreads(figures);
-    let wide = || spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
-    if let Some((name, share)) = wide().max_by(|a, b| a.1.total_cmp(&b.1)) {
-        warnings.push(format!(
-            "in {} of {} rows, the runs differ by more than {:.0} % of their median; the largest difference is {:.0} % in {name}",
-            wide().count(),
-            spreads.len(),
-            100.0 * SPREAD_LIMIT,
-            100.0 * share
-        ));
-    }
-    warnings
-}
-
-/// The name of each measured row, with the range of its runs as a share of their median.
-fn spreads(figures: &BenchFigures) -> Vec<(String, f64)> {
-    let mut found: Vec<(String, Option<Spread>)> = Vec::new();
-    for scene in &figures.scenes {
-        let name = |row: &Row| format!("{}, {}", scene.scene, row.name);
-        found.extend(scene.rows.iter().map(|row| (name(row), row.paths_per_second)));
-    }
-    for device in &figures.features {
-        let name = |scene: &str| format!("{scene}, {}", device.device);
-        found.extend(device.rows.iter().map(|row| (name(&row.name), row.gain)));
-    }
-    found.into_iter().filter_map(|(name, spread)| Some((name, spread?.share()))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use figures::{DeviceFigures, GainRow};
 
     #[test]
     fn samples_fit_time_limit() {
@@ -281,27 +246,5 @@ mod tests {
             assert_eq!(affordable(100, 2, seconds_per_sample, 1.04), expected, "{seconds_per_sample}");
         }
         assert_eq!(affordable(1, 2, 9.0, 1.0), 1);
-    }
-
-    #[test]
-    fn load_and_spread_warn() {
-        let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
-        let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
-        let rows = vec![
-            row("steady", spread(95.0, 105.0)),
-            row("first", spread(90.0, 110.0)),
-            row("second", spread(80.0, 105.0)),
-            row("skipped", None),
-        ];
-        let features = vec![DeviceFigures { device: "avx2".to_owned(), rows, skipped: None }];
-        let figures = BenchFigures { features, ..BenchFigures::default() };
-        let found = warnings(&figures, Some(LOAD_LIMIT));
-        assert_eq!(found.len(), 1);
-        assert!(
-            found[0].contains("in 2 of 3 rows") && found[0].contains("25 % in second, avx2"),
-            "{found:?}"
-        );
-        assert!(warnings(&figures, Some(0.75))[0].contains("load 0.75"));
-        assert_eq!(warnings(&BenchFigures::default(), None), [""; 0]);
     }
 }

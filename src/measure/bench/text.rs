@@ -77,7 +77,7 @@ fn device(device: &DeviceFigures) -> String {
 }
 
 fn gain_row(row: &GainRow) -> String {
-    if let (Some(reason), None) = (&row.skipped, row.gain) {
+    if let Some(reason) = &row.skipped {
         return format!("{} skipped: {reason}\n", row.name);
     }
     let gain = |part: fn(Spread) -> f64| or_dash(row.gain, |spread| format!("{:.2}", part(spread)));

@@ -12,7 +12,7 @@ mod suite;
 
 pub use case::{Case, Expected, Family, Form, Watch, with_far_spheres};
 pub use families::{cases, shown_cases};
-pub use judge::{Level, Paired, Verdict};
+pub use judge::{Difference, Level, Verdict};
 pub use report::{BookMeasured, CaseReport, Measured, StressReport};
 pub use suite::{Suite, by_the_book, trace};
 

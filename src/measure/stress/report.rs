@@ -2,7 +2,7 @@
 
 use super::super::table::{counted, markdown_row, markdown_table, or_dash, text_row};
 use super::families::families;
-use super::judge::{Paired, Verdict};
+use super::judge::{Difference, Verdict};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -54,7 +54,7 @@ pub struct Measured {
     /// Standard error of the mean.
     pub deviation: Option<f64>,
     /// Difference from `f64` in the same form; `None` for `f64` itself.
-    pub rounding: Option<Paired>,
+    pub rounding: Option<Difference>,
     /// Time to prepare and trace.
     pub seconds: Option<f64>,
     #[serde(flatten)]
@@ -96,7 +96,7 @@ impl CaseReport {
     }
 
     /// The rounding with the largest bias.
-    fn rounding(&self) -> Option<Paired> {
+    fn rounding(&self) -> Option<Difference> {
         let all = self.measured.iter().filter_map(|measured| measured.rounding);
         all.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
     }
@@ -128,9 +128,9 @@ impl CaseReport {
 
     /// Expected, off by, rounding, time, and the book's arithmetic.
     fn cells(&self) -> [String; 5] {
-        let rounding = |paired: Paired| {
-            let rms = if paired.rms == 0.0 { "0".to_owned() } else { format!("{:.0e}", paired.rms) };
-            format!("{} ({rms})", brief(paired.bias))
+        let rounding = |by: Difference| {
+            let rms = if by.rms == 0.0 { "0".to_owned() } else { format!("{:.0e}", by.rms) };
+            format!("{} ({rms})", brief(by.bias))
         };
         let book: Vec<String> = self.book.iter().map(|book| or_dash(book.offset, brief)).collect();
         [
@@ -227,7 +227,7 @@ mod tests {
             backend: "cpu".to_owned(),
             form: "plain",
             offset,
-            rounding: offset.map(|bias| Paired { bias, ..Paired::default() }),
+            rounding: offset.map(|bias| Difference { bias, ..Difference::default() }),
             seconds: Some(seconds),
             ..Measured::default()
         }
