@@ -14,7 +14,7 @@ use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
 use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
-use crate::system::files::{JsonPath, ShownPath, check_writable, make_directory};
+use crate::system::files::{ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::anyhow;
@@ -179,9 +179,9 @@ impl Run<'_> {
             "kept": self.kept,
             "rendering_seconds": self.rendering.as_secs_f64(),
             "total_seconds": self.begin.elapsed().as_secs_f64(),
-            "directory": JsonPath(names.directory.clone()),
-            "first_file": first.map(JsonPath),
-            "last_file": last.map(JsonPath),
+            "directory": names.directory.to_string_lossy(),
+            "first_file": first.map(|path| path.to_string_lossy().into_owned()),
+            "last_file": last.map(|path| path.to_string_lossy().into_owned()),
             "warnings": self.warnings,
         })
     }

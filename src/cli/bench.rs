@@ -2,7 +2,7 @@
 
 use super::raw::ProgressChoice;
 use super::values::{Auto, parse_levels, parse_seconds, parse_size, whole};
-use super::{check_paths, sources};
+use super::{check_outputs, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::Isa;
@@ -80,11 +80,13 @@ const QUICK_PATH_LIMIT: u64 = 3_000_000;
 const FEATURES_WIDTH: u32 = 200;
 
 impl BenchOptions {
-    /// Returns an error if the JSON would replace a scene file.
-    pub(super) fn check(self) -> Result<Self> {
+    /// Checks that the JSON can be written and does not replace a scene file.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check(&self) -> Result<()> {
         let inputs = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));
-        check_paths(inputs, self.json.as_deref())?;
-        Ok(self)
+        check_outputs(inputs, self.json.as_deref())
     }
 
     /// Instruction levels, the most capable last; at least one.
@@ -166,12 +168,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn options(words: &str) -> BenchOptions {
         let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
         match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Bench(options) => *options,
+            Request::Command(Command::Bench(options)) => *options,
             other => panic!("{other:?}"),
         }
     }

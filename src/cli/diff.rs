@@ -46,10 +46,12 @@ pub struct DiffOptions {
 const FIND_WIDTH: u32 = 200;
 
 impl DiffOptions {
-    /// Refuses JSON that would replace the scene file.
-    pub(super) fn check(self) -> Result<Self> {
-        super::check_paths(sources::scene_file(self.picture.scene.as_deref()), self.json.as_deref())?;
-        Ok(self)
+    /// Checks that the JSON can be written and does not replace the scene file.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check(&self) -> Result<()> {
+        super::check_outputs(sources::scene_file(self.picture.scene.as_deref()), self.json.as_deref())
     }
 
     /// The job, small for a search unless a size is given, and the name of its scene or stage.

@@ -1,13 +1,11 @@
 //! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
-use super::check_paths;
 use super::raw::ProgressChoice;
 use super::values::{Auto, parse_levels};
 use crate::backends::BackendChoice;
 use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
-use anyhow::Result;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -106,13 +104,6 @@ impl CheckOptions {
         let names = ["mine.png", "ours.png", "difference.png"];
         self.out.iter().flat_map(|out| names.map(|name| out.join(name))).collect()
     }
-
-    /// Refuses files that would replace the picture or each other.
-    pub(super) fn check(self) -> Result<Self> {
-        let pictures = self.pictures();
-        check_paths([self.picture.as_path()], pictures.iter().chain(&self.json).map(PathBuf::as_path))?;
-        Ok(self)
-    }
 }
 
 /// Options of `weekender compare`.
@@ -130,14 +121,6 @@ pub struct CompareOptions {
     /// Write the figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
-}
-
-impl CompareOptions {
-    /// Refuses JSON that would replace a picture.
-    pub(super) fn check(self) -> Result<Self> {
-        check_paths([self.first.as_path(), &self.second], self.json.as_deref())?;
-        Ok(self)
-    }
 }
 
 impl ValueEnum for Encoding {
@@ -171,9 +154,6 @@ pub struct StressOptions {
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
-    /// Write the table as Markdown to table.md in this directory
-    #[arg(long, value_name = "DIRECTORY")]
-    pub out: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,

@@ -21,7 +21,7 @@ pub use diff::DiffOptions;
 pub use direct::{
     CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
 };
-pub use paths::check_paths;
+pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
@@ -43,24 +43,13 @@ pub enum Request {
     /// Print the version.
     Version,
     Window(Box<WindowOptions>),
-    Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file, whose recipe is valid, and render nothing.
     SaveScene(Box<Recipe>, PathBuf),
-    Plan(Box<PlanOptions>),
-    Part(Box<PartOptions>),
-    Merge(Box<MergeOptions>),
-    Info(InfoOptions),
-    Diff(Box<DiffOptions>),
-    Compare(Box<CompareOptions>),
-    Report(Box<ReportOptions>),
-    Stress(Box<StressOptions>),
-    Companion(Box<CompanionOptions>),
-    Gallery(Box<GalleryOptions>),
-    Check(Box<CheckOptions>),
     Frames(Box<FramesOptions>),
     Batch(Box<BatchOptions>),
+    Command(Command),
 }
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
@@ -77,11 +66,12 @@ struct Raw {
     #[command(flatten)]
     render: render::RenderFlags,
     #[command(subcommand)]
-    command: Option<RawCommand>,
+    command: Option<Command>,
 }
 
+/// A subcommand with its options.
 #[derive(Debug, Subcommand)]
-enum RawCommand {
+pub enum Command {
     /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
@@ -91,7 +81,7 @@ enum RawCommand {
     ///
     /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
     /// from the part's last checkpoint, and ends at once if the part is whole.
-    Plan(Box<plan::PlanFlags>),
+    Plan(Box<PlanOptions>),
     /// Render a part of a plan, or continue it
     ///
     /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint is
@@ -165,29 +155,26 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
     let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
-    request(raw, &line).map_err(Failure::Input)
+    Ok(match raw.command {
+        None => render::request(raw.render, &line).map_err(Failure::Input)?,
+        Some(mut command) => {
+            command.complete(&line);
+            Request::Command(command)
+        }
+    })
 }
 
-fn request(raw: Raw, line: &Line) -> Result<Request> {
-    Ok(match raw.command {
-        None => render::request(raw.render, line)?,
-        Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
-        Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),
-        Some(RawCommand::RenderPart(part)) => {
-            Request::Part(Box::new(PartOptions { command: line.command.clone(), ..*part }))
+impl Command {
+    /// Adds what options say of the command line as a whole.
+    fn complete(&mut self, line: &Line) {
+        match self {
+            Command::Plan(options) => options.complete(line),
+            Command::RenderPart(options) => options.command.clone_from(&line.command),
+            Command::Merge(options) => options.program.clone_from(&line.program),
+            Command::Report(options) => options.command.clone_from(&line.command),
+            _ => {}
         }
-        Some(RawCommand::Merge(merge)) => {
-            Request::Merge(Box::new(MergeOptions { program: line.program.clone(), ..*merge }))
-        }
-        Some(RawCommand::Info(options)) => Request::Info(options),
-        Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(raw.check()?)),
-        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(raw.check()?)),
-        Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
-        Some(RawCommand::Stress(raw)) => Request::Stress(raw),
-        Some(RawCommand::Companion(options)) => Request::Companion(options),
-        Some(RawCommand::Gallery(options)) => Request::Gallery(options),
-        Some(RawCommand::Check(raw)) => Request::Check(Box::new(raw.check()?)),
-    })
+    }
 }
 
 struct Line<'a> {

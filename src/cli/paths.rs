@@ -1,6 +1,6 @@
 //! An output must not be an input of the same command, or another output.
 
-use crate::system::files::{FileIdentity, ShownPath};
+use crate::system::files::{FileIdentity, ShownPath, check_writable};
 use anyhow::{Result, ensure};
 use std::collections::HashSet;
 use std::path::Path;
@@ -22,6 +22,18 @@ pub fn check_paths<'a>(
         );
     }
     Ok(())
+}
+
+/// As [`check_paths`], and checks that each output can be written.
+///
+/// # Errors
+/// The first output of which that is not so.
+pub fn check_outputs<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path> + Clone,
+) -> Result<()> {
+    check_paths(inputs, outputs.clone())?;
+    Ok(outputs.into_iter().try_for_each(check_writable)?)
 }
 
 #[cfg(test)]

@@ -73,19 +73,19 @@ const BASELINE: &str = "c89";
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
 impl ReportOptions {
-    /// Returns an error if there is no such backend or flags conflict; `command` is what the report says of itself.
-    pub(super) fn check(self, command: String) -> Result<Self> {
+    /// Checks the backends.
+    ///
+    /// # Errors
+    /// If there is no such backend, or flags conflict.
+    pub fn check(&self) -> Result<()> {
         let names = self.backends();
         let uses_gpu = names.iter().chain([&self.reference_backend]).any(|name| name == "gpu");
         ensure!(
             self.adapter.is_none() || uses_gpu,
             "--adapter needs gpu in --backends: it chooses among GPUs; otherwise leave it out"
         );
-        for name in &names {
-            self.backend(name)?;
-        }
-        self.reference()?;
-        Ok(ReportOptions { command, ..self })
+        names.iter().try_for_each(|name| self.backend(name).map(drop))?;
+        self.reference().map(drop)
     }
 
     /// Whether backends were named; the default ones may be missing.
@@ -156,12 +156,12 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn parsed(words: &str) -> Result<ReportOptions, String> {
         let line = format!("weekender report --out r {words}");
         match parse(line.split(' ').map(Into::into)) {
-            Ok(Request::Report(options)) => Ok(*options),
+            Ok(Request::Command(Command::Report(options))) => Ok(*options),
             Ok(other) => panic!("{other:?}"),
             Err(failure) => Err(failure.to_string()),
         }
@@ -172,9 +172,10 @@ mod tests {
         let names = |words: &str| parsed(words).unwrap().backends();
         assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
         assert_eq!(names("--adapter some --backends portable,gpu"), ["portable", "gpu"]);
-        let error = parsed("--backends portable --adapter some").unwrap_err();
+        let check = |words: &str| parsed(words).unwrap().check().map_err(|error| error.to_string());
+        let error = check("--backends portable --adapter some").unwrap_err();
         assert!(error.contains("--adapter") && error.contains("gpu in --backends"), "{error}");
-        assert!(parsed("--backends portable --adapter some --reference-backend gpu").is_ok());
+        assert!(check("--backends portable --adapter some --reference-backend gpu").is_ok());
     }
 
     #[test]

@@ -35,7 +35,9 @@ fn commands_call_the_program_from_any_directory() {
         ("target/release/weekender", whole.as_str()),
     ] {
         let words = [name, "merge", "no-such-a.exr", "no-such-b.exr", "--out", "no-such-c.exr"];
-        let Ok(Request::Merge(options)) = parse(words.into_iter().map(Into::into)) else { panic!("{name}") };
+        let Ok(Request::Command(Command::Merge(options))) = parse(words.into_iter().map(Into::into)) else {
+            panic!("{name}")
+        };
         assert_eq!(options.program, expected);
     }
     assert_eq!(program(None), "weekender");
@@ -69,15 +71,20 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
 
 #[test]
 fn a_plan_has_its_format_and_its_flags() {
-    let planned = |flags: &str| match request(&format!("plan --out no-such-plan --parts 2 {flags}")) {
-        Ok(Request::Plan(options)) => *options,
+    let planned = |flags: &str| match request(&format!("plan --out no-such-plan {flags}")) {
+        Ok(Request::Command(Command::Plan(options))) => *options,
         other => panic!("{other:?}"),
     };
-    let options = planned("--samples 4 --format make --device auto --simd off --threads 3 --every 2m");
-    assert_eq!((options.format, options.recipe.samples_per_pixel), (Format::Make, 4));
-    assert_eq!(options.flags, ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]);
-    assert!(planned("--sample-range 4..8").flags.is_empty());
-    assert!(refused("plan --out no-such-plan --parts 5 --samples 4").contains("there are 4 samples"));
+    let options =
+        planned("--parts 2 --samples 4 --format make --device auto --simd off --threads 3 --every 2m");
+    assert_eq!((options.format, options.divided().unwrap().0.samples_per_pixel), (Format::Make, 4));
+    assert_eq!(
+        options.divided().unwrap().2.flags,
+        ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]
+    );
+    assert!(planned("--parts 2 --sample-range 4..8").divided().unwrap().2.flags.is_empty());
+    let error = planned("--parts 5 --samples 4").divided().unwrap_err().to_string();
+    assert!(error.contains("there are 4 samples"), "{error}");
     assert!(refused("merge p --out no-such.exr --check").contains("--check"));
 }
 
@@ -109,7 +116,7 @@ fn backend_flags_choose_the_windows_backend() {
 #[test]
 fn diff_takes_sides_and_place_from_flags() {
     let compared = |flags: &str| match request(&format!("diff {flags}")) {
-        Ok(Request::Diff(options)) => *options,
+        Ok(Request::Command(Command::Diff(options))) => *options,
         other => panic!("{other:?}"),
     };
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));

@@ -1,7 +1,7 @@
 //! Flags and values that are refused.
 
 use super::common::{refused, run, temp, text};
-use weekender::cli::{Request, parse};
+use weekender::cli::{Command, Request, parse};
 
 #[test]
 fn without_batch_it_names_the_flag() {
@@ -88,7 +88,8 @@ fn outside_text_cannot_control_a_terminal() {
 fn report_targets_are_unique_with_the_chosen_one_first() {
     let targets = |flags: &[&str]| {
         let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
-        let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {
+        let Ok(Request::Command(Command::Report(options))) = parse(words.iter().chain(flags).map(Into::into))
+        else {
             panic!("{flags:?}")
         };
         options.targets()

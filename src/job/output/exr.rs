@@ -1,12 +1,11 @@
 //! OpenEXR as any program writes it.
 
-use super::limits::{check_memory, pixel_count};
-use super::read::{ReadPicture, Values};
+use super::read::{ReadPicture, Values, check_memory, pixel_count};
 use crate::film::checkpoint;
 use anyhow::{Context, Result, anyhow, bail};
 use exr::error::Error;
 use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
-use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
+use exr::prelude::{MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
 use std::collections::BTreeMap;
 use std::io::{BufRead, Seek};
 
@@ -40,7 +39,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
     let image = image.map_err(|error| unreadable(&error))?;
     let layers = layers(&image);
     let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
-    let mut notes = notes(&image, part.encoding.compression);
+    let mut notes: Vec<String> = note_on_colours(&image).into_iter().collect();
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
@@ -134,32 +133,20 @@ fn names(layers: &[Layer]) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// What makes the numbers of a picture mean something else than usual.
-fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
-    let mut notes = Vec::new();
-    if let Some(space) = &image.attributes.chromaticities {
-        let found = [space.red, space.green, space.blue, space.white];
-        let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
-        let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
-            (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
-        };
-        if !found.iter().zip(usual).all(is_near) {
-            let [red, ..] = found;
-            notes.push(format!(
-                "its colours are not those of sRGB (its red is at {},{} instead of 0.64,0.33); they are not converted",
-                red.x(),
-                red.y()
-            ));
-        }
-    }
-    let is_lossy = matches!(
-        compression,
-        Compression::B44 | Compression::B44A | Compression::DWAA(_) | Compression::DWAB(_)
-    );
-    if is_lossy {
-        notes.push(format!("its {compression} changes the values"));
-    }
-    notes
+/// A note if the colours of a picture are not those of sRGB.
+fn note_on_colours(image: &FlatImage) -> Option<String> {
+    let space = image.attributes.chromaticities.as_ref()?;
+    let found = [space.red, space.green, space.blue, space.white];
+    let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
+    let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
+        (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
+    };
+    let Vec2(x, y) = space.red;
+    (!found.iter().zip(usual).all(is_near)).then(|| {
+        format!(
+            "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
+        )
+    })
 }
 
 /// Width and height, if there is memory for a picture and as many more bytes for each pixel.

@@ -2,7 +2,6 @@
 //! Pictures of other programs can be read, too: [`read_picture`].
 
 mod exr;
-mod limits;
 mod netpbm;
 mod png;
 mod ppm;

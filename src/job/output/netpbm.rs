@@ -3,8 +3,7 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::limits::{check_memory, pixel_count};
-use super::read::{Damage, ReadPicture, Values};
+use super::read::{Damage, ReadPicture, Values, check_memory, pixel_count};
 use crate::film::Film;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;

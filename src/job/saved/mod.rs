@@ -2,17 +2,15 @@
 //! opens or resumes a file uses this module.
 
 mod difference;
-mod frames;
 mod replaced;
 mod rescue;
 
 pub use difference::{difference, same_job};
-pub use frames::is_whole_frame;
 pub use replaced::Replaced;
 pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
-use crate::job::output::read_description;
+use crate::job::output::{read_description, read_picture};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
@@ -192,10 +190,18 @@ fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {
-    match difference(mine, theirs) {
-        Some(difference) => Err(OpenError::OtherPicture { path: path.to_owned(), difference }),
-        None => Ok(()),
-    }
+    let refused = |difference| Err(OpenError::OtherPicture { path: path.to_owned(), difference });
+    difference(mine, theirs).map_or(Ok(()), refused)
+}
+
+/// Whether the file is the whole frame that `recipe` describes, made by `software`, the program and its version.
+pub fn is_whole_frame(path: &Path, recipe: &Recipe, software: &str) -> bool {
+    let samples = recipe.samples_per_pixel.to_string();
+    read_description(path).is_ok_and(|found| {
+        found.recipe() == file::to_picture_toml(recipe)
+            && found.get(key::SAMPLES) == Some(&samples)
+            && found.get(key::SOFTWARE) == Some(software)
+    }) && read_picture(path, None).is_ok()
 }
 
 #[cfg(test)]

@@ -15,7 +15,6 @@ use crate::denoise;
 use crate::job::render::RenderJob;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
 use std::path::Path;
@@ -40,7 +39,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::Input)?;
     let levels = options.levels();
     let json = options.json.as_deref();
-    json.map_or(Ok(()), check_writable).map_err(Failure::input)?;
+    options.check().map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);

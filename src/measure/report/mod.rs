@@ -66,6 +66,7 @@ struct Report<'a> {
 impl<'a> Report<'a> {
     /// Checks everything that could fail later.
     fn open(options: &'a ReportOptions) -> Result<Self> {
+        options.check()?;
         let (scenes, candidates) = (options.scenes()?, candidates(options)?);
         make_directory(&options.out)?;
         check_writable(&options.out.join("report.json"))?;

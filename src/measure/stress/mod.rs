@@ -24,7 +24,7 @@ use crate::cli::StressOptions;
 use crate::cli::terminal;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::{check_writable, make_directory, write_text};
+use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
@@ -34,9 +34,7 @@ use std::time::Instant;
 /// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
 /// otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
-    let table = options.out.as_ref().map(|directory| directory.join("table.md"));
-    options.out.iter().try_for_each(|directory| make_directory(directory)).map_err(Failure::Input)?;
-    table.iter().chain(&options.json).try_for_each(|file| check_writable(file)).map_err(Failure::input)?;
+    options.json.as_deref().map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
         let ids: Vec<&str> = families::families().map(|family| family.id).collect();
@@ -108,9 +106,6 @@ fn suite(
     progress.clear();
     report.seconds = begin.elapsed().as_secs_f64();
     printed = printed.and(terminal::print_beside(json.as_deref(), &report.summary()));
-    if let Some(directory) = &options.out {
-        write_text(&directory.join("table.md"), &report.markdown())?;
-    }
     if let Some(target) = &json {
         write_json(target, &machine, &report)?;
     }

@@ -9,8 +9,6 @@ pub use paths::{Difference, Pair, PathComparison};
 use super::answer::{Verdict, deliver, lines};
 use crate::cli::DiffOptions;
 use crate::job::render::{RenderError, RenderJob, RenderSettings};
-use crate::system::failure::Failure;
-use crate::system::files::check_writable;
 use anyhow::Result;
 use paths::radiance_amount;
 use serde_json::json;
@@ -18,14 +16,10 @@ use side::Side;
 use std::process::ExitCode;
 
 /// Compares a path and prints it. Exit code 0 means that the sides agree within the tolerance and 1 that they do not,
-/// so every failure, even of a backend midway, is [`Failure::Input`].
-pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
-    compared(options).map_err(Failure::Input)
-}
-
-fn compared(options: &DiffOptions) -> Result<ExitCode> {
+/// so every failure, even of a backend midway, is an error of the request.
+pub fn run(options: &DiffOptions) -> Result<ExitCode> {
     let DiffOptions { tolerance, json, .. } = options;
-    json.as_deref().map_or(Ok(()), check_writable)?;
+    options.check()?;
     let (scene, job) = options.job()?;
     let [a, b] = options.sides()?;
     let mut sides = [Side::open(&a)?, Side::open(&b)?];
