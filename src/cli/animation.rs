@@ -1,9 +1,9 @@
 //! Animations: `--frames` and `--turntable`.
 
-use super::raw::{ProgressChoice, RawPicture};
 use super::render::RenderFlags;
-use super::values::{parse_turn, range};
-use super::{Line, check_paths, sources};
+use super::sources::{self, PictureFlags};
+use super::values::{ProgressChoice, parse_turn, range};
+use super::{Line, check_paths};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
@@ -35,7 +35,12 @@ impl AnimationFlags {
     }
 
     /// The frames to render, whose cameras are valid, and how the camera moves.
-    fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<(Range<u32>, CameraPath)> {
+    fn of(
+        &self,
+        job: &RenderJob,
+        recipe: &Recipe,
+        picture: &PictureFlags,
+    ) -> Result<(Range<u32>, CameraPath)> {
         let path = match self.turntable {
             Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
             None if recipe.keyframes.is_empty() => {

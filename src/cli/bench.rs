@@ -1,7 +1,6 @@
 //! The flags of `weekender bench`.
 
-use super::raw::ProgressChoice;
-use super::values::{Auto, parse_levels, parse_seconds, parse_size, whole};
+use super::values::{Auto, ProgressChoice, parse_levels, parse_seconds, parse_size, whole};
 use super::{check_outputs, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};

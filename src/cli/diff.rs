@@ -1,7 +1,6 @@
 //! The flags of `weekender diff`.
 
-use super::raw::{self, RawPicture};
-use super::sources::{self, ChosenRecipe};
+use super::sources::{self, ChosenRecipe, PictureFlags};
 use super::values::{backend_named, number, parse_pixel, whole};
 use crate::backends::BackendChoice;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT};
@@ -39,7 +38,7 @@ pub struct DiffOptions {
     #[arg(long, value_name = "FILE|-")]
     pub json: Option<PathBuf>,
     #[command(flatten)]
-    picture: RawPicture,
+    picture: PictureFlags,
 }
 
 /// Largest width of a picture that is searched if no size is given, pixels.
@@ -60,7 +59,7 @@ impl DiffOptions {
     /// If there is no such scene, or it cannot be rendered.
     pub fn job(&self) -> Result<(String, RenderJob)> {
         let ChosenRecipe { mut recipe, stage } = sources::find(&self.picture, None)?;
-        raw::change(&mut recipe, &self.picture, None);
+        self.picture.change(&mut recipe, None);
         if self.find.is_some() && self.picture.size.is_none() && recipe.settings.width > FIND_WIDTH {
             sources::scale(&mut recipe.settings, FIND_WIDTH);
         }

@@ -1,7 +1,6 @@
 //! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
-use super::raw::ProgressChoice;
-use super::values::{Auto, parse_levels};
+use super::values::{Auto, ProgressChoice, parse_levels};
 use crate::backends::BackendChoice;
 use crate::job::output::Encoding;
 use crate::render_cpu::Isa;

@@ -9,7 +9,6 @@ mod diff;
 mod direct;
 mod paths;
 mod plan;
-mod raw;
 mod render;
 mod report;
 mod sources;
@@ -23,10 +22,10 @@ pub use direct::{
 };
 pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
-pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::ReportOptions;
 pub use sources::DEFAULT_SCENE;
+pub use values::{DrawWith, ProgressChoice};
 
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};

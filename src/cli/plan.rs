@@ -1,8 +1,7 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
-use super::raw::{ProgressChoice, RawPicture};
-use super::sources::{self, ChosenRecipe, SampleFlags};
-use super::values::{parse_duration, whole};
+use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
+use super::values::{ProgressChoice, parse_duration, whole};
 use super::{Line, backend};
 use crate::backends::BackendChoice;
 use crate::job::plan::{Format, Manifest};
@@ -36,7 +35,7 @@ pub struct PlanOptions {
     #[arg(long, value_name = "NAME", value_hint = ValueHint::ExecutablePath)]
     pub program: Option<String>,
     #[command(flatten)]
-    picture: RawPicture,
+    picture: PictureFlags,
     #[command(flatten)]
     samples: SampleFlags,
     #[command(flatten)]

@@ -1,9 +1,10 @@
 //! Rendering, in the window or to files.
 
 use super::animation::{self, AnimationFlags};
-use super::raw::{DrawWith, ProgressChoice, RawPicture};
-use super::sources::{self, ChosenRecipe, SampleFlags};
-use super::values::{file_ending, parse_duration, parse_noise_target, parse_seconds};
+use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
+use super::values::{
+    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds,
+};
 use super::{Line, Request, backend};
 use crate::backends::BackendChoice;
 use crate::job::output::OutputFormat;
@@ -45,7 +46,7 @@ pub(super) struct RenderFlags {
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
     #[command(flatten)]
-    pub picture: RawPicture,
+    pub picture: PictureFlags,
     #[command(flatten)]
     pub samples: SampleFlags,
     #[command(flatten)]

@@ -1,8 +1,7 @@
 //! The flags of `weekender report`.
 
-use super::raw::ProgressChoice;
 use super::sources;
-use super::values::{backend_named, number, parse_seconds, parse_size, whole};
+use super::values::{ProgressChoice, backend_named, number, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};

@@ -14,6 +14,29 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
+/// What draws the window; independent of what traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum DrawWith {
+    /// Whatever is faster on this machine
+    #[default]
+    Auto,
+    /// Vulkan, Metal or DX12
+    Wgpu,
+    /// OpenGL
+    Gl,
+}
+
+/// Whether progress is shown on standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ProgressChoice {
+    /// If standard error is a terminal
+    Auto,
+    /// Always; as lines if it is not a terminal
+    On,
+    /// Never
+    Off,
+}
+
 /// A value or `auto`, which is `None`. Under the name `Option`, clap would take it for a flag without a default.
 pub(super) type Auto<T> = Option<T>;
 
