@@ -39,7 +39,9 @@ pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&
     let image = image.map_err(|error| unreadable(&error))?;
     let layers = layers(&image);
     let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
-    let mut notes: Vec<String> = note_on_colours(&image).into_iter().collect();
+    let compression = part.encoding.compression;
+    let may_lose = compression.may_loose_data().then(|| format!("its {compression} may change the values"));
+    let mut notes: Vec<String> = note_on_colours(&image).into_iter().chain(may_lose).collect();
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
