@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 use weekender::batch::{self, info, merge};
-use weekender::cli::{self, Request, terminal};
+use weekender::cli::{self, Command, Request, terminal};
 use weekender::measure::{bench, report, stress};
 use weekender::page::{companion, gallery};
 use weekender::pictures::{check, compare, diff};
@@ -42,21 +42,23 @@ fn run() -> Result<ExitCode, Failure> {
             "this build of Weekender has no window; add --batch to render to a file, for example: weekender --batch \
              --stage glass-schlick --out glass.png; or build it with its window: cargo build --release"
         ))),
-        Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
         Request::SaveScene(recipe, path) => batch::save_scene(&recipe, &path),
-        Request::Plan(options) => batch::plan(&options),
-        Request::Part(options) => batch::render_part(*options),
-        Request::Merge(options) => merge::run(&options),
-        Request::Info(options) => info::run(&options),
-        Request::Diff(options) => diff::run(&options),
-        Request::Compare(options) => compare::run(&options),
-        Request::Report(options) => report::run(&options),
-        Request::Stress(options) => stress::run(&options),
-        Request::Companion(options) => companion::run(&options),
-        Request::Gallery(options) => gallery::run(&options),
-        Request::Check(options) => check::run(&options),
         Request::Frames(options) => batch::render_frames(*options),
         Request::Batch(options) => batch::run(*options),
+        Request::Command(command) => match command {
+            Command::Bench(options) => bench::run(&options),
+            Command::Plan(options) => batch::plan(&options),
+            Command::RenderPart(options) => batch::render_part(*options),
+            Command::Merge(options) => merge::run(&options),
+            Command::Info(options) => info::run(&options),
+            Command::Diff(options) => diff::run(&options).map_err(Failure::Input),
+            Command::Compare(options) => compare::run(&options).map_err(Failure::Input),
+            Command::Report(options) => report::run(&options),
+            Command::Stress(options) => stress::run(&options),
+            Command::Companion(options) => companion::run(&options),
+            Command::Gallery(options) => gallery::run(&options),
+            Command::Check(options) => check::run(&options).map_err(Failure::Input),
+        },
     }
 }

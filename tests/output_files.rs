@@ -10,9 +10,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use weekender::film::{Film, checkpoint, fixed_point};
-use weekender::job::output::{
-    Description, OutputError, OutputFormat, check_frame, key, read_description, write_image,
-};
+use weekender::job::output::{Description, OutputFormat, key, read_description, write_image};
 use weekender::stages::Transfer;
 use weekender::system::files::{check_writable, replace_file};
 
@@ -47,9 +45,7 @@ fn the_format_follows_the_extension() {
         assert_eq!(OutputFormat::from_path(Path::new(name)).unwrap(), format);
     }
     for name in ["a.jpg", "a", ".png", "", "png"] {
-        let error = OutputFormat::from_path(Path::new(name)).unwrap_err();
-        assert!(matches!(error, OutputError::UnknownEnding { .. }));
-        let message = error.to_string();
+        let message = OutputFormat::from_path(Path::new(name)).unwrap_err().to_string();
         assert!([".png", ".ppm", ".exr", name].iter().all(|known| message.contains(known)), "{message}");
     }
 }
@@ -141,19 +137,21 @@ fn foreign_pictures_have_no_description() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a");
     let pixels = image::RgbImage::new(2, 2);
+    let message = |path: &Path| read_description(path).unwrap_err().to_string();
+    let is_foreign = |path: &Path| message(path).contains("does not say how it was made");
     for format in [ImageFormat::Png, ImageFormat::Pnm] {
         pixels.save_with_format(&path, format).unwrap();
-        assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+        assert!(is_foreign(&path));
     }
     exr::prelude::write_rgb_file(&path, 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
-    assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+    assert!(is_foreign(&path));
     for bytes in [&b""[..], b"P6", b"P6\n# x: y\n", b"text"] {
         fs::write(&path, bytes).unwrap();
-        assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+        assert!(is_foreign(&path));
     }
     fs::write(&path, b"\x89PNG\r\n\x1a\n").unwrap();
-    assert!(matches!(read_description(&path), Err(OutputError::Read { .. })));
-    assert!(matches!(read_description(directory.path()), Err(OutputError::Input(_))));
+    assert!(message(&path).contains("whether the file is complete"));
+    assert!(message(directory.path()).contains("a directory, but a file is needed"));
 }
 
 #[test]
@@ -256,28 +254,4 @@ mod unix {
             assert!(message.contains("full") && message.contains("free some space"), "{message}");
         }
     }
-}
-
-#[test]
-fn a_frame_is_a_whole_rgb_picture_of_its_size() {
-    let directory = tempfile::tempdir().unwrap();
-    let at = |name: &str| directory.path().join(name);
-    let message = |name: &str, size| check_frame(&at(name), size).unwrap_err().to_string();
-    write_image(&at("a.png"), &film(), Transfer::Gamma2, &description()).unwrap();
-    check_frame(&at("a.png"), [13, 7]).unwrap();
-    for [width, height] in [[7, 13], [12, 7], [13, 8]] {
-        let words = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
-        let message = message("a.png", [width, height]);
-        assert!(message.contains("a.png") && message.contains(&words), "{message}");
-    }
-    image::GrayImage::new(13, 7).save(at("grey.png")).unwrap();
-    image::RgbaImage::new(13, 7).save(at("rgba.png")).unwrap();
-    image::ImageBuffer::from_pixel(13, 7, image::Rgb([9_u16; 3])).save(at("deep.png")).unwrap();
-    for name in ["grey.png", "rgba.png", "deep.png"] {
-        assert!(message(name, [13, 7]).contains("not an 8-bit RGB picture of 13x7 pixels"), "{name}");
-    }
-    let whole = fs::read(at("a.png")).unwrap();
-    fs::write(at("short.png"), &whole[..whole.len() - 20]).unwrap();
-    assert!(message("short.png", [13, 7]).contains("short.png"));
-    assert!(message("missing.png", [13, 7]).contains("missing.png"));
 }

@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::{Recipe, file};
 use weekender::measure::stress::families::build::{Ball, eye, matte, moved, of_scene, scene, sized};
-use weekender::measure::stress::{Level, Paired, trace, with_far_spheres};
+use weekender::measure::stress::{Difference, Level, trace, with_far_spheres};
 use weekender::measure::{Candidate, Traced};
 use weekender::render_cpu::{CpuOptions, Isa};
 use weekender::scene::{Material, Scene, Sky};
@@ -257,7 +257,7 @@ fn same([one, other]: &[Traced; 2], share: f64, floor: f64) -> Result<(), String
     if !one.warnings.is_empty() || !other.warnings.is_empty() {
         return Ok(());
     }
-    let (paired, noise) = (Paired::of(&other.film, &one.film), Level::of(&one.film).noise);
+    let (paired, noise) = (Difference::of(&other.film, &one.film), Level::of(&one.film).noise);
     let rejected = one.film.rejected() + other.film.rejected();
     let is_near = paired.bias.abs() <= TOLERANCE + 4.0 * paired.bias_deviation;
     if rejected == 0 && is_near && paired.rms <= (share * noise).max(floor) {

@@ -4,7 +4,7 @@ use super::command::Command;
 use super::files::Resumed;
 use super::model::{Dock, Document, Kept, Origin, Source};
 use super::window::Window;
-use crate::job::saved::{Content, Opened};
+use crate::job::saved::{Opened, Saved};
 use crate::progressive::Stop;
 use eframe::egui::Context;
 
@@ -63,21 +63,21 @@ impl Window {
     }
 
     fn show_opened(&mut self, opened: Opened) {
-        let Opened { path, recipe, stage, content, .. } = opened;
+        let Opened { path, recipe, saved, .. } = opened;
         self.model.remembered.note_recent(&path);
-        let mut document = match content {
-            Content::Scene => Document::new(Origin::new(recipe, Source::File(path.clone()))),
-            _ => Document::of_film(&recipe, stage),
+        let mut document = match &saved {
+            None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
+            Some(saved) => Document::of_film(&recipe, saved.stage()),
         };
         document.has_own_size = true;
-        if let Content::Picture { samples: Some(samples) } = content {
+        if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
             document.stop = Stop::at_samples(samples);
         }
         self.show_document(document);
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
         let words = format!("Opened {name}; its size and samples hold for this picture only");
         self.shell.toasts.good(words);
-        if let Content::Film(film) = content {
+        if let Some(film) = saved.and_then(Saved::into_film) {
             self.tracing.adopt(film);
             self.changes.last = self.model.document.clone();
         }

@@ -9,11 +9,11 @@ mod together;
 pub use together::Together;
 
 use crate::job::render::Renderer;
-use crate::render_cpu::{CpuError, CpuOptions, CpuRenderer, Isa};
-use crate::render_gpu::{AdapterInfo, GpuError, GpuOptions, GpuRenderer, adapters};
+use crate::render_cpu::{CpuOptions, CpuRenderer, Isa};
+use crate::render_gpu::{AdapterInfo, GpuOptions, GpuRenderer, adapters};
+use anyhow::Result;
 use std::sync::mpsc;
 use std::time::Duration;
-use thiserror::Error;
 
 /// Which backend renders, with its options.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,20 +107,11 @@ impl BackendChoice {
     }
 }
 
-/// Why a backend is not available.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-pub enum BackendError {
-    #[error(transparent)]
-    Cpu(#[from] CpuError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-}
-
 /// Starts a backend.
 ///
 /// # Errors
-/// [`BackendError`], which says what is available instead.
-pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError> {
+/// If it is not available; the error says what is.
+pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>> {
     log::info!("the backend is to be {choice:?}");
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),

@@ -2,16 +2,14 @@
 
 use super::close;
 use crate::film::{Film, FilmError};
-use crate::job::render::{
-    BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy,
-};
+use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::system::threads::shared;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// A member's next piece is this fraction of the remaining samples times its share of the total speed, so that members
 /// finish together without asking often.
@@ -144,26 +142,22 @@ impl Renderer for Together {
         self.messages.drain(..).chain(members).collect()
     }
 
-    fn kernel(&self) -> String {
-        self.members.iter().map(|member| member.renderer.kernel()).collect::<Vec<_>>().join(" | ")
-    }
-
     /// Lists as left out what any member leaves out.
-    fn kernel_contents(&self) -> KernelContents {
-        let mut all = KernelContents::default();
-        for member in &self.members {
-            let KernelContents { present, left_out } = member.renderer.kernel_contents();
-            all.present += if all.present.is_empty() { "" } else { " | " };
-            all.present += &present;
-            all.left_out.extend(left_out);
-        }
+    fn kernel(&self) -> KernelInfo {
+        let kernels: Vec<KernelInfo> = self.members.iter().map(|member| member.renderer.kernel()).collect();
+        let joined = |text: fn(&KernelInfo) -> &str| kernels.iter().map(text).collect::<Vec<_>>().join(" | ");
         let mut seen = HashSet::new();
-        all.left_out.retain(|word| seen.insert(*word));
-        all
-    }
-
-    fn hierarchy_time(&self) -> Duration {
-        self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
+        KernelInfo {
+            about: joined(|kernel| &kernel.about),
+            present: joined(|kernel| &kernel.present),
+            left_out: kernels
+                .iter()
+                .flat_map(|k| &k.left_out)
+                .copied()
+                .filter(|it| seen.insert(*it))
+                .collect(),
+            hierarchy_time: kernels.iter().map(|kernel| kernel.hierarchy_time).sum(),
+        }
     }
 
     fn tile_occupancy(&self) -> Option<TileOccupancy> {

@@ -4,8 +4,8 @@
 use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{ended, write_figures};
+use crate::cli::FramesOptions;
 use crate::cli::terminal::{Display, print_beside};
-use crate::cli::{FramesOptions, JsonTarget};
 use crate::film::{Film, key};
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
@@ -14,7 +14,7 @@ use crate::progressive::describe::{SOFTWARE, counted, describe, seconds};
 use crate::progressive::{Phase, Status};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
-use crate::system::files::{JsonPath, ShownPath, check_writable, make_directory};
+use crate::system::files::{ShownPath, check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
 use crate::system::journal;
 use anyhow::anyhow;
@@ -31,7 +31,7 @@ use std::time::{Duration, Instant};
 pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     make_directory(&options.names.directory).map_err(Failure::Input)?;
     let first = options.names.path(options.frames.start);
-    let json = options.json.as_ref().and_then(JsonTarget::file);
+    let json = options.json.as_deref();
     for path in [Some(first.as_path()), json].into_iter().flatten() {
         check_writable(path).map_err(Failure::input)?;
     }
@@ -52,8 +52,8 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
         outcome => outcome.err(),
     };
     run.display.clear();
-    let printed = print_beside(options.json.as_ref(), &format!("{}\n", run.text()));
-    let figures = printed.and(write_figures(&run.json(), options.json.as_ref()));
+    let printed = print_beside(options.json.as_deref(), &format!("{}\n", run.text()));
+    let figures = printed.and(write_figures(&run.json(), options.json.as_deref()));
     ended(failure, figures, &interrupt)
 }
 
@@ -179,9 +179,9 @@ impl Run<'_> {
             "kept": self.kept,
             "rendering_seconds": self.rendering.as_secs_f64(),
             "total_seconds": self.begin.elapsed().as_secs_f64(),
-            "directory": JsonPath(names.directory.clone()),
-            "first_file": first.map(JsonPath),
-            "last_file": last.map(JsonPath),
+            "directory": names.directory.to_string_lossy(),
+            "first_file": first.map(|path| path.to_string_lossy().into_owned()),
+            "last_file": last.map(|path| path.to_string_lossy().into_owned()),
             "warnings": self.warnings,
         })
     }

@@ -1,7 +1,7 @@
 //! `weekender info`: what a film, picture, scene file or plan says about itself.
 
+use crate::cli::InfoOptions;
 use crate::cli::terminal::{print, write_json};
-use crate::cli::{InfoOptions, JsonTarget};
 use crate::film::{CheckpointError, checkpoint, key};
 use crate::job::plan::Plan;
 use crate::job::recipe::{Recipe, file};
@@ -9,7 +9,7 @@ use crate::job::saved::Saved;
 use crate::progressive::describe::{counted, seconds};
 use crate::system::console::printable;
 use crate::system::failure::Failure;
-use crate::system::files::ShownPath;
+use crate::system::files::{STANDARD, ShownPath};
 use crate::system::memory;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -26,7 +26,7 @@ const SCHEMA: u32 = 1;
 pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
     let info = Info::of(&options.file).map_err(Failure::Input)?;
     let printed = if options.json {
-        write_json(&info.json, &JsonTarget::StandardOutput)
+        write_json(&info.json, Path::new(STANDARD))
     } else {
         print(&info.text(&options.file))
     };

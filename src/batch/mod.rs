@@ -19,8 +19,8 @@ pub use planning::plan;
 pub use studio::{Event, Studio};
 
 use crate::backends;
+use crate::cli::BatchOptions;
 use crate::cli::terminal::{self, print, print_beside};
-use crate::cli::{BatchOptions, JsonTarget};
 use crate::job::recipe::{Recipe, file};
 use crate::job::saved;
 use crate::scene::builtin::BuiltinScene;
@@ -30,7 +30,7 @@ use crate::system::failure::Failure;
 use crate::system::files::{STANDARD, ShownPath, check_replaceable, check_writable, write_text};
 use crate::system::interrupt::Interrupt;
 use picture::Picture;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use summary::SCHEMA;
 
@@ -57,14 +57,14 @@ fn render(options: &BatchOptions, mut picture: Picture) -> Result<ExitCode, Fail
         write_text(path, &file::to_toml(&options.render.recipe)).map_err(Failure::run)?;
     }
     let has_stdout = options.render.out == Path::new(STANDARD);
-    let beside = if has_stdout { Some(&JsonTarget::StandardOutput) } else { options.json.as_ref() };
+    let beside = if has_stdout { Some(Path::new(STANDARD)) } else { options.json.as_deref() };
     let (summary, outcome) = picture.render(options, &mut studio, &interrupt);
     let printed = print_beside(beside, &summary.to_string());
-    let figures = printed.and(write_figures(&summary.json(), options.json.as_ref()));
+    let figures = printed.and(write_figures(&summary.json(), options.json.as_deref()));
     ended(outcome.err(), figures, &interrupt)
 }
 
-fn write_figures(figures: &serde_json::Value, target: Option<&JsonTarget>) -> anyhow::Result<()> {
+fn write_figures(figures: &serde_json::Value, target: Option<&Path>) -> anyhow::Result<()> {
     target.map_or(Ok(()), |target| terminal::write_figures(SCHEMA, figures, target))
 }
 
@@ -92,8 +92,7 @@ fn ended(
 /// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
 pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
     write_text(path, &file::to_toml(recipe)).map_err(Failure::input)?;
-    let beside = (path == Path::new(STANDARD)).then_some(&JsonTarget::StandardOutput);
-    print_beside(beside, &format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
+    print_beside(Some(path), &format!("wrote {}\n", path.shown())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -101,7 +100,7 @@ pub fn save_scene(recipe: &Recipe, path: &Path) -> Result<ExitCode, Failure> {
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     let BatchOptions { render, save_scene, json, .. } = options;
     let files = [Some(&render.out), render.checkpoint.as_ref(), save_scene.as_ref()].into_iter().flatten();
-    for path in files.map(PathBuf::as_path).chain(json.as_ref().and_then(JsonTarget::file)) {
+    for path in files.chain(json) {
         let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }

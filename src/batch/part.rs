@@ -5,7 +5,7 @@ use super::picture::Picture;
 use super::summary::Summary;
 use super::{check_before, render, write_figures};
 use crate::cli::terminal::print_beside;
-use crate::cli::{BatchOptions, JsonTarget, NamedPath, PartOptions, RenderOptions, check_paths};
+use crate::cli::{BatchOptions, PartOptions, RenderOptions, check_paths};
 use crate::film::CheckpointError;
 use crate::job::output::OutputFormat;
 use crate::job::plan::{Part, Plan};
@@ -15,7 +15,7 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::ShownPath;
 use anyhow::{Context, anyhow};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -28,9 +28,7 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
     let plan = Plan::load(&options.plan).map_err(Failure::Input)?;
     let index = plan.index(part).map_err(Failure::Input)?;
     let files = plan.files();
-    let files: Vec<NamedPath> = files.iter().map(|file| ("the plan", Some(file.as_path()))).collect();
-    let json = options.json.as_ref().and_then(JsonTarget::file);
-    check_paths(&files, &[("--json", json)]).map_err(Failure::Input)?;
+    check_paths(files.iter().map(PathBuf::as_path), options.json.as_deref()).map_err(Failure::Input)?;
     render_samples(&plan, index, options)
 }
 
@@ -61,9 +59,9 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
     match find(&path, plan, part)? {
         Some(found) if part.missing(found.film.samples()) == 0 => {
             let text = format!("part {index} is whole: samples {start}..{end} in {}\n", path.shown());
-            print_beside(batch.json.as_ref(), &text).map_err(Failure::Run)?;
+            print_beside(batch.json.as_deref(), &text).map_err(Failure::Run)?;
             let figures = summary_of_whole(&batch.render, &found).json();
-            write_figures(&figures, batch.json.as_ref()).map_err(Failure::Run)?;
+            write_figures(&figures, batch.json.as_deref()).map_err(Failure::Run)?;
             Ok(ExitCode::SUCCESS)
         }
         found => {

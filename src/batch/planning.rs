@@ -2,7 +2,7 @@
 
 use crate::cli::PlanOptions;
 use crate::film::Film;
-use crate::job::plan::{Commands, Format, Manifest, Plan, scripts};
+use crate::job::plan::{Commands, Format, Plan, scripts};
 use crate::progressive::describe::counted;
 use crate::system::console;
 use crate::system::failure::{Failure, output_failure};
@@ -17,23 +17,17 @@ use std::process::ExitCode;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
-    make_directory(&options.directory).map_err(Failure::Input)?;
-    let manifest = Manifest {
-        command: options.command.clone(),
-        scene: options.recipe.name.clone(),
-        stage: options.stage.map(|stage| stage.id.to_owned()),
-        flags: options.flags.clone(),
-        ..options.manifest.clone()
-    };
-    let scripts = scripts(options.format, &manifest, &options.program);
-    let plan = Plan::write(&options.directory, &options.recipe, &options.job, manifest, &scripts)
-        .map_err(Failure::Input)?;
+    let (recipe, job, manifest) = options.divided().map_err(Failure::Input)?;
+    make_directory(&options.out).map_err(Failure::Input)?;
+    let program = options.program.as_deref().unwrap_or("weekender");
+    let scripts = scripts(options.format, &manifest, program);
+    let plan = Plan::write(&options.out, &recipe, &job, manifest, &scripts).map_err(Failure::Input)?;
     console::note(&about(&plan));
     let path = plan.path.to_string_lossy();
-    let commands = Commands::new(&options.program, &path, &plan.manifest);
+    let commands = Commands::new(program, &path, &plan.manifest);
     let lines: String = match (options.format, scripts.first()) {
         (Format::Make, _) => {
-            Shell::HERE.line(["make", "-C", &operand(&options.directory.to_string_lossy())]) + "\n"
+            Shell::HERE.line(["make", "-C", &operand(&options.out.to_string_lossy())]) + "\n"
         }
         (_, Some((first, _))) => {
             Shell::HERE.line(["sh", &operand(&plan.beside(first).to_string_lossy())]) + "\n"
@@ -45,7 +39,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     };
     console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     if options.format == Format::Text {
-        let result = options.directory.join(&plan.manifest.result);
+        let result = options.out.join(&plan.manifest.result);
         console::note(&format!("then: {}", commands.merge(Shell::HERE, &result.to_string_lossy())));
     }
     Ok(ExitCode::SUCCESS)

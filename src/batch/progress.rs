@@ -25,7 +25,6 @@ fn so_far(status: &Status, elapsed: Duration, left: Option<f64>) -> String {
     if status.phase == Phase::Preparing {
         return "preparing the scene".to_owned();
     }
-    // On a narrow terminal, the last parts are left out.
     let error = status.error.map_or_else(String::new, |e| format!("error {:.2e}, ", e.rmse));
     let left = left.map_or_else(String::new, |left| format!("{} left, ", seconds(left)));
     format!(

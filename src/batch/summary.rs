@@ -5,7 +5,7 @@ use crate::denoise::DenoisedError;
 use crate::progressive::describe::{counted, seconds};
 use crate::progressive::{Contribution, Phase, Status};
 use crate::system::console::printable;
-use crate::system::files::{JsonPath, ShownPath};
+use crate::system::files::ShownPath;
 use serde_json::{Value, json};
 use std::fmt;
 use std::path::PathBuf;
@@ -89,7 +89,7 @@ impl Summary<'_> {
             "backends": status.contributions,
             "history": status.history,
             "warnings": status.messages,
-            "files": self.files.iter().cloned().map(JsonPath).collect::<Vec<_>>(),
+            "files": self.files.iter().map(|file| file.to_string_lossy()).collect::<Vec<_>>(),
         })
     }
 

@@ -1,9 +1,9 @@
 //! Animations: `--frames` and `--turntable`.
 
-use super::raw::{ProgressChoice, RawPicture};
 use super::render::RenderFlags;
-use super::values::{JsonTarget, parse_turn, range};
-use super::{Line, check_paths, sources};
+use super::sources::{self, PictureFlags};
+use super::values::{ProgressChoice, parse_turn, range};
+use super::{Line, check_paths};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
@@ -35,7 +35,12 @@ impl AnimationFlags {
     }
 
     /// The frames to render, whose cameras are valid, and how the camera moves.
-    fn of(&self, job: &RenderJob, recipe: &Recipe, picture: &RawPicture) -> Result<(Range<u32>, CameraPath)> {
+    fn of(
+        &self,
+        job: &RenderJob,
+        recipe: &Recipe,
+        picture: &PictureFlags,
+    ) -> Result<(Range<u32>, CameraPath)> {
         let path = match self.turntable {
             Some(turn) => CameraPath::Turntable { start: recipe.camera, turn },
             None if recipe.keyframes.is_empty() => {
@@ -80,7 +85,7 @@ pub struct FramesOptions {
     pub names: FrameNames,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// The command that renders them.
     pub command: String,
 }
@@ -97,10 +102,8 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
     };
     let names = names(out)?;
     let files: Vec<PathBuf> = frames.clone().map(|frame| names.path(frame)).collect();
-    let json = flags.files.json.as_ref().and_then(JsonTarget::file);
-    let frame_files = files.iter().map(|file| ("a frame of the animation", Some(file.as_path())));
-    let outputs: Vec<_> = std::iter::once(("--json", json)).chain(frame_files).collect();
-    check_paths(&[("--scene", sources::scene_file(flags.picture.scene.as_deref()))], &outputs)?;
+    let outputs = files.iter().chain(&flags.files.json).map(PathBuf::as_path);
+    check_paths(sources::scene_file(flags.picture.scene.as_deref()), outputs)?;
     Ok(FramesOptions {
         recipe: chosen.recipe,
         job,

@@ -1,8 +1,8 @@
 //! The flags that choose a backend. All commands that render have them, as a [`BackendChoice`] among their options.
 
-use super::values::{Level, Simd, parse_isa, parse_simd, whole};
+use super::values::{Auto, parse_isa, parse_simd, whole};
 use crate::backends::BackendChoice;
-use crate::render_cpu::CpuOptions;
+use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use clap::error::ErrorKind;
 use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum};
@@ -28,10 +28,10 @@ struct BackendFlags {
     adapter: Option<String>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto")]
-    simd: Simd,
+    simd: Auto<usize>,
     /// Instruction level of the CPU, for tests and benchmarks: auto, portable, sse4.2, avx2, avx512, neon
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto")]
-    isa: Level,
+    isa: Auto<Isa>,
     /// CPU threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8))]
     threads: Option<usize>,
@@ -54,8 +54,7 @@ pub(super) const FLAGS: [&str; 5] = ["device", "adapter", "simd", "isa", "thread
 
 impl BackendFlags {
     fn choice(self) -> Result<BackendChoice, String> {
-        let (Simd(lanes), Level(isa)) = (self.simd, self.isa);
-        let threads = self.threads;
+        let (isa, lanes, threads) = (self.isa, self.simd, self.threads);
         let cpu =
             CpuOptions { isa, lanes, threads, panics_after: self.simulate_panic, ..CpuOptions::default() };
         let injections = [
@@ -115,11 +114,11 @@ impl Args for BackendChoice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn backend(flags: &str) -> Result<BackendChoice, String> {
         match parse(format!("weekender render-part no-such --part 1 {flags}").split(' ').map(Into::into)) {
-            Ok(Request::Part(options)) => Ok(options.backend),
+            Ok(Request::Command(Command::RenderPart(options))) => Ok(options.backend),
             other => Err(other.unwrap_err().to_string()),
         }
     }

@@ -1,8 +1,7 @@
 //! The flags of `weekender bench`.
 
-use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_levels, parse_seconds, parse_size, whole};
-use super::{NamedPath, check_paths, sources};
+use super::values::{Auto, ProgressChoice, parse_levels, parse_seconds, parse_size, whole};
+use super::{check_outputs, sources};
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::Isa;
@@ -10,6 +9,7 @@ use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
 use anyhow::Result;
 use clap::Args;
+use std::path::PathBuf;
 
 /// Options of `weekender bench`.
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub struct BenchOptions {
     sampler: Option<SamplerKind>,
     /// Instruction levels, separated by commas; auto: the best of this processor, all: all that it has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
-    isa: Levels,
+    isa: Auto<Vec<Isa>>,
     /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8))]
     threads: Option<usize>,
@@ -53,7 +53,7 @@ pub struct BenchOptions {
     quick: bool,
     /// Write all runs and figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -79,17 +79,18 @@ const QUICK_PATH_LIMIT: u64 = 3_000_000;
 const FEATURES_WIDTH: u32 = 200;
 
 impl BenchOptions {
-    /// Returns an error if the JSON would replace a scene file.
-    pub(super) fn check(self) -> Result<Self> {
-        let inputs = self.scene.iter().map(|scene| ("--scene", sources::scene_file(Some(scene))));
-        let json = self.json.as_ref().and_then(JsonTarget::file);
-        check_paths(&inputs.collect::<Vec<NamedPath>>(), &[("--json", json)])?;
-        Ok(self)
+    /// Checks that the JSON can be written and does not replace a scene file.
+    ///
+    /// # Errors
+    /// If not.
+    pub fn check(&self) -> Result<()> {
+        let inputs = self.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));
+        check_outputs(inputs, self.json.as_deref())
     }
 
     /// Instruction levels, the most capable last; at least one.
     pub fn levels(&self) -> Vec<Isa> {
-        self.isa.0.clone().unwrap_or_else(|| Isa::available().last().copied().into_iter().collect())
+        self.isa.clone().unwrap_or_else(|| Isa::available().last().copied().into_iter().collect())
     }
 
     pub fn threads(&self) -> usize {
@@ -166,12 +167,12 @@ impl BenchOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn options(words: &str) -> BenchOptions {
         let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
         match parse(line.split(' ').map(Into::into)).unwrap() {
-            Request::Bench(options) => *options,
+            Request::Command(Command::Bench(options)) => *options,
             other => panic!("{other:?}"),
         }
     }

@@ -1,13 +1,10 @@
 //! Commands whose flags are their options: merge, info, gallery, companion, check, compare and stress.
 
-use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_levels};
-use super::{NamedPath, check_paths};
+use super::values::{Auto, ProgressChoice, parse_levels};
 use crate::backends::BackendChoice;
 use crate::job::output::Encoding;
 use crate::render_cpu::Isa;
 use crate::stages::{Stage, Transfer};
-use anyhow::Result;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -97,7 +94,7 @@ pub struct CheckOptions {
     pub out: Option<PathBuf>,
     /// Write the finding as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
 }
 
 impl CheckOptions {
@@ -105,16 +102,6 @@ impl CheckOptions {
     pub fn pictures(&self) -> Vec<PathBuf> {
         let names = ["mine.png", "ours.png", "difference.png"];
         self.out.iter().flat_map(|out| names.map(|name| out.join(name))).collect()
-    }
-
-    /// Refuses files that would replace the picture or each other.
-    pub(super) fn check(self) -> Result<Self> {
-        let pictures = self.pictures();
-        let mut outputs: Vec<NamedPath> =
-            pictures.iter().map(|path| ("a file of --out,", Some(path.as_path()))).collect();
-        outputs.push(("--json", self.json.as_ref().and_then(JsonTarget::file)));
-        check_paths(&[("the picture to check", Some(&self.picture))], &outputs)?;
-        Ok(self)
     }
 }
 
@@ -132,16 +119,7 @@ pub struct CompareOptions {
     pub encoding: Encoding,
     /// Write the figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
-}
-
-impl CompareOptions {
-    /// Refuses JSON that would replace a picture.
-    pub(super) fn check(self) -> Result<Self> {
-        let inputs = [&self.first, &self.second].map(|path| ("a picture", Some(path.as_path())));
-        check_paths(&inputs, &[("--json", self.json.as_ref().and_then(JsonTarget::file))])?;
-        Ok(self)
-    }
+    pub json: Option<PathBuf>,
 }
 
 impl ValueEnum for Encoding {
@@ -167,17 +145,14 @@ pub struct StressOptions {
     /// Instruction levels, separated by commas; auto: the best that fuses multiply and add and the best that does not,
     /// all: all that this processor has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
-    isa: Levels,
+    isa: Auto<Vec<Isa>>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the
     /// best one, if there is one]
     #[arg(long, value_name = "SUBSTRING")]
     pub adapter: Option<String>,
     /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
-    /// Write the table as Markdown to table.md in this directory
-    #[arg(long, value_name = "DIRECTORY")]
-    pub out: Option<PathBuf>,
+    pub json: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -188,6 +163,6 @@ impl StressOptions {
     pub fn levels(&self) -> Vec<Isa> {
         let available = Isa::available();
         let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
-        self.isa.0.clone().unwrap_or_else(|| best(true).into_iter().chain(best(false)).collect())
+        self.isa.clone().unwrap_or_else(|| best(true).into_iter().chain(best(false)).collect())
     }
 }

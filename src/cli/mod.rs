@@ -9,7 +9,6 @@ mod diff;
 mod direct;
 mod paths;
 mod plan;
-mod raw;
 mod render;
 mod report;
 mod sources;
@@ -17,23 +16,21 @@ mod values;
 
 pub use animation::FramesOptions;
 pub use bench::{BenchOptions, BenchScene};
-pub use diff::{DiffOptions, PathChoice};
+pub use diff::DiffOptions;
 pub use direct::{
     CheckOptions, CompanionOptions, CompareOptions, GalleryOptions, InfoOptions, MergeOptions, StressOptions,
 };
-pub use paths::{NamedPath, check_paths};
+pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
-pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::ReportOptions;
 pub use sources::DEFAULT_SCENE;
-pub use values::JsonTarget;
+pub use values::{DrawWith, ProgressChoice};
 
 use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell::Shell;
 use anyhow::Result;
-use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -45,24 +42,13 @@ pub enum Request {
     /// Print the version.
     Version,
     Window(Box<WindowOptions>),
-    Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file, whose recipe is valid, and render nothing.
     SaveScene(Box<Recipe>, PathBuf),
-    Plan(Box<PlanOptions>),
-    Part(Box<PartOptions>),
-    Merge(Box<MergeOptions>),
-    Info(InfoOptions),
-    Diff(Box<DiffOptions>),
-    Compare(Box<CompareOptions>),
-    Report(Box<ReportOptions>),
-    Stress(Box<StressOptions>),
-    Companion(Box<CompanionOptions>),
-    Gallery(Box<GalleryOptions>),
-    Check(Box<CheckOptions>),
     Frames(Box<FramesOptions>),
     Batch(Box<BatchOptions>),
+    Command(Command),
 }
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
@@ -79,11 +65,12 @@ struct Raw {
     #[command(flatten)]
     render: render::RenderFlags,
     #[command(subcommand)]
-    command: Option<RawCommand>,
+    command: Option<Command>,
 }
 
+/// A subcommand with its options.
 #[derive(Debug, Subcommand)]
-enum RawCommand {
+pub enum Command {
     /// Measure the speed of this machine, compared with a plain C program: tables and JSON
     ///
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
@@ -93,7 +80,7 @@ enum RawCommand {
     ///
     /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it continues
     /// from the part's last checkpoint, and ends at once if the part is whole.
-    Plan(Box<plan::PlanFlags>),
+    Plan(Box<PlanOptions>),
     /// Render a part of a plan, or continue it
     ///
     /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint is
@@ -109,7 +96,7 @@ enum RawCommand {
     /// Show a path as two backends trace it, side by side, and where the paths part
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
-    Diff(Box<diff::RawDiff>),
+    Diff(Box<DiffOptions>),
     /// Tell whether two pictures are equal apart from noise, and where they are not
     ///
     /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
@@ -160,48 +147,33 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let matches =
-        command().try_get_matches_from(&arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
+    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
     let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
-    request(raw, &line).map_err(Failure::Input)
-}
-
-/// Adds a tip if the value of a flag has a decimal comma.
-fn hinted(mut error: clap::Error) -> clap::Error {
-    let value = error.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
-    let is_number = |text: &str| text.replacen(',', ".", 1).parse::<f64>().is_ok();
-    if value.contains(',') && is_number(&value) && !error.to_string().contains("commas") {
-        let tip = format!("write a point: {}", value.replace(',', "."));
-        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
-    }
-    error
-}
-
-fn request(raw: Raw, line: &Line) -> Result<Request> {
     Ok(match raw.command {
-        None => render::request(raw.render, line)?,
-        Some(RawCommand::Bench(raw)) => Request::Bench(Box::new(raw.check()?)),
-        Some(RawCommand::Plan(flags)) => Request::Plan(Box::new(plan::plan(*flags, line)?)),
-        Some(RawCommand::RenderPart(part)) => {
-            Request::Part(Box::new(PartOptions { command: line.command.clone(), ..*part }))
+        None => render::request(raw.render, &line).map_err(Failure::Input)?,
+        Some(mut command) => {
+            command.complete(&line);
+            Request::Command(command)
         }
-        Some(RawCommand::Merge(merge)) => {
-            Request::Merge(Box::new(MergeOptions { program: line.program.clone(), ..*merge }))
-        }
-        Some(RawCommand::Info(options)) => Request::Info(options),
-        Some(RawCommand::Diff(raw)) => Request::Diff(Box::new(diff::diff(*raw)?)),
-        Some(RawCommand::Compare(raw)) => Request::Compare(Box::new(raw.check()?)),
-        Some(RawCommand::Report(raw)) => Request::Report(Box::new(raw.check(line.command.clone())?)),
-        Some(RawCommand::Stress(raw)) => Request::Stress(raw),
-        Some(RawCommand::Companion(options)) => Request::Companion(options),
-        Some(RawCommand::Gallery(options)) => Request::Gallery(options),
-        Some(RawCommand::Check(raw)) => Request::Check(Box::new(raw.check()?)),
     })
+}
+
+impl Command {
+    /// Adds what options say of the command line as a whole.
+    fn complete(&mut self, line: &Line) {
+        match self {
+            Command::Plan(options) => options.complete(line),
+            Command::RenderPart(options) => options.command.clone_from(&line.command),
+            Command::Merge(options) => options.program.clone_from(&line.program),
+            Command::Report(options) => options.command.clone_from(&line.command),
+            _ => {}
+        }
+    }
 }
 
 struct Line<'a> {

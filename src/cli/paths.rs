@@ -1,31 +1,39 @@
 //! An output must not be an input of the same command, or another output.
 
-use crate::system::files::{FileIdentity, ShownPath};
-use anyhow::{Result, bail};
+use crate::system::files::{FileIdentity, ShownPath, check_writable};
+use anyhow::{Result, ensure};
+use std::collections::HashSet;
 use std::path::Path;
-
-/// A file with its flag or its role, unless it is not given.
-pub type NamedPath<'a> = (&'static str, Option<&'a Path>);
-
-/// Outputs that may replace an input, because they continue it.
-const CONTINUED: [(&str, &str); 2] = [("--out", "--resume"), ("--checkpoint", "--resume")];
 
 /// Refuses an output that would replace an input or another output. Devices may be shared.
 ///
 /// # Errors
-/// The first such output, with the flag or role of both.
-pub fn check_paths(inputs: &[NamedPath], outputs: &[NamedPath]) -> Result<()> {
-    let identity = |(what, path): &NamedPath| Some((*what, FileIdentity::of((*path)?)?));
-    let mut seen: Vec<_> = inputs.iter().filter_map(identity).collect();
-    for output in outputs {
-        let (Some((what, file)), Some(path)) = (identity(output), output.1) else { continue };
-        let is_lost = |other: &str, at: &FileIdentity| *at == file && !CONTINUED.contains(&(what, other));
-        if let Some((other, _)) = seen.iter().find(|(other, at)| is_lost(other, at)) {
-            bail!("{what} {} would replace the file of {other}; give it another name", path.shown());
-        }
-        seen.push((what, file));
+/// The first such output.
+pub fn check_paths<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    let mut seen: HashSet<FileIdentity> = inputs.into_iter().filter_map(FileIdentity::of).collect();
+    for path in outputs {
+        ensure!(
+            FileIdentity::of(path).is_none_or(|file| seen.insert(file)),
+            "{} would replace an input or another output of this command; give each file a name of its own",
+            path.shown()
+        );
     }
     Ok(())
+}
+
+/// As [`check_paths`], and checks that each output can be written.
+///
+/// # Errors
+/// The first output of which that is not so.
+pub fn check_outputs<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path> + Clone,
+) -> Result<()> {
+    check_paths(inputs, outputs.clone())?;
+    Ok(outputs.into_iter().try_for_each(check_writable)?)
 }
 
 #[cfg(test)]
@@ -33,21 +41,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_a_continued_input_may_be_replaced() {
+    fn no_output_replaces_an_input_or_another_output() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join("g.exr");
         std::fs::write(&file, "").unwrap();
         let (file, again) = (file.as_path(), directory.path().join("./g.exr"));
-        let resumed = [("--resume", Some(file))];
-        assert!(check_paths(&resumed, &[("--checkpoint", Some(&again)), ("--out", None)]).is_ok());
-        let error = check_paths(&resumed, &[("--json", Some(&again))]).unwrap_err().to_string();
-        assert!(error.contains("--json") && error.contains("--resume") && error.contains("g.exr"), "{error}");
+        let error = check_paths([file], [again.as_path()]).unwrap_err().to_string();
+        assert!(error.contains("g.exr"), "{error}");
         let new = directory.path().join("new.png");
         for path in [&again, &new] {
-            assert!(check_paths(&[], &[("--out", Some(path)), ("--checkpoint", Some(path))]).is_err());
+            assert!(check_paths([], [path.as_path(), path]).is_err());
         }
-        assert!(check_paths(&resumed, &[("--json", Some(&new))]).is_ok());
+        assert!(check_paths([file], [new.as_path()]).is_ok());
         let null = Path::new("/dev/null");
-        assert!(check_paths(&[], &[("--out", Some(null)), ("--json", Some(null))]).is_ok() || !null.exists());
+        assert!(check_paths([], [null, null]).is_ok() || !null.exists());
     }
 }

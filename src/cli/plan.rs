@@ -1,14 +1,12 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
-use super::raw::{ProgressChoice, RawPicture};
-use super::sources::{self, SampleFlags};
-use super::values::{JsonTarget, parse_duration, whole};
+use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
+use super::values::{ProgressChoice, parse_duration, whole};
 use super::{Line, backend};
 use crate::backends::BackendChoice;
 use crate::job::plan::{Format, Manifest};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
-use crate::stages::Stage;
 use crate::system::files::ShownPath;
 use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueHint};
@@ -18,49 +16,71 @@ use std::time::Duration;
 /// The variables in which schedulers give a task its number.
 const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"];
 
+/// Options of `weekender plan`.
 #[derive(Debug, Args)]
-pub(super) struct PlanFlags {
+pub struct PlanOptions {
     /// Parts, 1 to 100000, each with some samples of the whole picture
     #[arg(long, value_name = "COUNT", value_parser = whole(1..=100_000_u64, 10))]
     parts: u64,
     /// The directory of the plan, of its parts and of the merged film; it is created if necessary
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    pub out: PathBuf,
     /// Interval at which a part's film is written, as for rendering: 0.1s to 30d [default: 60s]
     #[arg(long, value_name = "DURATION", value_parser = parse_duration)]
     every: Option<Duration>,
     /// What is made: the commands, one per line, or files that give the parts to Slurm, GNU parallel or make
     #[arg(long, value_enum, default_value = "text")]
-    format: Format,
+    pub format: Format,
     /// How the commands call this program [default: as it was called, with its directory if that was given]
     #[arg(long, value_name = "NAME", value_hint = ValueHint::ExecutablePath)]
-    program: Option<String>,
+    pub program: Option<String>,
     #[command(flatten)]
-    picture: RawPicture,
+    picture: PictureFlags,
     #[command(flatten)]
     samples: SampleFlags,
     #[command(flatten)]
     backend: BackendChoice,
+    /// Flags for the command of every part.
+    #[arg(skip)]
+    flags: Vec<String>,
+    /// The command that makes the plan.
+    #[arg(skip)]
+    command: String,
 }
 
-/// Options of `weekender plan`.
-#[derive(Debug)]
-pub struct PlanOptions {
-    pub recipe: Recipe,
-    /// The validated job of the recipe.
-    pub job: RenderJob,
-    /// The stage that it comes from.
-    pub stage: Option<&'static Stage>,
-    /// The parts, without the scene.
-    pub manifest: Manifest,
-    pub directory: PathBuf,
-    pub format: Format,
-    /// Flags for the command of every part.
-    pub flags: Vec<String>,
-    /// How the commands call this program.
-    pub program: String,
-    /// The command that makes the plan.
-    pub command: String,
+impl PlanOptions {
+    pub(super) fn complete(&mut self, line: &Line) {
+        self.flags = line.words(&[&backend::FLAGS[..], &["every"]].concat());
+        self.command.clone_from(&line.command);
+        self.program.get_or_insert_with(|| line.program.clone());
+    }
+
+    /// The picture, and the manifest of its parts.
+    ///
+    /// # Errors
+    /// If the picture cannot be rendered or divided.
+    pub fn divided(&self) -> Result<(Recipe, RenderJob, Manifest)> {
+        ensure!(
+            self.out.to_str().is_some_and(|name| !name.chars().any(char::is_control)),
+            "--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters",
+            self.out.shown()
+        );
+        let (ChosenRecipe { mut recipe, stage }, job) = sources::picture(&self.picture, &self.samples, None)?;
+        let range = self.samples.sample_range.clone().unwrap_or(0..recipe.samples_per_pixel);
+        recipe.samples_per_pixel = range.end;
+        let manifest = Manifest::new(&range, self.parts).with_context(|| {
+            let (parts, count) = (self.parts, range.end - range.start);
+            format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs one at least")
+        })?;
+        let manifest = Manifest {
+            command: self.command.clone(),
+            scene: recipe.name.clone(),
+            stage: stage.map(|stage| stage.id.to_owned()),
+            flags: self.flags.clone(),
+            ..manifest
+        };
+        Ok((recipe, job, manifest))
+    }
 }
 
 /// Options of `weekender render-part`.
@@ -77,7 +97,7 @@ pub struct PartOptions {
     pub every: Duration,
     /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-")]
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
@@ -109,31 +129,4 @@ impl PartOptions {
             ),
         }
     }
-}
-
-pub(super) fn plan(flags: PlanFlags, line: &Line) -> Result<PlanOptions> {
-    let PlanFlags { picture, samples, parts, .. } = &flags;
-    ensure!(
-        flags.out.to_str().is_some_and(|name| !name.chars().any(char::is_control)),
-        "--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters",
-        flags.out.shown()
-    );
-    let (mut chosen, job) = sources::picture(picture, samples, None)?;
-    let range = samples.sample_range.clone().unwrap_or(0..chosen.recipe.samples_per_pixel);
-    chosen.recipe.samples_per_pixel = range.end;
-    let manifest = Manifest::new(&range, *parts).with_context(|| {
-        let count = range.end - range.start;
-        format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs one at least")
-    })?;
-    Ok(PlanOptions {
-        flags: line.words(&[&backend::FLAGS[..], &["every"]].concat()),
-        recipe: chosen.recipe,
-        job,
-        stage: chosen.stage,
-        manifest,
-        directory: flags.out,
-        format: flags.format,
-        program: flags.program.unwrap_or_else(|| line.program.clone()),
-        command: line.command.clone(),
-    })
 }

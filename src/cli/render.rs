@@ -1,10 +1,11 @@
 //! Rendering, in the window or to files.
 
 use super::animation::{self, AnimationFlags};
-use super::raw::{DrawWith, ProgressChoice, RawPicture};
-use super::sources::{self, ChosenRecipe, SampleFlags};
-use super::values::{JsonTarget, file_ending, parse_duration, parse_noise_target, parse_seconds};
-use super::{Line, NamedPath, Request, backend};
+use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
+use super::values::{
+    DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds,
+};
+use super::{Line, Request, backend};
 use crate::backends::BackendChoice;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
@@ -45,7 +46,7 @@ pub(super) struct RenderFlags {
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
     #[command(flatten)]
-    pub picture: RawPicture,
+    pub picture: PictureFlags,
     #[command(flatten)]
     pub samples: SampleFlags,
     #[command(flatten)]
@@ -103,7 +104,7 @@ pub(super) struct FileFlags {
     save_scene: Option<PathBuf>,
     /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", requires = "batch")]
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
 }
 
 /// Options of `--batch`.
@@ -114,7 +115,7 @@ pub struct BatchOptions {
     pub save_scene: Option<PathBuf>,
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
-    pub json: Option<JsonTarget>,
+    pub json: Option<PathBuf>,
     /// Samples per pixel at which the program panics (fault injection).
     pub crashes_at: Option<u64>,
 }
@@ -208,10 +209,6 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
         "--sample-range needs --batch: the window renders all samples of its picture"
     );
     let file = sources::scene_file(picture.scene.as_deref());
-    super::check_paths(
-        &[("--scene", file), ("--resume", files.resume.as_deref())],
-        &[("--frame-log", flags.frame_log.as_deref())],
-    )?;
     let unchanged = sources::find(picture, files.resume.as_deref())?.recipe;
     let (ChosenRecipe { recipe, stage }, job) = sources::picture(picture, samples, files.resume.as_deref())?;
     if let Some(film) = &files.resume {
@@ -270,9 +267,8 @@ fn render(
         (Some(format), _) => format,
         (None, named) => named?,
     };
-    let to_stdout = |path: &Path| path == Path::new(STANDARD);
     ensure!(
-        !to_stdout(&out) || files.json != Some(JsonTarget::StandardOutput),
+        out != Path::new(STANDARD) || files.json.as_ref() != Some(&out),
         "--out - and --json - would both write to standard output; write one of them to a file"
     );
     if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
@@ -299,13 +295,10 @@ fn render(
 fn check_paths(flags: &RenderFlags, out: Option<&Path>) -> Result<()> {
     let files = &flags.files;
     let scene = sources::scene_file(flags.picture.scene.as_deref());
-    let outputs: [NamedPath; 4] = [
-        ("--checkpoint", files.checkpoint.as_deref()),
-        ("--save-scene", files.save_scene.as_deref()),
-        ("--json", files.json.as_ref().and_then(JsonTarget::file)),
-        ("--out", out),
-    ];
-    super::check_paths(&[("--scene", scene), ("--resume", files.resume.as_deref())], &outputs)
+    let others = [files.save_scene.as_deref(), files.json.as_deref()].into_iter().flatten();
+    // A film may be replaced by its own continuation.
+    super::check_paths(files.resume.as_deref(), others.clone())?;
+    super::check_paths(scene, [files.checkpoint.as_deref(), out].into_iter().flatten().chain(others))
 }
 
 fn plan(flags: &RenderFlags, recipe: &Recipe) -> Plan {

@@ -1,8 +1,7 @@
 //! The flags of `weekender report`.
 
-use super::raw::ProgressChoice;
-use super::values::{backend_named, parse_rmse, parse_seconds, parse_size, whole};
-use super::{NamedPath, check_paths, sources};
+use super::sources;
+use super::values::{ProgressChoice, backend_named, number, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::{SAMPLE_LIMIT, SamplerKind};
@@ -49,7 +48,8 @@ pub struct ReportOptions {
           default_value = "1024")]
     pub max_samples: u64,
     /// Also report the seconds needed to reach this RMSE, and mark it in the plot
-    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, default_value = "0.01")]
+    #[arg(long, value_name = "RMSE", default_value = "0.01",
+          value_parser = number(f64::MIN_POSITIVE..=100.0, "above 0 and at most 100, such as 0.005"))]
     target: f64,
     /// The backend that renders the references, named as for --backends
     #[arg(long, value_name = "BACKEND", default_value = "reference")]
@@ -71,23 +71,20 @@ const BASELINE: &str = "c89";
 /// Target errors that every report has.
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
-/// The files that a report writes to its directory.
-const REPORT_FILES: [&str; 3] = ["report.json", "report.md", "error-vs-time.svg"];
-
 impl ReportOptions {
-    /// Returns an error if there is no such backend or flags conflict; `command` is what the report says of itself.
-    pub(super) fn check(self, command: String) -> Result<Self> {
+    /// Checks the backends.
+    ///
+    /// # Errors
+    /// If there is no such backend, or flags conflict.
+    pub fn check(&self) -> Result<()> {
         let names = self.backends();
         let uses_gpu = names.iter().chain([&self.reference_backend]).any(|name| name == "gpu");
         ensure!(
             self.adapter.is_none() || uses_gpu,
             "--adapter needs gpu in --backends: it chooses among GPUs; otherwise leave it out"
         );
-        for name in &names {
-            self.backend(name)?;
-        }
-        self.reference()?;
-        Ok(ReportOptions { command, ..self })
+        names.iter().try_for_each(|name| self.backend(name).map(drop))?;
+        self.reference().map(drop)
     }
 
     /// Whether backends were named; the default ones may be missing.
@@ -119,7 +116,7 @@ impl ReportOptions {
     /// The scenes at their final size.
     ///
     /// # Errors
-    /// If one is unknown, too large or named twice, or if the report would replace an input.
+    /// If one is unknown, too large or named twice.
     pub fn scenes(&self) -> Result<Vec<Recipe>> {
         let mut scenes: Vec<Recipe> =
             self.scenes.iter().map(|name| sources::scene(name)).collect::<Result<_>>()?;
@@ -133,15 +130,7 @@ impl ReportOptions {
             // A film, its reference, and the denoised one.
             scenes[index].job()?.check_memory(4)?;
         }
-        self.check_paths()?;
         Ok(scenes)
-    }
-
-    fn check_paths(&self) -> Result<()> {
-        let files = REPORT_FILES.map(|name| self.out.join(name));
-        let inputs = self.scenes.iter().map(|scene| ("--scenes", sources::scene_file(Some(scene))));
-        let outputs = files.iter().map(|file| ("a file of --out,", Some(file.as_path())));
-        check_paths(&inputs.collect::<Vec<NamedPath>>(), &outputs.collect::<Vec<NamedPath>>())
     }
 
     /// Target errors; the first is marked in the plot.
@@ -166,12 +155,12 @@ impl ReportOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::cli::{Command, Request, parse};
 
     fn parsed(words: &str) -> Result<ReportOptions, String> {
         let line = format!("weekender report --out r {words}");
         match parse(line.split(' ').map(Into::into)) {
-            Ok(Request::Report(options)) => Ok(*options),
+            Ok(Request::Command(Command::Report(options))) => Ok(*options),
             Ok(other) => panic!("{other:?}"),
             Err(failure) => Err(failure.to_string()),
         }
@@ -182,9 +171,10 @@ mod tests {
         let names = |words: &str| parsed(words).unwrap().backends();
         assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
         assert_eq!(names("--adapter some --backends portable,gpu"), ["portable", "gpu"]);
-        let error = parsed("--backends portable --adapter some").unwrap_err();
+        let check = |words: &str| parsed(words).unwrap().check().map_err(|error| error.to_string());
+        let error = check("--backends portable --adapter some").unwrap_err();
         assert!(error.contains("--adapter") && error.contains("gpu in --backends"), "{error}");
-        assert!(parsed("--backends portable --adapter some --reference-backend gpu").is_ok());
+        assert!(check("--backends portable --adapter some --reference-backend gpu").is_ok());
     }
 
     #[test]

@@ -1,20 +1,98 @@
 //! Where a picture comes from (a built-in scene, a stage, a scene file or a film), with the changes of the flags.
 
-use super::raw::{self, RawPicture};
-use super::values::{range, whole};
+use super::values::{number, parse_size, parse_vector, range, whole};
 use crate::job::recipe::{Recipe, file};
-use crate::job::render::{RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT};
+use crate::job::render::{DEPTH_LIMIT, RenderJob, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::job::saved::Saved;
+use crate::scene::VFOV_LIMITS_DEGREES;
 use crate::stages::Stage;
 use crate::system::files::STANDARD;
 use anyhow::Result;
-use clap::Args;
 use clap::builder::BoolishValueParser;
+use clap::{Args, ValueHint};
+use glam::DVec3;
 use std::ops::Range;
 use std::path::Path;
 
 /// The scene that is rendered if none is named.
 pub const DEFAULT_SCENE: &str = "three-spheres";
+
+/// What is rendered.
+#[derive(Debug, Default, PartialEq, Args)]
+#[command(next_help_heading = "Picture")]
+pub(super) struct PictureFlags {
+    /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
+    #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage")]
+    pub scene: Option<String>,
+    /// A stage of the book; --list shows them
+    #[arg(long, value_name = "ID")]
+    pub stage: Option<String>,
+    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<(u32, u32)>,
+    /// Maximum number of rays per path, including the camera's, 1 to 10000 [default: the scene's]
+    #[arg(long, value_name = "RAYS", value_parser = whole(1..=DEPTH_LIMIT, 50))]
+    pub depth: Option<u32>,
+    /// Source of random numbers: scrambled Sobol points, or independent numbers as in the book
+    /// [default: sobol, or the scene's]
+    #[arg(long, value_enum)]
+    pub sampler: Option<SamplerKind>,
+    /// Seed: pictures with different seeds differ only in their noise, 0 to 4294967295 [default: 0, or the scene's]
+    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=u32::MAX, 7))]
+    pub seed: Option<u32>,
+    #[command(flatten)]
+    pub camera: CameraFlags,
+}
+
+#[derive(Debug, Default, PartialEq, Args)]
+#[command(next_help_heading = "Camera (default: the scene's)")]
+pub(super) struct CameraFlags {
+    /// Position of the eye, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    look_from: Option<DVec3>,
+    /// The point in the centre of the picture, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    look_at: Option<DVec3>,
+    /// Up direction of the picture, not parallel to the view; its length does not matter
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    vup: Option<DVec3>,
+    #[arg(help = format!("Vertical field of view, {} to {} degrees", VFOV_LIMITS_DEGREES[0], VFOV_LIMITS_DEGREES[1]),
+          long, value_name = "DEGREES", value_parser = number(.., "a number, such as 20"), allow_hyphen_values = true)]
+    vfov: Option<f64>,
+    /// Angle of the cone from the focus point to the lens, from 0 (a pinhole) to below 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = number(.., "a number, such as 0.6"), allow_hyphen_values = true)]
+    defocus_angle: Option<f64>,
+    /// Distance to the plane in focus, above 0 scene units
+    #[arg(long, value_name = "UNITS", value_parser = number(.., "a number, such as 10"), allow_hyphen_values = true)]
+    pub focus_distance: Option<f64>,
+}
+
+impl PictureFlags {
+    /// Whether any of these flags is given.
+    pub fn is_given(&self) -> bool {
+        *self != PictureFlags::default()
+    }
+
+    /// Replaces values of the recipe by those of the flags.
+    pub fn change(&self, recipe: &mut Recipe, estimate_error: Option<bool>) {
+        fn set<T: Copy>(value: &mut T, flag: Option<T>) {
+            *value = flag.unwrap_or(*value);
+        }
+        let (settings, camera, flags) = (&mut recipe.settings, &mut recipe.camera, &self.camera);
+        set(&mut settings.width, self.size.map(|(width, _)| width));
+        set(&mut settings.height, self.size.map(|(_, height)| height));
+        set(&mut settings.max_depth, self.depth);
+        set(&mut settings.sampler, self.sampler);
+        set(&mut settings.seed, self.seed);
+        set(&mut settings.estimate_error, estimate_error);
+        set(&mut camera.look_from, flags.look_from);
+        set(&mut camera.look_at, flags.look_at);
+        set(&mut camera.vup, flags.vup);
+        set(&mut camera.vfov_degrees, flags.vfov);
+        set(&mut camera.defocus_angle_degrees, flags.defocus_angle);
+        camera.focus_distance = flags.focus_distance.or(camera.focus_distance);
+    }
+}
 
 /// The samples of a picture or of a plan.
 #[derive(Debug, Args)]
@@ -43,20 +121,20 @@ pub(super) struct ChosenRecipe {
 /// The picture that the flags describe, and its validated job. Without --scene and --stage it comes from the film to
 /// `resume`.
 pub(super) fn picture(
-    raw: &RawPicture,
+    flags: &PictureFlags,
     samples: &SampleFlags,
     resume: Option<&Path>,
 ) -> Result<(ChosenRecipe, RenderJob)> {
-    let mut chosen = find(raw, resume)?;
-    raw::change(&mut chosen.recipe, raw, samples.estimate_error);
+    let mut chosen = find(flags, resume)?;
+    flags.change(&mut chosen.recipe, samples.estimate_error);
     chosen.recipe.samples_per_pixel = samples.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
     Ok((chosen, job))
 }
 
 /// The source that the flags name, before the changes of other flags.
-pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenRecipe> {
-    match (&raw.stage, &raw.scene, resume) {
+pub(super) fn find(flags: &PictureFlags, resume: Option<&Path>) -> Result<ChosenRecipe> {
+    match (&flags.stage, &flags.scene, resume) {
         (Some(id), _, _) => {
             let stage = Stage::find(id)?;
             Ok(ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) })

@@ -35,7 +35,9 @@ fn commands_call_the_program_from_any_directory() {
         ("target/release/weekender", whole.as_str()),
     ] {
         let words = [name, "merge", "no-such-a.exr", "no-such-b.exr", "--out", "no-such-c.exr"];
-        let Ok(Request::Merge(options)) = parse(words.into_iter().map(Into::into)) else { panic!("{name}") };
+        let Ok(Request::Command(Command::Merge(options))) = parse(words.into_iter().map(Into::into)) else {
+            panic!("{name}")
+        };
         assert_eq!(options.program, expected);
     }
     assert_eq!(program(None), "weekender");
@@ -69,15 +71,20 @@ fn the_recorded_command_has_file_names_instead_of_paths() {
 
 #[test]
 fn a_plan_has_its_format_and_its_flags() {
-    let planned = |flags: &str| match request(&format!("plan --out no-such-plan --parts 2 {flags}")) {
-        Ok(Request::Plan(options)) => *options,
+    let planned = |flags: &str| match request(&format!("plan --out no-such-plan {flags}")) {
+        Ok(Request::Command(Command::Plan(options))) => *options,
         other => panic!("{other:?}"),
     };
-    let options = planned("--samples 4 --format make --device auto --simd off --threads 3 --every 2m");
-    assert_eq!((options.format, options.recipe.samples_per_pixel), (Format::Make, 4));
-    assert_eq!(options.flags, ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]);
-    assert!(planned("--sample-range 4..8").flags.is_empty());
-    assert!(refused("plan --out no-such-plan --parts 5 --samples 4").contains("there are 4 samples"));
+    let options =
+        planned("--parts 2 --samples 4 --format make --device auto --simd off --threads 3 --every 2m");
+    assert_eq!((options.format, options.divided().unwrap().0.samples_per_pixel), (Format::Make, 4));
+    assert_eq!(
+        options.divided().unwrap().2.flags,
+        ["--device=auto", "--simd=off", "--threads=3", "--every=2m"]
+    );
+    assert!(planned("--parts 2 --sample-range 4..8").divided().unwrap().2.flags.is_empty());
+    let error = planned("--parts 5 --samples 4").divided().unwrap_err().to_string();
+    assert!(error.contains("there are 4 samples"), "{error}");
     assert!(refused("merge p --out no-such.exr --check").contains("--check"));
 }
 
@@ -109,29 +116,30 @@ fn backend_flags_choose_the_windows_backend() {
 #[test]
 fn diff_takes_sides_and_place_from_flags() {
     let compared = |flags: &str| match request(&format!("diff {flags}")) {
-        Ok(Request::Diff(options)) => *options,
+        Ok(Request::Command(Command::Diff(options))) => *options,
         other => panic!("{other:?}"),
     };
-    let flags = "--pixel 0,0 --sides gpu,portable --adapter some";
     let gpu = BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")));
-    assert_eq!(compared(flags).sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
+    let sides = compared("--pixel 0,0 --sides gpu,portable --adapter some").sides().unwrap();
+    assert_eq!(sides, [gpu, BackendChoice::named("portable", None).unwrap()]);
     for sides in ["cpu", "cpu,tpu", "cpu,gpu,reference"] {
-        assert!(refused(&format!("diff --find --sides {sides}")).contains("reference"), "{sides}");
+        let error = compared(&format!("--find --sides {sides}")).sides().unwrap_err().to_string();
+        assert!(error.contains("reference"), "{sides}: {error}");
     }
-    let given = |x, y, sample| PathChoice::Given { pixel: [x, y], sample };
-    for (flags, width, path) in [
-        ("--pixel 19,9 --sample 7 --size 20x10", 20, given(19, 9, 7)),
-        ("--find", 200, PathChoice::Find { samples: 4 }),
-        ("--find=9 --size 300x10", 300, PathChoice::Find { samples: 9 }),
+    let error = compared("--pixel 0,0 --sides portable,reference --adapter some").sides().unwrap_err();
+    assert!(error.to_string().contains("--adapter needs the side gpu in --sides"), "{error}");
+    for (flags, width, find) in [
+        ("--pixel 19,9 --sample 7 --size 20x10", 20, None),
+        ("--find", 200, Some(4)),
+        ("--find=9 --size 300x10", 300, Some(9)),
     ] {
-        let DiffOptions { job, path: found, .. } = compared(&format!("--sides portable,reference {flags}"));
-        assert_eq!((job.settings().width, found), (width, path), "{flags}");
+        let options = compared(flags);
+        assert_eq!((options.job().unwrap().1.settings().width, options.find), (width, find), "{flags}");
     }
-    for (flags, part) in [
-        ("--pixel 20,9 --size 20x10", "the last one is 19,9"),
-        ("--pixel 0,0 --adapter some", "--adapter needs the side gpu in --sides"),
-    ] {
-        let error = refused(&format!("diff --sides portable,reference {flags}"));
-        assert!(error.contains(part), "{error}");
-    }
+    let pixel = |flags: &str| {
+        let options = compared(&format!("--size 20x10 {flags}"));
+        options.pixel(&options.job().unwrap().1).map_err(|error| error.to_string())
+    };
+    assert_eq!(pixel("--pixel 19,9"), Ok([19, 9]));
+    assert!(pixel("--pixel 20,9").unwrap_err().contains("the last one is 19,9"));
 }

@@ -8,33 +8,37 @@ use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use anyhow::{Context, Result};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
-use std::ffi::OsString;
 use std::fmt::Display;
-use std::ops::{Range, RangeInclusive};
-use std::path::{Path, PathBuf};
+use std::ops::{Range, RangeBounds, RangeInclusive};
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// Where JSON is written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum JsonTarget {
-    /// Standard output.
-    StandardOutput,
-    /// A file.
-    File(PathBuf),
+/// What draws the window; independent of what traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum DrawWith {
+    /// Whatever is faster on this machine
+    #[default]
+    Auto,
+    /// Vulkan, Metal or DX12
+    Wgpu,
+    /// OpenGL
+    Gl,
 }
 
-impl JsonTarget {
-    pub fn file(&self) -> Option<&Path> {
-        if let JsonTarget::File(path) = self { Some(path) } else { None }
-    }
+/// Whether progress is shown on standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ProgressChoice {
+    /// If standard error is a terminal
+    Auto,
+    /// Always; as lines if it is not a terminal
+    On,
+    /// Never
+    Off,
 }
 
-impl From<OsString> for JsonTarget {
-    fn from(text: OsString) -> Self {
-        if text == "-" { JsonTarget::StandardOutput } else { JsonTarget::File(text.into()) }
-    }
-}
+/// A value or `auto`, which is `None`. Under the name `Option`, clap would take it for a flag without a default.
+pub(super) type Auto<T> = Option<T>;
 
 /// A parser of file names that end in `ending`, with the dot, in upper or lower case.
 pub(super) fn file_ending(ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
@@ -45,28 +49,21 @@ pub(super) fn file_ending(ending: &'static str) -> impl TypedValueParser<Value =
     })
 }
 
-/// Number of lanes; `None` leaves the choice to the backend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Simd(pub Option<usize>);
-
-pub(super) fn parse_simd(text: &str) -> Result<Simd, String> {
+/// A number of lanes.
+pub(super) fn parse_simd(text: &str) -> Result<Auto<usize>, String> {
     match text {
-        "auto" => Ok(Simd(None)),
-        "off" | "1" => Ok(Simd(Some(1))),
-        "4" | "8" | "16" => Ok(Simd(text.parse().ok())),
+        "auto" => Ok(None),
+        "off" | "1" => Ok(Some(1)),
+        "4" | "8" | "16" => Ok(text.parse().ok()),
         _ => Err("must be auto, off, 4, 8 or 16 lanes".to_owned()),
     }
 }
 
-/// An instruction level; `None` leaves the choice to the backend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Level(pub Option<Isa>);
-
-pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
+pub(super) fn parse_isa(text: &str) -> Result<Auto<Isa>, String> {
     if text == "auto" {
-        return Ok(Level(None));
+        return Ok(None);
     }
-    level_named(text).map(|isa| Level(Some(isa))).ok_or_else(|| {
+    level_named(text).map(Some).ok_or_else(|| {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
         format!("must be auto or one of {}", names.join(", "))
     })
@@ -78,15 +75,12 @@ fn level_named(name: &str) -> Option<Isa> {
     Isa::ALL.into_iter().find(|isa| isa.name() == name)
 }
 
-/// Instruction levels of this processor, the least capable first; `None` leaves the choice to the command.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Levels(pub Option<Vec<Isa>>);
-
-pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
+/// Instruction levels of this processor, the least capable first.
+pub(super) fn parse_levels(text: &str) -> Result<Auto<Vec<Isa>>, String> {
     let available = Isa::available();
     match text {
-        "auto" => return Ok(Levels(None)),
-        "all" => return Ok(Levels(Some(available))),
+        "auto" => return Ok(None),
+        "all" => return Ok(Some(available)),
         _ => {}
     }
     let named: Option<Vec<Isa>> = text.split(',').map(|name| level_named(name.trim())).collect();
@@ -98,7 +92,7 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
     named.dedup();
     match named.iter().find(|isa| !available.contains(isa)) {
         Some(isa) => Err(CpuError::Isa { isa: *isa, available }.to_string()),
-        None => Ok(Levels(Some(named))),
+        None => Ok(Some(named)),
     }
 }
 
@@ -125,11 +119,14 @@ where
     }
 }
 
-/// A parser of numbers. Those out of range are refused with the scene, which gives the same reason for files.
-pub(super) fn finite_number(
-    example: &'static str,
+/// A parser of numbers within `limits`, which messages describe as `allowed`.
+pub(super) fn number(
+    limits: impl RangeBounds<f64> + Clone + Send + Sync,
+    allowed: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
-    move |text: &str| finite(text).ok_or_else(|| format!("must be a number, such as {example}"))
+    move |text: &str| {
+        finite(text).filter(|number| limits.contains(number)).ok_or_else(|| format!("must be {allowed}"))
+    }
 }
 
 fn finite(text: &str) -> Option<f64> {
@@ -144,7 +141,14 @@ pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
 }
 
 pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
-    positive(text, 1e9).ok_or_else(|| "must be above 0 and at most 1e9 seconds, such as 60".to_owned())
+    number(f64::MIN_POSITIVE..=1e9, "above 0 and at most 1e9 seconds, such as 60")(text)
+}
+
+/// A target for the stated error of a film, which is never below what rounding can cost.
+pub(super) fn parse_noise_target(text: &str) -> Result<f64, String> {
+    finite(text).filter(|target| *target > ROUNDING_LIMIT && *target <= 100.0).ok_or_else(|| {
+        format!("must be above {ROUNDING_LIMIT:.0e}, which rounding can cost, and at most 100, such as 0.005")
+    })
 }
 
 /// Shortest and longest duration for [`parse_duration`], seconds.
@@ -161,21 +165,6 @@ pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
     seconds
         .map(Duration::from_secs_f64)
         .ok_or_else(|| "must be from 0.1s to 30d, with s, m, h or d after the number, such as 90s".to_owned())
-}
-
-pub(super) fn parse_rmse(text: &str) -> Result<f64, String> {
-    positive(text, 100.0).ok_or_else(|| "must be above 0 and at most 100, such as 0.005".to_owned())
-}
-
-/// A target for the stated error of a film, which is never below what rounding can cost.
-pub(super) fn parse_noise_target(text: &str) -> Result<f64, String> {
-    positive(text, 100.0).filter(|target| *target > ROUNDING_LIMIT).ok_or_else(|| {
-        format!("must be above {ROUNDING_LIMIT:.0e}, which rounding can cost, and at most 100, such as 0.005")
-    })
-}
-
-fn positive(text: &str, limit: f64) -> Option<f64> {
-    text.parse().ok().filter(|value: &f64| *value > 0.0 && *value <= limit)
 }
 
 /// A parser of ranges that end at `limit` at most, of which `example` is one.
@@ -205,13 +194,6 @@ pub(super) fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     text.split_once(',')
         .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]))
         .ok_or_else(|| "must be a column and a row separated by a comma, such as 120,45".to_owned())
-}
-
-pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|share: &f64| (0.0..=1.0).contains(share))
-        .ok_or_else(|| "must be from 0 to 1, such as 1e-4".to_owned())
 }
 
 pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {

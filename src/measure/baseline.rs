@@ -170,19 +170,12 @@ fn figures(line: &str, wall: Duration) -> Option<Stats> {
 /// Writes a scene in the baseline's format.
 fn scene_text(scene: &Scene, camera: &Camera) -> String {
     let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
+    let Camera { look_from, look_at, vfov_degrees: vfov, defocus_angle_degrees: defocus, .. } = *camera;
     // vup may be almost parallel to the view, so write the exact up direction.
-    let up = camera.basis().v;
-    let mut text = format!(
-        "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",
-        three(camera.look_from),
-        three(camera.look_at),
-        three(up),
-        camera.vfov_degrees,
-        camera.defocus_angle_degrees,
-        camera.effective_focus_distance(),
-        three(scene.sky.bottom),
-        three(scene.sky.top)
-    );
+    let [from, at, up] = [look_from, look_at, camera.basis().v].map(three);
+    let (focus, [bottom, top]) =
+        (camera.effective_focus_distance(), [scene.sky.bottom, scene.sky.top].map(three));
+    let mut text = format!("camera {from} {at} {up} {vfov:?} {defocus:?} {focus:?}\nsky {bottom} {top}\n");
     for sphere in &scene.spheres {
         let place = format!("{} {:?}", three(sphere.center), sphere.radius);
         let material = scene.material_of(sphere);

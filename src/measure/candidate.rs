@@ -17,15 +17,6 @@ pub enum Source {
     C89,
 }
 
-impl Source {
-    fn create(&self) -> Result<Box<dyn Renderer>> {
-        Ok(match self {
-            Source::Backend(choice) => backends::create(choice)?,
-            Source::C89 => Box::new(Baseline::compile()?),
-        })
-    }
-}
-
 pub struct Candidate {
     pub name: String,
     source: Source,
@@ -81,18 +72,18 @@ impl Candidate {
 
     /// Starts the backend unless it is running. Fails if it is unavailable.
     pub fn start(&mut self) -> Result<&mut dyn Renderer> {
-        let renderer = self.take()?;
-        Ok(self.renderer.insert(renderer).as_mut())
-    }
-
-    fn take(&mut self) -> Result<Box<dyn Renderer>> {
-        if let Some(renderer) = self.renderer.take() {
-            return Ok(renderer);
+        match &mut self.renderer {
+            Some(renderer) => Ok(renderer.as_mut()),
+            none => {
+                let mut renderer: Box<dyn Renderer> = match &self.source {
+                    Source::Backend(choice) => backends::create(choice)?,
+                    Source::C89 => Box::new(Baseline::compile()?),
+                };
+                // Whoever named a software adapter knows what it is; later messages are about scenes.
+                drop(renderer.take_messages());
+                Ok(none.insert(renderer).as_mut())
+            }
         }
-        let mut renderer = self.source.create()?;
-        // Whoever named a software adapter knows what it is; later messages are about scenes.
-        drop(renderer.take_messages());
-        Ok(renderer)
     }
 
     /// `None` unless it is running.
@@ -117,11 +108,12 @@ impl Candidate {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, Stop> {
-        let mut renderer = self.take()?;
+        let renderer = self.start()?;
         let outcome = catch_unwind(AssertUnwindSafe(|| renderer.accumulate(job, samples, film, cancel)));
-        let stats = outcome.map_err(|_| Stop::Failed("the tracer panicked".to_owned()))??;
-        self.renderer = Some(renderer);
-        Ok(stats)
+        if !matches!(outcome, Ok(Ok(_))) {
+            self.renderer = None;
+        }
+        Ok(outcome.map_err(|_| Stop::Failed("the tracer panicked".to_owned()))??)
     }
 
     /// Traces a new film.

@@ -12,11 +12,11 @@ mod table;
 
 pub use candidate::{Candidate, Source, Stop, Traced};
 
-use crate::cli::JsonTarget;
 use crate::cli::terminal::write_figures;
 use anyhow::Result;
 use machine::Machine;
 use serde::Serialize;
+use std::path::Path;
 
 /// Version of the JSON, incremented when a key is removed or changes meaning.
 pub const SCHEMA: u32 = 1;
@@ -29,6 +29,6 @@ struct Measured<'a, T> {
     figures: &'a T,
 }
 
-fn write_json(target: &JsonTarget, machine: &Machine, figures: &impl Serialize) -> Result<()> {
+fn write_json(target: &Path, machine: &Machine, figures: &impl Serialize) -> Result<()> {
     write_figures(SCHEMA, &Measured { machine, figures }, target)
 }

@@ -5,9 +5,6 @@ use crate::cli::terminal::Display;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
-/// Interval between lines about the same step when there is no terminal.
-const LINE_INTERVAL: Duration = Duration::from_secs(10);
-
 const BAR_STEPS: f64 = 1000.0;
 
 /// Shows the current step, the share done and the remaining time.
@@ -16,29 +13,21 @@ pub(super) struct Progress {
     begin: Instant,
     done: f64,
     total: f64,
-    what: String,
 }
 
 impl Progress {
     /// `total` is the expected work, in any unit.
     pub fn new(choice: ProgressChoice, total: f64) -> Self {
-        let display = Display::new(choice, BAR_STEPS as u64, "[{bar:24}] {wide_msg}", "", LINE_INTERVAL);
-        let total = total.max(f64::MIN_POSITIVE);
-        Progress { display, begin: Instant::now(), done: 0.0, total, what: String::new() }
+        let display = Display::new(choice, BAR_STEPS as u64, "[{bar:24}] {wide_msg}", "", Duration::ZERO);
+        Progress { display, begin: Instant::now(), done: 0.0, total: total.max(f64::MIN_POSITIVE) }
     }
 
-    /// Shows the step `what`, with `within` of its work done.
-    pub fn at(&mut self, what: &str, within: f64) {
-        let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
+    /// Shows the step `what`.
+    pub fn at(&mut self, what: &str) {
+        let share = (self.done / self.total).min(1.0);
         let left = time_left(share, self.begin.elapsed())
             .map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        let (position, text) = ((share * BAR_STEPS) as u64, format!("{:3.0} % {what}{left}", 100.0 * share));
-        if self.what == what {
-            self.display.update(position, || text);
-        } else {
-            self.display.announce(position, || text);
-            what.clone_into(&mut self.what);
-        }
+        self.display.announce((share * BAR_STEPS) as u64, || format!("{:3.0} % {what}{left}", 100.0 * share));
     }
 
     pub fn finished(&mut self, amount: f64) {

@@ -1,4 +1,6 @@
-//! Table rows as text and Markdown.
+//! Rows of tables as text.
+
+use indicatif::HumanCount;
 
 /// Pads cells to the widths; a negative width aligns left.
 pub(super) fn text_row(widths: &[i32], cells: &[impl AsRef<str>]) -> String {
@@ -9,23 +11,6 @@ pub(super) fn text_row(widths: &[i32], cells: &[impl AsRef<str>]) -> String {
     }
     row.truncate(row.trim_end().len());
     row + "\n"
-}
-
-pub(super) fn markdown_row(cells: &[impl AsRef<str>]) -> String {
-    let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
-    format!("| {} |\n", cells.join(" | "))
-}
-
-/// A Markdown table. Columns after the first `texts` are right-aligned.
-pub(super) fn markdown_table<H: AsRef<str>, C: AsRef<str>>(
-    heads: &[H],
-    texts: usize,
-    rows: impl IntoIterator<Item = Vec<C>>,
-) -> String {
-    let rule: Vec<&str> =
-        (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }).collect();
-    let rows = rows.into_iter().map(|cells| markdown_row(&cells)).collect::<String>();
-    markdown_row(heads) + &markdown_row(&rule) + &rows
 }
 
 /// The value as text, or a dash.
@@ -40,9 +25,7 @@ pub fn counted(number: usize, noun: &str) -> String {
 
 /// Digits grouped by commas: `10,000`.
 pub fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
-    groups.collect::<Vec<_>>().join(",")
+    HumanCount(number as u64).to_string()
 }
 
 #[cfg(test)]
@@ -52,8 +35,6 @@ mod tests {
     #[test]
     fn rows_are_padded_and_counts_are_grouped() {
         assert_eq!(text_row(&[-4, 3, -3], &["a", "1", "b"]), "a      1 b\n");
-        let table = markdown_table(&["name", "count"], 1, [vec!["a", "1"]]);
-        assert_eq!(table, "| name | count |\n| --- | ---: |\n| a | 1 |\n");
         assert_eq!([0, 999, 1000, 1_234_567].map(grouped), ["0", "999", "1,000", "1,234,567"]);
         assert_eq!([counted(1, "lane"), counted(8, "lane")], ["1 lane", "8 lanes"]);
     }

@@ -1,9 +1,7 @@
 //! What the programs on pictures share: text for people, JSON for programs, and an exit code.
 
-use crate::cli::JsonTarget;
 use crate::cli::terminal::{print_beside, write_figures};
 use crate::system::failure::{BAD_INPUT, FAILED};
-use crate::system::files::check_writable;
 use anyhow::Result;
 use serde::Serialize;
 use std::fmt::Write;
@@ -28,14 +26,6 @@ impl Verdict {
     }
 }
 
-/// Checks that every output can be written, before any work is done.
-pub fn check_outputs<'a>(json: Option<&JsonTarget>, files: impl IntoIterator<Item = &'a Path>) -> Result<()> {
-    if let Some(JsonTarget::File(path)) = json {
-        check_writable(path)?;
-    }
-    Ok(files.into_iter().try_for_each(check_writable)?)
-}
-
 /// Labelled lines in aligned columns.
 pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
     let lines: Vec<(&str, String)> = lines.into_iter().collect();
@@ -48,7 +38,7 @@ pub fn lines<'a>(lines: impl IntoIterator<Item = (&'a str, String)>) -> String {
 }
 
 /// Prints `text` (to standard error if JSON takes standard output) and writes `figures` as JSON.
-pub fn deliver(json: Option<&JsonTarget>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
+pub fn deliver(json: Option<&Path>, text: &str, schema: u32, figures: &impl Serialize) -> Result<()> {
     print_beside(json, text)?;
     json.map_or(Ok(()), |target| write_figures(schema, figures, target))
 }

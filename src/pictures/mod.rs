@@ -7,5 +7,4 @@ pub mod compare;
 pub mod diff;
 mod picture;
 
-pub use answer::check_outputs;
 pub use picture::Picture;

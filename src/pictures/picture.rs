@@ -4,7 +4,6 @@ use crate::film::checkpoint::DENOISED_LAYER;
 use crate::film::{Film, key};
 use crate::job::output::{Encoding, Linear, Values, read_picture};
 use crate::job::recipe::Recipe;
-use crate::job::render::RenderJob;
 use crate::job::saved::{OpenError, Saved};
 use crate::system::memory;
 use anyhow::Result;
@@ -28,8 +27,6 @@ pub struct Picture {
     /// What reading the file left out or assumed.
     pub notes: Vec<String>,
     pub film: Option<Arc<Film>>,
-    /// The film's job.
-    pub job: Option<RenderJob>,
 }
 
 impl Picture {
@@ -51,16 +48,12 @@ impl Picture {
         };
         // Pixels can be compared even if the recipe is invalid.
         let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
-        let samples = saved.as_ref().and_then(|saved| saved.description.get(key::SAMPLES));
-        let samples = samples.map_or_else(String::new, |samples| format!(", {samples} samples"));
-        let denoised =
-            saved.as_ref().and_then(|saved| saved.description.get(key::DENOISED)).map(str::to_owned);
-        let denoised = denoised.or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
+        let described = |key| Some(saved.as_ref()?.description.get(key)?.to_owned());
+        let samples = described(key::SAMPLES).map_or_else(String::new, |count| format!(", {count} samples"));
+        let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         if let Some(film) = saved.and_then(|saved| saved.film) {
             check_memory(film.width(), film.height())?;
-            let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
-            let about = format!("film, {}", about_film(&film, recipe.as_ref()));
-            return Ok(Picture { job, ..Picture::of_film(name, about, film) });
+            return Ok(Picture::of_film(name, about_film(&film, recipe.as_ref()), film));
         }
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let read = read_picture(path, layer)?;
@@ -86,7 +79,6 @@ impl Picture {
             limit,
             notes: damages.chain(read.notes).chain(bias).collect(),
             film: None,
-            job: None,
         })
     }
 
@@ -95,14 +87,13 @@ impl Picture {
         let (width, height) = (film.width(), film.height());
         let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
         let (limit, film) = (f64::INFINITY, Some(film));
-        Picture { name, about, width, height, pixels, steps: None, limit, notes: Vec::new(), film, job: None }
+        Picture { name, about, width, height, pixels, steps: None, limit, notes: Vec::new(), film }
     }
 
     /// The picture of a film rendered by this program. Fails if a comparison of this size does not fit into memory.
-    pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
+    pub fn of_rendered(name: String, recipe: &Recipe, film: Arc<Film>) -> Result<Self> {
         check_memory(film.width(), film.height())?;
-        let about = format!("film, {}", about_film(&film, Some(&recipe)));
-        Ok(Picture { job: recipe.job().ok(), ..Picture::of_film(name, about, film) })
+        Ok(Picture::of_film(name, about_film(&film, Some(recipe)), film))
     }
 
     /// A channel's value; `None` if it is at or above an integer format's limit.
@@ -112,9 +103,9 @@ impl Picture {
     }
 }
 
-/// Bytes per pixel during a comparison, without films: both pictures, their relations (twice as much), the difference,
-/// the halves' differences or the steps and bounds, and the noise.
-const BYTES_PER_PIXEL: u64 = 8 * 24;
+/// Bytes per pixel during a comparison, without films: both pictures, the difference, the halves' differences or the
+/// steps and bounds, and the noise.
+const BYTES_PER_PIXEL: u64 = 8 * 18;
 
 /// Fails unless a comparison of this size fits into memory.
 fn check_memory(width: u32, height: u32) -> Result<()> {
@@ -127,8 +118,8 @@ fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
     let size = format!("{}x{}, {} samples", film.width(), film.height(), film.sample_count());
     match recipe {
         Some(Recipe { name, settings, .. }) => {
-            format!("{name}, {size}, {}, seed {}", settings.sampler.name(), settings.seed)
+            format!("film, {name}, {size}, {}, seed {}", settings.sampler.name(), settings.seed)
         }
-        None => size,
+        None => format!("film, {size}"),
     }
 }

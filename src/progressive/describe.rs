@@ -74,19 +74,10 @@ fn backend_text(film: &Film, status: &Status) -> Option<String> {
 }
 
 fn camera_text(camera: &Camera) -> String {
-    let (from, at) = (camera.look_from, camera.look_at);
-    format!(
-        "from {},{},{} to {},{},{}, vfov {} degrees, defocus {} degrees, focus at {}",
-        from.x,
-        from.y,
-        from.z,
-        at.x,
-        at.y,
-        at.z,
-        camera.vfov_degrees,
-        camera.defocus_angle_degrees,
-        camera.effective_focus_distance()
-    )
+    let Camera { vfov_degrees: vfov, defocus_angle_degrees: defocus, .. } = camera;
+    let [from, at] = [camera.look_from, camera.look_at].map(|at| format!("{},{},{}", at.x, at.y, at.z));
+    let focus = camera.effective_focus_distance();
+    format!("from {from} to {at}, vfov {vfov} degrees, defocus {defocus} degrees, focus at {focus}")
 }
 
 #[cfg(test)]

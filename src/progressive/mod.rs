@@ -21,7 +21,7 @@ pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
 pub use view::{ReferenceMeans, View, luminance, standard_error};
 
-use crate::backends::{self, BackendChoice, BackendError};
+use crate::backends::{self, BackendChoice};
 use crate::film::Film;
 use crate::job::render::{RenderJob, Renderer};
 use render::Cancel;
@@ -36,7 +36,7 @@ use std::time::Duration;
 use worker::{RenderCommand, Worker};
 
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
-pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
+pub type Factory = Box<dyn FnMut(&BackendChoice) -> anyhow::Result<Box<dyn Renderer>> + Send>;
 
 /// A render to start.
 pub struct RenderRequest {

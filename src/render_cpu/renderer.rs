@@ -10,9 +10,7 @@ use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
 use crate::film::{Film, FilmError};
-use crate::job::render::{
-    BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy,
-};
+use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::kernel::{Real, parts};
 use crate::prepared::PreparedScene;
 use std::ops::Range;
@@ -109,33 +107,23 @@ impl Renderer for CpuRenderer {
         }
     }
 
-    fn kernel(&self) -> String {
-        let needed = match &self.prepared {
-            Some(Prepared::Single(prepared, _)) => prepared.prepared.features.parts(),
-            Some(Prepared::Double(prepared, _)) => prepared.prepared.features.parts(),
-            None => return String::new(),
-        };
-        let (present, needed) = (self.kernel_contents().present, parts::describe(needed));
-        if needed == present { present } else { format!("{present} (needed: {needed})") }
-    }
-
-    fn kernel_contents(&self) -> KernelContents {
-        let present = match (self.packets, &self.prepared) {
-            (Some((isa, lanes)), Some(Prepared::Single(prepared, _))) => {
-                kernels::offered(isa, lanes, self.wanted_parts(&prepared.prepared))
+    fn kernel(&self) -> KernelInfo {
+        let (needed, contents, hierarchy_time) = match &self.prepared {
+            Some(Prepared::Single(traced, _)) => {
+                let prepared = &traced.prepared;
+                let contents = self.packets.map_or(parts::ALL, |(isa, lanes)| {
+                    kernels::offered(isa, lanes, self.wanted_parts(prepared))
+                });
+                (prepared.features.parts(), contents, prepared.hierarchy_time)
             }
-            (_, Some(_)) => parts::ALL,
-            (_, None) => return KernelContents::default(),
+            Some(Prepared::Double(traced, _)) => {
+                (traced.prepared.features.parts(), parts::ALL, traced.prepared.hierarchy_time)
+            }
+            None => return KernelInfo::default(),
         };
-        KernelContents { present: parts::describe(present), left_out: parts::left_out(present) }
-    }
-
-    fn hierarchy_time(&self) -> Duration {
-        match &self.prepared {
-            Some(Prepared::Single(prepared, _)) => prepared.prepared.hierarchy_time,
-            Some(Prepared::Double(prepared, _)) => prepared.prepared.hierarchy_time,
-            None => Duration::ZERO,
-        }
+        let (present, needed) = (parts::describe(contents), parts::describe(needed));
+        let about = if needed == present { present.clone() } else { format!("{present} (needed: {needed})") };
+        KernelInfo { about, present, left_out: parts::left_out(contents), hierarchy_time }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

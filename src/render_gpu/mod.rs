@@ -28,7 +28,7 @@ pub use options::{
 pub use scene::{Exported, SHARED_BLOCK, TURN_LIMIT};
 
 use crate::film::Film;
-use crate::job::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};
+use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats};
 use device::Gpu;
 use dispatches::{Broken, Dispatches};
 use kernel::Kernels;
@@ -198,21 +198,19 @@ impl Renderer for GpuRenderer {
         std::mem::take(&mut self.messages)
     }
 
-    fn hierarchy_time(&self) -> Duration {
-        self.report.hierarchy_time
-    }
-
     fn device_time(&self) -> Option<Duration> {
         self.dispatches.is_timed_by_device().then_some(self.dispatches.time)
     }
 
-    fn kernel(&self) -> String {
-        let GpuReport { features, compile_time, timer, .. } = &self.report;
-        format!("{features}; compiled in {:.3} s; dispatches timed by {timer}", compile_time.as_secs_f64())
-    }
-
-    fn kernel_contents(&self) -> KernelContents {
-        KernelContents { present: self.report.features.clone(), left_out: self.report.left_out.clone() }
+    fn kernel(&self) -> KernelInfo {
+        let GpuReport { features, left_out, compile_time, timer, hierarchy_time, .. } = &self.report;
+        let seconds = compile_time.as_secs_f64();
+        KernelInfo {
+            about: format!("{features}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
+            present: features.clone(),
+            left_out: left_out.clone(),
+            hierarchy_time: *hierarchy_time,
+        }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

@@ -53,27 +53,19 @@ impl Failure {
     /// Prints the failure to standard error (help goes to standard output) and returns the exit code; see
     /// [`EXIT_CODES`].
     pub fn report(&self) -> ExitCode {
-        ExitCode::from(match self {
-            Failure::CommandLine(error) if error.use_stderr() => {
-                console::note(&error.render().to_string());
-                u8::try_from(error.exit_code()).unwrap_or(BAD_INPUT)
+        let code = match self {
+            Failure::CommandLine(help) if !help.use_stderr() => {
+                let printed = console::print(&help.render().to_string());
+                let Err(error) = printed else { return ExitCode::SUCCESS };
+                console::note(&format!("error: {}", output_failure(&error)));
+                return ExitCode::from(FAILED);
             }
-            Failure::CommandLine(help) => match console::print(&help.render().to_string()) {
-                Ok(()) => 0,
-                Err(error) => {
-                    console::note(&format!("error: {}", output_failure(&error)));
-                    FAILED
-                }
-            },
-            Failure::Input(_) => self.say(BAD_INPUT),
-            Failure::Run(_) => self.say(FAILED),
-            Failure::BrokeOff(_) => self.say(BROKE_OFF),
-        })
-    }
-
-    fn say(&self, code: u8) -> u8 {
+            Failure::CommandLine(_) | Failure::Input(_) => BAD_INPUT,
+            Failure::Run(_) => FAILED,
+            Failure::BrokeOff(_) => BROKE_OFF,
+        };
         console::note(&self.to_string());
-        code
+        ExitCode::from(code)
     }
 }
 

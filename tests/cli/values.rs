@@ -1,7 +1,7 @@
 //! Flags and values that are refused.
 
 use super::common::{refused, run, temp, text};
-use weekender::cli::{Request, parse};
+use weekender::cli::{Command, Request, parse};
 
 #[test]
 fn without_batch_it_names_the_flag() {
@@ -11,8 +11,8 @@ fn without_batch_it_names_the_flag() {
 #[test]
 fn values_out_of_range_are_refused_with_value_and_limit() {
     let cases: [(&[&str], &[&str]); 19] = [
-        (&["--vfov", "20,5"], &["20,5", "write a point: 20.5"]),
-        (&["--time-limit", "0,5"], &["0,5", "write a point: 0.5"]),
+        (&["--vfov", "20,5"], &["20,5", "a number, such as 20"]),
+        (&["--time-limit", "0,5"], &["0,5", "such as 60"]),
         (&["--size", "0x10"], &["0x10", "16384"]),
         (&["--samples", "0"], &["0", "4294967296"]),
         (&["--samples", "-3"], &["-3"]),
@@ -88,7 +88,8 @@ fn outside_text_cannot_control_a_terminal() {
 fn report_targets_are_unique_with_the_chosen_one_first() {
     let targets = |flags: &[&str]| {
         let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
-        let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {
+        let Ok(Request::Command(Command::Report(options))) = parse(words.iter().chain(flags).map(Into::into))
+        else {
             panic!("{flags:?}")
         };
         options.targets()

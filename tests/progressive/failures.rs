@@ -8,7 +8,6 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use weekender::backends::BackendError;
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderError, RenderSettings, Renderer};
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest};
@@ -123,7 +122,7 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
 #[test]
 fn old_backend_continues_if_another_is_unavailable() {
     let mut progressive = Progressive::with_factory(Box::new(|choice| match *choice == FAILING {
-        true => Err(BackendError::Gpu(GpuError::None)),
+        true => Err(GpuError::None.into()),
         false => Ok(Box::new(Fake::new("cpu"))),
     }))
     .unwrap();

@@ -8,7 +8,6 @@ use std::ops::Range;
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use weekender::backends::BackendError;
 use weekender::film::Film;
 use weekender::job::render::Renderer;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Stop, View};
@@ -106,8 +105,7 @@ fn a_film_that_needs_no_more_samples_needs_no_backend() {
         (Stop::at_samples(8), EndReason::Samples),
         (Stop { seconds: Some(0.0), ..Stop::at_samples(9) }, EndReason::TimeLimit),
     ] {
-        let mut progressive =
-            Progressive::with_factory(Box::new(|_| Err(BackendError::Gpu(GpuError::None)))).unwrap();
+        let mut progressive = Progressive::with_factory(Box::new(|_| Err(GpuError::None.into()))).unwrap();
         let request = RenderRequest::new(job(2), CPU, Plan::until(stop));
         progressive.start(RenderRequest { film: Some(expected(8)), ..request });
         let status = progressive.wait_until_over();

@@ -65,12 +65,10 @@ fn weekender(arguments: &[&str]) -> std::process::Output {
 }
 
 #[test]
-fn program_writes_table_and_json() {
+fn program_prints_a_table_and_writes_json() {
     let directory = tempfile::tempdir().unwrap();
-    let out = directory.path().join("out");
     let json = directory.path().join("figures.json");
-    let arguments =
-        ["--filter", "shells/1", "--out", out.to_str().unwrap(), "--json", json.to_str().unwrap()];
+    let arguments = ["--filter", "shells/1", "--json", json.to_str().unwrap()];
     let output = weekender(&[&arguments[..], &["--progress", "off"]].concat());
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("shells/1 ") && text.contains("book's f32, f64"), "{text}");
@@ -81,7 +79,6 @@ fn program_writes_table_and_json() {
     assert_eq!(output.status.code(), Some(i32::from(!are_right)), "{text}");
     assert_eq!(cases[0]["id"], "shells/1");
     assert_eq!(cases[0]["measured"][0]["mean"], 0.5);
-    assert!(std::fs::read_to_string(out.join("table.md")).unwrap().contains("| `shells/1` |"));
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use super::{Document, Source};
 use crate::job::recipe::plain_name;
-use crate::job::render::RenderSettings;
 use crate::system::shell::Shell;
 use std::fmt::Write;
 
@@ -33,10 +32,9 @@ impl Document {
         if repeats || (mine.width, mine.height) != (theirs.width, theirs.height) {
             add("--size", &format!("{}x{}", mine.width, mine.height));
         }
-        for named in RenderSettings::NAMED {
-            let value = (named.value)(mine);
-            if repeats || value != (named.value)(theirs) {
-                add(&format!("--{}", named.flag), &value);
+        for ((flag, value), (_, base)) in mine.flags().into_iter().zip(theirs.flags()) {
+            if repeats || value != base {
+                add(&format!("--{flag}"), &value);
             }
         }
         let (camera, base) = (self.acting_camera(), &origin.camera);
@@ -78,7 +76,7 @@ mod tests {
     use crate::app::model::{CheckedScene, Origin};
     use crate::cli::{Request, parse};
     use crate::job::recipe::{Recipe, file};
-    use crate::job::render::{RenderJob, SamplerKind};
+    use crate::job::render::{RenderJob, RenderSettings, SamplerKind};
     use crate::scene::Camera;
 
     use crate::stages::Stage;

@@ -3,7 +3,7 @@
 mod plan;
 
 use crate::cli::terminal::print;
-use crate::cli::{MergeOptions, NamedPath, check_paths};
+use crate::cli::{MergeOptions, check_paths};
 use crate::film::{Description, Film, SampleRanges, merge_files};
 use crate::job::output::{OutputFormat, write_image};
 use crate::job::plan::Plan;
@@ -51,7 +51,7 @@ fn merge(films: &[PathBuf], options: &MergeOptions) -> Result<ExitCode, Failure>
     if let Some(film) = films.iter().find(is_again) {
         return Err(Failure::Input(anyhow!("{} is named twice; name it once", film.shown())));
     }
-    check_outputs("the merge", films, options)?;
+    check_outputs(films, options)?;
     let sum = merge_files(films, same_job).map_err(Failure::input)?;
     let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
     warn_of_loss(&options.out, &sum.film, &sum.description);
@@ -63,12 +63,10 @@ fn merge(films: &[PathBuf], options: &MergeOptions) -> Result<ExitCode, Failure>
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses to replace an input, which is `what`, by a result.
-fn check_outputs(what: &'static str, inputs: &[PathBuf], options: &MergeOptions) -> Result<(), Failure> {
-    fn named<'a>(what: &'static str, paths: &'a [PathBuf]) -> Vec<NamedPath<'a>> {
-        paths.iter().map(|path| (what, Some(path.as_path()))).collect()
-    }
-    check_paths(&named(what, inputs), &named("--out", &options.out)).map_err(Failure::Input)
+/// Refuses to replace an input by a result.
+fn check_outputs(inputs: &[PathBuf], options: &MergeOptions) -> Result<(), Failure> {
+    let [inputs, outputs] = [inputs, &options.out].map(|paths| paths.iter().map(PathBuf::as_path));
+    check_paths(inputs, outputs).map_err(Failure::Input)
 }
 
 /// Warns of samples that are lost because `film` replaces a film that has others.

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 /// Merges or checks the parts.
 pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
-    check_outputs("a file of the plan", &plan.files(), options)?;
+    check_outputs(&plan.files(), options)?;
     let mut sum = empty_sum(plan).map_err(Failure::input)?;
     let parts = &plan.manifest.parts;
     let added = parts.iter().enumerate().map(|(index, part)| (index, add(&mut sum, plan, part)));

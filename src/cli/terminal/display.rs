@@ -9,8 +9,8 @@ use terminal_size::{Width, terminal_size_of};
 
 /// How progress is shown.
 pub enum Display {
-    /// A progress bar with its template, and the columns that this takes without the message.
-    Bar(ProgressBar, String, usize),
+    /// A progress bar with its template.
+    Bar(ProgressBar, &'static str),
     /// Single lines.
     Lines {
         /// When the next line may be printed.
@@ -25,7 +25,13 @@ pub enum Display {
 impl Display {
     /// Depends on `choice` and on whether there is a terminal. The bar has `steps` and looks as indicatif's
     /// `template` says, where `prefix` fills the placeholder of that name. Lines are at least `interval` apart.
-    pub fn new(choice: ProgressChoice, steps: u64, template: &str, prefix: &str, interval: Duration) -> Self {
+    pub fn new(
+        choice: ProgressChoice,
+        steps: u64,
+        template: &'static str,
+        prefix: &str,
+        interval: Duration,
+    ) -> Self {
         match (choice, stderr().is_terminal()) {
             (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
             (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },
@@ -33,13 +39,10 @@ impl Display {
         }
     }
 
-    fn bar(target: ProgressDrawTarget, steps: u64, template: &str, prefix: &str) -> Self {
+    fn bar(target: ProgressDrawTarget, steps: u64, template: &'static str, prefix: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps), target);
-        let prefix = console::printable(prefix).into_owned();
-        let filled = template.replace("{prefix}", &prefix).replace("{bar:24}", &"=".repeat(24));
-        let beside = filled.replace("{eta}", "00m00s").replace(MESSAGE, "").chars().count();
-        bar.set_prefix(prefix);
-        Display::Bar(bar, template.to_owned(), beside)
+        bar.set_prefix(console::printable(prefix).into_owned());
+        Display::Bar(bar, template)
     }
 
     /// Shows `text` at step `position`. A line is printed only if one is due.
@@ -50,23 +53,17 @@ impl Display {
         }
     }
 
-    /// Shows `text` at step `position` even if no line is due. On a narrow terminal, the last of its parts, which commas
-    /// separate, are left out.
+    /// Shows `text` at step `position` even if no line is due. A narrow terminal shows only the text.
     pub fn announce(&mut self, position: u64, text: impl FnOnce() -> String) {
         match self {
-            Display::Bar(bar, template, beside) => {
-                let columns =
-                    terminal_size_of(stderr()).map_or(80, |(Width(columns), _)| usize::from(columns));
-                let text = text();
-                let text = console::printable(&text);
-                let first = text.split(", ").next().unwrap_or_default().chars().count();
-                let (template, beside) =
-                    if *beside + first <= columns { (template.as_str(), *beside) } else { (MESSAGE, 0) };
+            Display::Bar(bar, template) => {
+                let is_narrow = terminal_size_of(stderr()).is_some_and(|(Width(columns), _)| columns < WIDE);
+                let template = if is_narrow { "{wide_msg}" } else { *template };
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style.progress_chars("=> "));
                 }
                 bar.set_position(position);
-                bar.set_message(fitted(&text, columns.saturating_sub(beside)).to_owned());
+                bar.set_message(console::printable(&text()).into_owned());
             }
             Display::Lines { next, interval } => {
                 *next = Instant::now() + *interval;
@@ -101,15 +98,8 @@ impl Display {
     }
 }
 
-/// The placeholder of the text in a template.
-const MESSAGE: &str = "{wide_msg}";
-
-/// The first parts of a text that fit into `columns`, at least one.
-fn fitted(text: &str, columns: usize) -> &str {
-    let ends = text.match_indices(", ").map(|(end, _)| end).chain([text.len()]);
-    let fitting = ends.clone().take_while(|end| text[..*end].chars().count() <= columns).last();
-    &text[..fitting.or(ends.clone().next()).unwrap_or(text.len())]
-}
+/// Columns that a bar needs.
+const WIDE: u16 = 80;
 
 #[cfg(test)]
 mod tests {
@@ -133,17 +123,6 @@ mod tests {
         show(&mut display, "too soon again", false);
         show(&mut Display::Off, "nothing", true);
         assert_eq!(printed, ["first", "announced"]);
-    }
-
-    #[test]
-    fn whole_parts_of_a_text_fit() {
-        let text = "error 1e-3, 64 spp, ö left";
-        for (columns, shown) in
-            [(80, text), (26, text), (25, "error 1e-3, 64 spp"), (12, "error 1e-3"), (3, "error 1e-3")]
-        {
-            assert_eq!(fitted(text, columns), shown, "{columns}");
-        }
-        assert_eq!(fitted("", 5), "");
     }
 
     #[test]

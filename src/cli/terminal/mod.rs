@@ -4,13 +4,13 @@ mod display;
 
 pub use display::Display;
 
-use crate::cli::JsonTarget;
 use crate::system::console;
 use crate::system::failure::output_failure;
-use crate::system::files::write_text;
+use crate::system::files::{STANDARD, write_text};
 use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 use std::io;
+use std::path::Path;
 
 /// Prints a result as text to standard output.
 ///
@@ -24,8 +24,8 @@ pub fn print(text: &str) -> Result<()> {
 ///
 /// # Errors
 /// As for [`print()`]. Standard error never fails.
-pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
-    if json == Some(&JsonTarget::StandardOutput) {
+pub fn print_beside(json: Option<&Path>, text: &str) -> Result<()> {
+    if json == Some(Path::new(STANDARD)) {
         console::note(text);
         return Ok(());
     }
@@ -46,7 +46,7 @@ struct Envelope<'a, T> {
 ///
 /// # Errors
 /// As [`write_json`].
-pub fn write_figures(schema: u32, figures: &impl Serialize, target: &JsonTarget) -> Result<()> {
+pub fn write_figures(schema: u32, figures: &impl Serialize, target: &Path) -> Result<()> {
     write_json(&Envelope { schema, version: env!("CARGO_PKG_VERSION"), figures }, target)
 }
 
@@ -54,12 +54,12 @@ pub fn write_figures(schema: u32, figures: &impl Serialize, target: &JsonTarget)
 ///
 /// # Errors
 /// If the file or standard output cannot be written, or JSON cannot represent the value.
-pub fn write_json(value: &impl Serialize, target: &JsonTarget) -> Result<()> {
+pub fn write_json(value: &impl Serialize, target: &Path) -> Result<()> {
     let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
-    match target {
-        JsonTarget::File(path) => Ok(write_text(path, &text)?),
-        JsonTarget::StandardOutput => checked(console::write_out(&text)),
+    if target == Path::new(STANDARD) {
+        return checked(console::write_out(&text));
     }
+    Ok(write_text(target, &text)?)
 }
 
 fn checked(written: io::Result<()>) -> Result<()> {

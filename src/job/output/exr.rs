@@ -1,13 +1,13 @@
 //! OpenEXR as any program writes it.
 
-use super::limits::{check_memory, invalid, pixel_count};
-use super::read::{ReadPicture, Values};
+use super::read::{ReadPicture, Values, check_memory, pixel_count};
 use crate::film::checkpoint;
-use exr::error::{Error, Result};
+use anyhow::{Context, Result, anyhow, bail};
+use exr::error::Error;
 use exr::image::{AnyChannels, FlatImage, FlatSamples, Layer as Part};
-use exr::prelude::{Compression, MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
+use exr::prelude::{MetaData, ReadChannels, ReadLayers, Vec2, read as reading};
 use std::collections::BTreeMap;
-use std::io::{self, BufRead, Seek};
+use std::io::{BufRead, Seek};
 
 /// Three channels that make a picture.
 struct Layer<'a> {
@@ -20,19 +20,15 @@ struct Layer<'a> {
 }
 
 /// Reads the layer with this name, or the only one.
-pub(super) fn read(
-    mut reader: impl BufRead + Seek,
-    length: u64,
-    layer: Option<&str>,
-) -> io::Result<ReadPicture> {
+pub(super) fn read(mut reader: impl BufRead + Seek, length: u64, layer: Option<&str>) -> Result<ReadPicture> {
     let meta = MetaData::read_from_buffered(&mut reader, false).map_err(|error| unreadable(&error))?;
     for header in &meta.headers {
-        checkpoint::check_length(header, length).map_err(invalid)?;
+        checkpoint::check_length(header, length).map_err(|reason| anyhow!(reason))?;
         size(header.layer_size, header.channels.bytes_per_pixel)?;
     }
     // Each of the two ways refuses files that the other reads: the first those with a wrong number of chunks, the second
     // those with an odd header.
-    let mut decoded = |is_pedantic: bool| -> Result<FlatImage> {
+    let mut decoded = |is_pedantic: bool| -> exr::error::Result<FlatImage> {
         reader.rewind()?;
         let builder =
             reading().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes();
@@ -43,7 +39,9 @@ pub(super) fn read(
     let image = image.map_err(|error| unreadable(&error))?;
     let layers = layers(&image);
     let Layer { part, channels, alpha, .. } = choose(&layers, &image, layer)?;
-    let mut notes = notes(&image, part.encoding.compression);
+    let compression = part.encoding.compression;
+    let may_lose = compression.may_loose_data().then(|| format!("its {compression} may change the values"));
+    let mut notes: Vec<String> = note_on_colours(&image).into_iter().chain(may_lose).collect();
     if layer.is_none() && layers.len() > 1 {
         notes.push(format!("it has other layers, which are ignored: {}", names(&layers)));
     }
@@ -109,11 +107,11 @@ fn layers(image: &FlatImage) -> Vec<Layer<'_>> {
     if colour.is_empty() { grey } else { colour }
 }
 
-fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io::Result<&'a Layer<'a>> {
+fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> Result<&'a Layer<'a>> {
     if let Some(name) = name {
         let found = layers.iter().find(|layer| layer.name == name);
-        return found.ok_or_else(|| {
-            invalid(format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers)))
+        return found.with_context(|| {
+            format!("it has no layer {name:?}; choose one of {} after FILE:", names(layers))
         });
     }
     let usual: Vec<&Layer> = layers.iter().filter(|layer| layer.name.is_empty()).collect();
@@ -123,12 +121,12 @@ fn choose<'a>(layers: &'a [Layer], image: &FlatImage, name: Option<&str>) -> io:
         ([], _) => {
             let channels = image.layer_data.iter().flat_map(|part| &part.channel_data.list);
             let channels: Vec<String> = channels.map(|channel| channel.name.to_string()).collect();
-            Err(invalid(format!(
+            bail!(
                 "it has no channels R, G and B, nor Y, but {}; save the picture with these names",
                 channels.join(", ")
-            )))
+            )
         }
-        _ => Err(invalid(format!("it has several layers; choose one as FILE:LAYER: {}", names(layers)))),
+        _ => bail!("it has several layers; choose one as FILE:LAYER: {}", names(layers)),
     }
 }
 
@@ -137,48 +135,36 @@ fn names(layers: &[Layer]) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// What makes the numbers of a picture mean something else than usual.
-fn notes(image: &FlatImage, compression: Compression) -> Vec<String> {
-    let mut notes = Vec::new();
-    if let Some(space) = &image.attributes.chromaticities {
-        let found = [space.red, space.green, space.blue, space.white];
-        let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
-        let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
-            (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
-        };
-        if !found.iter().zip(usual).all(is_near) {
-            let [red, ..] = found;
-            notes.push(format!(
-                "its colours are not those of sRGB (its red is at {},{} instead of 0.64,0.33); they are not converted",
-                red.x(),
-                red.y()
-            ));
-        }
-    }
-    let is_lossy = matches!(
-        compression,
-        Compression::B44 | Compression::B44A | Compression::DWAA(_) | Compression::DWAB(_)
-    );
-    if is_lossy {
-        notes.push(format!("its {compression} changes the values"));
-    }
-    notes
+/// A note if the colours of a picture are not those of sRGB.
+fn note_on_colours(image: &FlatImage) -> Option<String> {
+    let space = image.attributes.chromaticities.as_ref()?;
+    let found = [space.red, space.green, space.blue, space.white];
+    let usual = [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]];
+    let is_near = |(found, usual): (&Vec2<f32>, [f32; 2])| {
+        (found.x() - usual[0]).abs() < 2e-3 && (found.y() - usual[1]).abs() < 2e-3
+    };
+    let Vec2(x, y) = space.red;
+    (!found.iter().zip(usual).all(is_near)).then(|| {
+        format!(
+            "its colours are not those of sRGB (its red is at {x},{y} instead of 0.64,0.33); they are not converted"
+        )
+    })
 }
 
 /// Width and height, if there is memory for a picture and as many more bytes for each pixel.
-fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> io::Result<(u32, u32)> {
+fn size(Vec2(width, height): Vec2<usize>, bytes: usize) -> Result<(u32, u32)> {
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     pixel_count(width, height)?;
     check_memory(width, height, bytes as u64)?;
     Ok((width, height))
 }
 
-fn unreadable(error: &Error) -> io::Error {
+fn unreadable(error: &Error) -> anyhow::Error {
     let text = error.to_string();
     let remedy = match error {
         Error::NotSupported(_) if text.contains("compression") => "save it with another, such as ZIP",
         Error::NotSupported(_) => "save it as a flat picture with R, G and B of the same size",
         _ => "check whether the file is complete",
     };
-    invalid(format!("{text}; {remedy}"))
+    anyhow!("{text}; {remedy}")
 }

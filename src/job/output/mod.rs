@@ -2,7 +2,6 @@
 //! Pictures of other programs can be read, too: [`read_picture`].
 
 mod exr;
-mod limits;
 mod netpbm;
 mod png;
 mod ppm;
@@ -14,11 +13,12 @@ pub use read::{
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 
-use crate::film::{CheckpointError, Film, checkpoint};
+use crate::film::{Film, checkpoint};
 use crate::stages::Transfer;
-use crate::system::files::{self, InputError, ShownPath, WriteError, replace_file};
+use crate::system::files::{self, ShownPath, replace_file};
+use anyhow::{Context, Result, anyhow};
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Longest recipe that is read from a PNG file, bytes: about two million listed spheres.
 const RECIPE_LIMIT: usize = 256 << 20;
@@ -54,45 +54,18 @@ impl OutputFormat {
     /// The format that belongs to a file name's extension, in upper or lower case.
     ///
     /// # Errors
-    /// [`OutputError::UnknownEnding`], which lists the known extensions.
-    pub fn from_path(path: &Path) -> Result<Self, OutputError> {
+    /// If it has none of the known extensions.
+    pub fn from_path(path: &Path) -> Result<Self> {
         let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy().to_lowercase()));
-        OutputFormat::ALL
-            .into_iter()
-            .find(|format| Some(format.ending()) == ending.as_deref())
-            .ok_or_else(|| OutputError::UnknownEnding { path: path.to_owned() })
-    }
-}
-
-/// Why a picture cannot be written, or its description cannot be read.
-#[derive(Debug, thiserror::Error)]
-pub enum OutputError {
-    #[error(
-        "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
-        path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
-    )]
-    UnknownEnding { path: PathBuf },
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// The file cannot be opened, or is not a regular file.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// The film is damaged or of another version.
-    #[error(transparent)]
-    Film(#[from] CheckpointError),
-    #[error("cannot read {}: {reason}", path.shown())]
-    Read { path: PathBuf, reason: io::Error },
-    #[error(
-        "{} does not say how it was made; only PNG and EXR files written by Weekender do, unless another program has saved them again",
-        path.shown()
-    )]
-    NoDescription { path: PathBuf },
-}
-
-impl OutputError {
-    fn unreadable(path: &Path, reason: &io::Error) -> Self {
-        let reason = limits::invalid(format!("{reason}; check whether the file is complete"));
-        OutputError::Read { path: path.to_owned(), reason }
+        OutputFormat::ALL.into_iter().find(|format| Some(format.ending()) == ending.as_deref()).with_context(
+            || {
+                format!(
+                    "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
+                    path.shown(),
+                    OutputFormat::ALL.map(OutputFormat::ending).join(", ")
+                )
+            },
+        )
     }
 }
 
@@ -100,13 +73,8 @@ impl OutputError {
 /// for 8-bit formats; the others are linear, and an EXR file holds the film.
 ///
 /// # Errors
-/// [`OutputError`]; an existing file is then unchanged.
-pub fn write_image(
-    path: &Path,
-    film: &Film,
-    transfer: Transfer,
-    description: &Description,
-) -> Result<(), OutputError> {
+/// If the file cannot be written; an existing one is then unchanged.
+pub fn write_image(path: &Path, film: &Film, transfer: Transfer, description: &Description) -> Result<()> {
     write_image_as(path, OutputFormat::from_path(path)?, film, transfer, description)
 }
 
@@ -120,7 +88,7 @@ pub fn write_image_as(
     film: &Film,
     transfer: Transfer,
     description: &Description,
-) -> Result<(), OutputError> {
+) -> Result<()> {
     replace_file(path, |writer| match format {
         OutputFormat::Png => png::write(film, transfer, description, false, writer),
         OutputFormat::P6 => ppm::write(film, transfer, writer),
@@ -139,15 +107,15 @@ pub fn write_small_png(
     film: &Film,
     transfer: Transfer,
     description: &Description,
-) -> Result<(), OutputError> {
+) -> Result<()> {
     Ok(replace_file(path, |writer| png::write(film, transfer, description, true, writer))?)
 }
 
 /// Reads the description of a picture. The first bytes of the file tell its format; the name does not matter.
 ///
 /// # Errors
-/// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
-pub fn read_description(path: &Path) -> Result<Description, OutputError> {
+/// If the file cannot be read, is damaged, or does not say how it was made.
+pub fn read_description(path: &Path) -> Result<Description> {
     let (file, _) = files::open(path)?;
     decode_description(BufReader::new(file), path)
 }
@@ -156,24 +124,22 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
 ///
 /// # Errors
 /// As for [`read_description`].
-pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description, OutputError> {
-    let unreadable = |reason: io::Error| OutputError::unreadable(path, &reason);
-    let start = start_of(&mut reader).map_err(unreadable)?;
+pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description> {
+    let unreadable =
+        |reason| anyhow!("cannot read {}: {reason}; check whether the file is complete", path.shown());
+    let start = start_of(&mut reader)?;
     let found = match start.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
         start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
         _ => None,
     };
-    found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
-}
-
-/// Checks that a file is a complete 8-bit RGB PNG of `size`, width and height in pixels.
-///
-/// # Errors
-/// [`OutputError::Input`] or [`OutputError::Read`].
-pub fn check_frame(path: &Path, size: [u32; 2]) -> Result<(), OutputError> {
-    let (file, _) = files::open(path)?;
-    png::check(BufReader::new(file), size).map_err(|reason| OutputError::unreadable(path, &reason))
+    found.with_context(|| {
+        format!(
+            "{} does not say how it was made; only PNG and EXR files written by Weekender do, unless another program has \
+             saved them again",
+            path.shown()
+        )
+    })
 }
 
 /// The first bytes, which tell the format of a file.

@@ -3,14 +3,14 @@
 //! Common faults are repaired and reported. Sources: the manual pages of netpbm; Paul Debevec, "PFM Portable FloatMap
 //! Image Format".
 
-use super::limits::{check_memory, invalid, pixel_count};
-use super::read::{Damage, ReadPicture, Values};
+use super::read::{Damage, ReadPicture, Values, check_memory, pixel_count};
 use crate::film::Film;
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// Reads a picture from the bytes of a file; of several in one file, the last.
-pub(super) fn read(file: &[u8]) -> io::Result<ReadPicture> {
+pub(super) fn read(file: &[u8]) -> Result<ReadPicture> {
     let mut damages = Vec::new();
     let mut file = Cow::Borrowed(file);
     if let Some(text) = from_utf16(&file) {
@@ -27,7 +27,7 @@ pub(super) fn read(file: &[u8]) -> io::Result<ReadPicture> {
         ));
         file = Cow::Owned(rest.to_owned());
     }
-    let mut start = header(&file).ok_or_else(|| invalid(foreign(&file)))?;
+    let mut start = header(&file).with_context(|| foreign(&file))?;
     if start > 0 {
         damages.push(Damage::new(
             "there is other text before the header",
@@ -38,20 +38,19 @@ pub(super) fn read(file: &[u8]) -> io::Result<ReadPicture> {
     loop {
         let mut own = Vec::new();
         match read_at(&file[start..], &mut own)? {
-            Found::Picture(mut picture) => {
-                if is_appended {
-                    damages.push(Damage::new(
-                        "the file has several pictures, one after the other; this is the last",
-                        "write it with > instead of >>, which appends",
-                    ));
-                }
-                damages.append(&mut own);
-                picture.damages = damages;
-                return Ok(picture);
-            }
             Found::Another(offset) => {
                 is_appended = true;
                 start += offset;
+            }
+            Found::Picture(picture) => {
+                damages.extend(is_appended.then(|| {
+                    Damage::new(
+                        "the file has several pictures, one after the other; this is the last",
+                        "write it with > instead of >>, which appends",
+                    )
+                }));
+                damages.append(&mut own);
+                return Ok(ReadPicture { damages, ..picture });
             }
         }
     }
@@ -63,7 +62,7 @@ enum Found {
     Another(usize),
 }
 
-fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
+fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     let kind = file[1];
     let mut words = Words { file, at: 2 };
     match kind {
@@ -78,13 +77,12 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> io::Result<Found> {
     let bytes_per_value = if most > 255 { 2 } else { 1 };
     let needed = count * channels * bytes_per_value;
     let mut data = Cow::Borrowed(words.payload(needed));
-    if data.len() < needed {
-        return Err(invalid(format!(
-            "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
-             through PowerShell's >, which changes bytes",
-            data.len()
-        )));
-    }
+    ensure!(
+        data.len() >= needed,
+        "it has {} of the {needed} bytes that {width} x {height} pixels need; write all rows, in binary mode, and not \
+         through PowerShell's >, which changes bytes",
+        data.len()
+    );
     if let Some(repaired) = without_returns(&data, needed) {
         damages.push(Damage::new(
             "the file was written in text mode: each byte 10 has become 13 and 10",
@@ -139,7 +137,7 @@ fn outside(count: usize, most: u16, damages: &mut Vec<Damage>) {
 }
 
 /// Reads numbers written as text, leaving out what does not belong.
-fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
+fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
     let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
     for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         if at > 0 && is_header(line) {
@@ -164,7 +162,7 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
     let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
     let [width, height, most] = *head.as_slice() else {
-        return Err(invalid(format!("its header is not complete; {HEADER}")));
+        bail!("its header is not complete; {HEADER}");
     };
     let size = [width, height].map(|side| u64::try_from(side).unwrap_or(0));
     let ((width, height, count), most) = (checked(size)?, checked_most(most.try_into().unwrap_or(0))?);
@@ -203,14 +201,13 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
             "convert each channel with int(256 * clamp(x, 0, 0.999)) before it is written",
         ));
     }
-    if values.len() < needed {
-        return Err(invalid(format!(
-            "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width \
-             and height of the header, and whether the program ended early",
-            values.len(),
-            values.len() / (channels * width as usize)
-        )));
-    }
+    ensure!(
+        values.len() >= needed,
+        "{width} x {height} pixels need {needed} numbers, but there are {}: {} of {height} rows; check the loops, width and \
+         height of the header, and whether the program ended early",
+        values.len(),
+        values.len() / (channels * width as usize)
+    );
     if values.len() > needed {
         damages.push(Damage::new(
             format!("there are {} numbers, but {width} x {height} pixels need {needed}", values.len()),
@@ -226,24 +223,23 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> io::Result<Found> {
 }
 
 /// Reads a PFM, whose lowest row comes first.
-fn floats(mut words: Words, channels: usize) -> io::Result<ReadPicture> {
+fn floats(mut words: Words, channels: usize) -> Result<ReadPicture> {
     let size = [words.number("width")?, words.number("height")?];
     let word = words.next();
-    let scale: f32 = word.replace(',', ".").parse().unwrap_or(0.0);
-    if !scale.is_finite() || scale == 0.0 || word.contains(',') {
-        return Err(invalid(format!(
-            "its scale is {word:?}; write -1.0 after width and height if the lowest byte of a number comes first, else 1.0"
-        )));
-    }
+    let scale: f32 = word.parse().unwrap_or(0.0);
+    ensure!(
+        scale.is_finite() && scale != 0.0,
+        "its scale is {word:?}; write -1.0 after width and height if the lowest byte of a number comes first, else 1.0"
+    );
     let (width, height, count) = checked(size)?;
     let count = count * channels;
     let data = words.payload(4 * count);
     let Some(pixels) = data.get(..4 * count) else {
-        return Err(invalid(format!(
+        bail!(
             "it has {} of the {} bytes that {width} x {height} pixels need; write all rows, in binary mode",
             data.len(),
             4 * count
-        )));
+        );
     };
     check_memory(width, height, 0)?;
     let (numbers, _) = pixels.as_chunks::<4>();
@@ -285,20 +281,19 @@ pub(super) fn write_pfm(film: &Film, writer: &mut impl Write) -> io::Result<()> 
 const HEADER: &str = "a PPM begins with P3 or P6, the width, the height and 255, in this order";
 
 /// Width, height and number of pixels.
-fn checked([width, height]: [u64; 2]) -> io::Result<(u32, u32, usize)> {
-    if width.min(height) == 0 {
-        return Err(invalid(format!(
-            "its header says {width} x {height} pixels; write the width and height of the picture"
-        )));
-    }
+fn checked([width, height]: [u64; 2]) -> Result<(u32, u32, usize)> {
+    ensure!(
+        width.min(height) > 0,
+        "its header says {width} x {height} pixels; write the width and height of the picture"
+    );
     let [width, height] = [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
     Ok((width, height, pixel_count(width, height)?))
 }
 
-fn checked_most(most: u64) -> io::Result<u16> {
+fn checked_most(most: u64) -> Result<u16> {
     match u16::try_from(most) {
         Ok(most @ 1..) => Ok(most),
-        _ => Err(invalid(format!("its largest value is {most}; write 255 after width and height"))),
+        _ => bail!("its largest value is {most}; write 255 after width and height"),
     }
 }
 
@@ -326,9 +321,9 @@ impl<'a> Words<'a> {
         String::from_utf8_lossy(&word[..word.len().min(32)])
     }
 
-    fn number(&mut self, what: &str) -> io::Result<u64> {
+    fn number(&mut self, what: &str) -> Result<u64> {
         let word = self.next();
-        word.parse().map_err(|_| invalid(format!("its {what} is {word:?}; {HEADER}")))
+        word.parse().map_err(|_| anyhow!("its {what} is {word:?}; {HEADER}"))
     }
 
     /// What follows the white space that ends the header: one character, or all up to a line end if that leaves enough.

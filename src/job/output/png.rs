@@ -1,9 +1,9 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
-use super::limits::invalid;
 use super::{Description, RECIPE_KEY, RECIPE_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
+use anyhow::{Result, anyhow};
 use std::io::{self, BufRead, Seek, Write};
 
 /// `is_small` makes the file a quarter smaller, which takes several times as long.
@@ -43,35 +43,19 @@ pub(super) fn write(
     writer.write_all(&file)
 }
 
-/// A decoder that can read every description that [`write`] writes. A chunk counts up to three times while it is read.
-fn decoder<R: BufRead + Seek>(reader: R) -> ::png::Decoder<R> {
-    ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: 4 * RECIPE_LIMIT })
-}
-
-/// Reads an 8-bit RGB picture of this size to its end.
-pub(super) fn check(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<()> {
-    let mut reader = decoder(reader).read_info()?;
-    let info = reader.info();
-    let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
-    if (info.width, info.height) != (width, height) || !is_rgb || info.interlaced {
-        return Err(invalid(format!("it is not an 8-bit RGB picture of {width}x{height} pixels")));
-    }
-    let mut pixels = vec![0; 3 * width as usize * height as usize];
-    reader.next_frame(&mut pixels)?;
-    Ok(reader.finish()?)
-}
-
-pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
-    let reader = decoder(reader).read_info()?;
+pub(super) fn read_description(reader: impl BufRead + Seek) -> Result<Option<Description>> {
+    // A chunk counts up to three times while it is read.
+    let limits = ::png::Limits { bytes: 4 * RECIPE_LIMIT };
+    let reader = ::png::Decoder::new_with_limits(reader, limits).read_info()?;
     let info = reader.info();
     let Some(recipe) = info.utf8_text.iter().find(|chunk| chunk.keyword == RECIPE_KEY) else {
         return Ok(None);
     };
     let mut recipe = recipe.clone();
     // The decompressor needs room for one more byte to find the end.
-    recipe.decompress_text_with_limit(RECIPE_LIMIT + 1).map_err(|error| {
-        invalid(format!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})"))
-    })?;
+    recipe
+        .decompress_text_with_limit(RECIPE_LIMIT + 1)
+        .map_err(|error| anyhow!("its recipe is damaged or longer than {RECIPE_LIMIT} bytes ({error})"))?;
     let mut description = Description::new(&recipe.get_text()?);
     for chunk in &info.uncompressed_latin1_text {
         description.set(&chunk.keyword, &chunk.text);

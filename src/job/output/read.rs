@@ -1,13 +1,14 @@
 //! Reads pictures of any program: PNG, EXR, and Netpbm's formats.
 
-use super::limits::{PIXEL_LIMIT, check_memory, invalid, pixel_count};
-use super::{OutputError, exr, netpbm};
+use super::{exr, netpbm};
 use crate::film::checkpoint;
 use crate::stages::Transfer;
-use crate::system::files;
+use crate::system::files::{self, ShownPath};
+use crate::system::memory;
+use anyhow::{Result, anyhow, ensure};
 use image::codecs::png::PngDecoder;
 use image::{DynamicImage, ImageDecoder};
-use std::io::{self, BufRead, BufReader, Read, Seek};
+use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 /// What integer values mean.
@@ -104,11 +105,11 @@ fn half_step(x: f32) -> f64 {
 /// format; the name does not matter.
 ///
 /// # Errors
-/// [`OutputError::Input`] or [`OutputError::Read`].
-pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<ReadPicture, OutputError> {
+/// If the file cannot be read or is not such a picture.
+pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<ReadPicture> {
     let (file, length) = files::open(path)?;
     decode_picture(BufReader::new(file), length, layer)
-        .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+        .map_err(|reason| anyhow!("cannot read {}: {reason}", path.shown()))
 }
 
 /// As [`read_picture`], from a reader of `length` bytes.
@@ -119,7 +120,7 @@ pub fn decode_picture(
     mut reader: impl BufRead + Seek,
     length: u64,
     layer: Option<&str>,
-) -> io::Result<ReadPicture> {
+) -> Result<ReadPicture> {
     let start = super::start_of(&mut reader)?;
     if start.starts_with(&checkpoint::MAGIC) {
         return exr::read(reader, length, layer);
@@ -127,12 +128,34 @@ pub fn decode_picture(
     if start.starts_with(b"\x89PNG") {
         return read_png(reader, length);
     }
-    if length > LENGTH_LIMIT {
-        return Err(invalid(format!("it has {length} bytes; pictures have at most {LENGTH_LIMIT}")));
-    }
+    ensure!(length <= LENGTH_LIMIT, "it has {length} bytes; pictures have at most {LENGTH_LIMIT}");
     let mut file = Vec::new();
     reader.take(LENGTH_LIMIT).read_to_end(&mut file)?;
     netpbm::read(&file)
+}
+
+/// Largest number of pixels that is read.
+const PIXEL_LIMIT: u64 = 1 << 28;
+
+/// Number of pixels, or an error if the size is out of range.
+pub(super) fn pixel_count(width: u32, height: u32) -> Result<usize> {
+    let count = u64::from(width) * u64::from(height);
+    ensure!(
+        (1..=PIXEL_LIMIT).contains(&count),
+        "its size is {width}x{height}; only 1 to {PIXEL_LIMIT} pixels can be read"
+    );
+    Ok(count as usize)
+}
+
+/// Most memory per pixel while a picture is read: for the file's data, the decoded data, and the numbers with their
+/// quantisation steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Returns an error if the picture would not fit into memory, with `more` bytes for each pixel than usual.
+pub(super) fn check_memory(width: u32, height: u32, more: u64) -> Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * (BYTES_PER_PIXEL + more);
+    let what = || format!("a picture of {width}x{height} pixels");
+    Ok(memory::check(what, bytes, "close other programs or make it smaller")?)
 }
 
 /// Largest file that is read into memory, bytes: 16 for each pixel.
@@ -141,19 +164,18 @@ const LENGTH_LIMIT: u64 = 16 * PIXEL_LIMIT;
 /// Largest expansion of a byte: deflate expands up to 1032 times, and one bit of a palette index becomes 3 bytes.
 const LARGEST_RATIO: u64 = 1032 * 24;
 
-fn read_png(reader: impl BufRead + Seek, length: u64) -> io::Result<ReadPicture> {
+fn read_png(reader: impl BufRead + Seek, length: u64) -> Result<ReadPicture> {
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
-    let incomplete = |error| invalid(format!("{error}; check whether the file is complete"));
+    let incomplete = |error| anyhow!("{error}; check whether the file is complete");
     let decoder = PngDecoder::with_limits(reader, limits).map_err(incomplete)?;
     let (width, height) = decoder.dimensions();
     pixel_count(width, height)?;
     let least = decoder.total_bytes() / LARGEST_RATIO;
-    if least > length {
-        return Err(invalid(format!(
-            "it has {length} bytes, but {width}x{height} pixels need at least {least}; check whether the file is complete"
-        )));
-    }
+    ensure!(
+        least <= length,
+        "it has {length} bytes, but {width}x{height} pixels need at least {least}; check whether the file is complete"
+    );
     check_memory(width, height, 0)?;
     let image = DynamicImage::from_decoder(decoder).map_err(incomplete)?;
     let mut notes = Vec::new();
@@ -221,6 +243,7 @@ mod tests {
     use super::*;
     use crate::film::to_byte;
     use proptest::prelude::*;
+    use std::io;
 
     fn read(file: &[u8]) -> ReadPicture {
         decode_picture(io::Cursor::new(file), file.len() as u64, None).unwrap()

@@ -24,7 +24,7 @@ const VERSION: u32 = 1;
 const LENGTH_LIMITS: [u64; 2] = [256 << 20, 2 << 30];
 
 /// The content of the manifest.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     pub plan_version: u32,
     pub sample_version: u32,
@@ -89,16 +89,12 @@ impl Manifest {
             plan_version: VERSION,
             sample_version: SAMPLE_VERSION,
             program: SOFTWARE.to_owned(),
-            command: String::new(),
-            scene: String::new(),
-            stage: None,
             scene_file: SCENE.to_owned(),
-            scene_checksum: String::new(),
             samples: [samples.start, samples.end],
             block: division.block,
             parts: division.parts.iter().enumerate().map(part).collect(),
-            flags: Vec::new(),
             result: RESULT.to_owned(),
+            ..Manifest::default()
         })
     }
 

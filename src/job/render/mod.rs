@@ -5,7 +5,7 @@
 
 mod settings;
 
-pub use settings::{NamedSetting, RenderSettings, SamplerKind};
+pub use settings::{RenderSettings, SamplerKind};
 
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
@@ -71,11 +71,17 @@ impl RenderJob {
         camera.validate()?;
         for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
             if !(1..=SIZE_LIMIT).contains(&pixels) {
-                return Err(JobError::Size { what, pixels });
+                return Err(JobError::Settings(format!(
+                    "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller \
+                     picture or stitch several"
+                )));
             }
         }
-        if !(1..=DEPTH_LIMIT).contains(&settings.max_depth) {
-            return Err(JobError::Depth { depth: settings.max_depth });
+        let depth = settings.max_depth;
+        if !(1..=DEPTH_LIMIT).contains(&depth) {
+            return Err(JobError::Settings(format!(
+                "max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's"
+            )));
         }
         Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
     }
@@ -141,18 +147,9 @@ pub enum JobError {
     /// The scene or the camera is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The picture's size is out of range.
-    #[error(
-        "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller picture or stitch several"
-    )]
-    Size {
-        /// The dimension: "width" or "height".
-        what: &'static str,
-        pixels: u32,
-    },
-    /// The depth is out of range.
-    #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
-    Depth { depth: u32 },
+    /// A setting is out of range: what it is, and the remedy.
+    #[error("{0}")]
+    Settings(String),
 }
 
 /// Statistics of a call to [`Renderer::accumulate`].
@@ -184,11 +181,16 @@ impl Stats {
     }
 }
 
-/// The features that a kernel has code for.
+/// What a renderer has made for its job; empty without one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct KernelContents {
+pub struct KernelInfo {
+    /// The kernel, and how long it took to compile.
+    pub about: String,
+    /// The features that it has code for.
     pub present: String,
     pub left_out: Vec<&'static str>,
+    /// Wall time of building the hierarchy; zero if there is none.
+    pub hierarchy_time: Duration,
 }
 
 /// Occupancy of packets in each tile of a picture.
@@ -268,24 +270,14 @@ pub trait Renderer: Send {
         Vec::new()
     }
 
-    /// Wall time of building the prepared job's hierarchy; zero if it has none.
-    fn hierarchy_time(&self) -> Duration {
-        Duration::ZERO
-    }
-
     /// Total time of all dispatches so far by the device's own clock; `None` without one.
     fn device_time(&self) -> Option<Duration> {
         None
     }
 
-    /// Describes the prepared job's kernel and the time it took to compile.
-    fn kernel(&self) -> String {
-        String::new()
-    }
-
-    /// What the prepared job's kernel has and leaves out; both empty if no job is prepared.
-    fn kernel_contents(&self) -> KernelContents {
-        KernelContents::default()
+    /// Describes what it has made for the prepared job.
+    fn kernel(&self) -> KernelInfo {
+        KernelInfo::default()
     }
 
     /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.

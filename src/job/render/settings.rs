@@ -63,41 +63,16 @@ impl RenderSettings {
     }
 }
 
-/// A setting with a name in flags and scene files. Width and height are excluded, because they are written together.
-pub struct NamedSetting {
-    /// The name of its flag, without dashes.
-    pub flag: &'static str,
-    /// The key in scene files.
-    pub key: &'static str,
-    /// The comment after it in scene files; may be empty.
-    pub comment: &'static str,
-    /// Reads the value from the settings, as the flag takes it.
-    pub value: fn(&RenderSettings) -> String,
-}
-
 impl RenderSettings {
-    /// All settings except the picture size.
-    pub const NAMED: &[NamedSetting] = &[
-        NamedSetting {
-            flag: "depth",
-            key: "max_depth",
-            comment: "rays of a path",
-            value: |settings| settings.max_depth.to_string(),
-        },
-        NamedSetting {
-            flag: "sampler",
-            key: "sampler",
-            comment: "",
-            value: |settings| settings.sampler.name().to_owned(),
-        },
-        NamedSetting { flag: "seed", key: "seed", comment: "", value: |settings| settings.seed.to_string() },
-        NamedSetting {
-            flag: "estimate-error",
-            key: "estimate_error",
-            comment: "",
-            value: |settings| if settings.estimate_error { "on" } else { "off" }.to_owned(),
-        },
-    ];
+    /// All settings except the picture's size, by the names of their flags.
+    pub fn flags(&self) -> [(&'static str, String); 4] {
+        [
+            ("depth", self.max_depth.to_string()),
+            ("sampler", self.sampler.name().to_owned()),
+            ("seed", self.seed.to_string()),
+            ("estimate-error", if self.estimate_error { "on" } else { "off" }.to_owned()),
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -118,12 +93,11 @@ mod tests {
             RenderSettings { estimate_error: !estimate_error, ..settings },
         ];
         for other in others {
-            let differs = |named: &&NamedSetting| (named.value)(&settings) != (named.value)(&other);
-            assert_eq!(RenderSettings::NAMED.iter().filter(differs).count(), 1, "{other:?}");
+            let differing = settings.flags().into_iter().zip(other.flags()).filter(|(a, b)| a != b);
+            assert_eq!(differing.count(), 1, "{other:?}");
         }
-        assert_eq!(RenderSettings::NAMED.len(), others.len());
+        assert_eq!(settings.flags().len(), others.len());
         assert_eq!((width, height), (800, 450));
-        let values = RenderSettings::NAMED.iter().map(|named| (named.value)(&settings));
-        assert_eq!(values.collect::<Vec<_>>(), ["50", "sobol", "0", "on"]);
+        assert_eq!(settings.flags().map(|(_, value)| value), ["50", "sobol", "0", "on"]);
     }
 }

@@ -1,7 +1,7 @@
 //! Describes how two jobs differ.
 
 use crate::job::recipe::file;
-use crate::job::render::{RenderJob, RenderSettings};
+use crate::job::render::RenderJob;
 
 /// Checks whether two recipes, given as text, describe the same samples.
 ///
@@ -35,7 +35,7 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
 fn named_values(job: &RenderJob) -> Vec<(String, String)> {
     let (settings, camera) = (job.settings(), job.camera());
     let mut values = vec![("size", format!("{}x{}", settings.width, settings.height))];
-    values.extend(RenderSettings::NAMED.iter().map(|named| (named.flag, (named.value)(settings))));
+    values.extend(settings.flags());
     let distance = camera.focus_distance.map_or("that to the point looked at".to_owned(), |d| d.to_string());
     values.extend([
         ("look-from", camera.look_from.to_string()),

@@ -2,37 +2,34 @@
 //! opens or resumes a file uses this module.
 
 mod difference;
-mod frames;
 mod replaced;
 mod rescue;
 
 pub use difference::{difference, same_job};
-pub use frames::is_whole_frame;
 pub use replaced::Replaced;
 pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, FilmFile, checkpoint, key};
-use crate::job::output::{OutputError, read_description};
+use crate::job::output::{read_description, read_picture};
 use crate::job::recipe::{Recipe, file};
 use crate::job::render::RenderJob;
 use crate::stages::Stage;
 use crate::system::files::ShownPath;
+use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be opened or resumed. The message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    #[error(transparent)]
-    Scene(#[from] file::FileError),
     /// The film is damaged, of another version, or cannot be read; or a film is needed, and this is none.
     #[error(transparent)]
     Film(CheckpointError),
     /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
-    Picture(OutputError),
-    /// The recipe in the file is missing or cannot be rendered, or the film does not match it.
-    #[error("{} {what}", path.shown())]
-    Recipe { path: PathBuf, what: String },
+    Picture(anyhow::Error),
+    /// The scene file or the recipe cannot be read or rendered, or the film does not match it.
+    #[error(transparent)]
+    Recipe(#[from] anyhow::Error),
     #[error(
         "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
         path.shown()
@@ -82,10 +79,9 @@ impl Saved {
     /// # Errors
     /// [`OpenError::Recipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
-        let no_recipe = |what| OpenError::Recipe { path: self.path.clone(), what };
         let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
-            .map_err(|reason| no_recipe(format!("has a recipe that cannot be read: {reason}")))?;
+            .map_err(|reason| anyhow!("{label} has a recipe that cannot be read: {reason}"))?;
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let name = self.description.get(key::SCENE).map(str::to_owned).or(stem).unwrap_or(label);
         Ok(Recipe { name, ..recipe })
@@ -107,7 +103,7 @@ impl Saved {
     }
 
     /// The film with its tracing time and backend; `None` for a picture.
-    fn into_film(self) -> Option<SavedFilm> {
+    pub fn into_film(self) -> Option<SavedFilm> {
         let (seconds, backend) = (self.seconds(), self.description.get(key::BACKEND).map(str::to_owned));
         self.film.map(|film| SavedFilm { film, seconds, backend })
     }
@@ -123,19 +119,6 @@ pub struct SavedFilm {
     pub backend: Option<String>,
 }
 
-/// The content of a file besides its recipe.
-#[derive(Debug)]
-pub enum Content {
-    /// Nothing else: the file is a scene file.
-    Scene,
-    Picture {
-        /// Samples per pixel, if the file says so.
-        samples: Option<u64>,
-    },
-    /// A film whose shape matches the recipe.
-    Film(SavedFilm),
-}
-
 /// A file that was opened.
 #[derive(Debug)]
 pub struct Opened {
@@ -144,10 +127,8 @@ pub struct Opened {
     pub recipe: Recipe,
     /// The validated job of the recipe.
     pub job: RenderJob,
-    /// The stage that the description names. The recipe may have been changed since.
-    pub stage: Option<&'static Stage>,
-    /// What the file contains besides the recipe.
-    pub content: Content,
+    /// The picture or the film, whose shape matches the recipe; `None` for a scene file.
+    pub saved: Option<Saved>,
 }
 
 /// Opens a scene file (its name ends in .toml), a picture or a film.
@@ -158,20 +139,17 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let recipe = file::load(path)?;
         let job = job_of(path, &recipe)?;
-        return Ok(Opened { path: path.to_owned(), recipe, job, stage: None, content: Content::Scene });
+        return Ok(Opened { path: path.to_owned(), recipe, job, saved: None });
     }
     let saved = Saved::read(path)?;
     let recipe = saved.recipe()?;
     let job = job_of(path, &recipe)?;
-    let (stage, samples) = (saved.stage(), saved.samples());
-    let content = saved.into_film().map_or(Content::Picture { samples }, Content::Film);
-    if let Content::Film(saved) = &content
-        && !job.fits(&saved.film)
-    {
-        let what = "is a film that does not have the size that its recipe says; render it again".to_owned();
-        return Err(OpenError::Recipe { path: path.to_owned(), what });
+    if saved.film.as_ref().is_some_and(|film| !job.fits(film)) {
+        let path = path.shown();
+        let what = "is a film that does not have the size that its recipe says; render it again";
+        return Err(anyhow!("{path} {what}").into());
     }
-    Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
+    Ok(Opened { path: path.to_owned(), recipe, job, saved: Some(saved) })
 }
 
 /// Opens a film and returns its job and the film.
@@ -180,13 +158,11 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
 /// [`OpenError`]; pictures and scene files are refused.
 pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
     checkpoint::read_head(path).map_err(OpenError::Film)?;
-    match open(path)? {
-        Opened { job, content: Content::Film(film), .. } => Ok((job, film)),
-        _ => {
-            let reason = checkpoint::load(path).err();
-            Err(OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() })))
-        }
-    }
+    let Opened { job, saved, .. } = open(path)?;
+    saved.and_then(Saved::into_film).map(|film| (job, film)).ok_or_else(|| {
+        let reason = checkpoint::load(path).err();
+        OpenError::Film(reason.unwrap_or_else(|| CheckpointError::NotFilm { path: path.to_owned() }))
+    })
 }
 
 /// Reads the film of `job` in order to resume it.
@@ -209,17 +185,23 @@ pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
 }
 
 fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
-    recipe.job().map_err(|reason| {
-        let what = format!("has a recipe that cannot be rendered: {reason}");
-        OpenError::Recipe { path: path.to_owned(), what }
-    })
+    let path = path.shown();
+    Ok(recipe.job().map_err(|reason| anyhow!("{path} has a recipe that cannot be rendered: {reason}"))?)
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {
-    match difference(mine, theirs) {
-        Some(difference) => Err(OpenError::OtherPicture { path: path.to_owned(), difference }),
-        None => Ok(()),
-    }
+    let refused = |difference| Err(OpenError::OtherPicture { path: path.to_owned(), difference });
+    difference(mine, theirs).map_or(Ok(()), refused)
+}
+
+/// Whether the file is the whole frame that `recipe` describes, made by `software`, the program and its version.
+pub fn is_whole_frame(path: &Path, recipe: &Recipe, software: &str) -> bool {
+    let samples = recipe.samples_per_pixel.to_string();
+    read_description(path).is_ok_and(|found| {
+        found.recipe() == file::to_picture_toml(recipe)
+            && found.get(key::SAMPLES) == Some(&samples)
+            && found.get(key::SOFTWARE) == Some(software)
+    }) && read_picture(path, None).is_ok()
 }
 
 #[cfg(test)]

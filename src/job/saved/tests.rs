@@ -30,15 +30,16 @@ fn film_opens_with_samples_and_description() {
         [(key::SCENE, "balls"), (key::STAGE, "metal"), (key::SECONDS, "2.5"), (key::BACKEND, "cpu")];
     let path = written(&directory, "a.exr", &entries);
     let opened = open(&path).unwrap();
-    assert_eq!((opened.recipe.name.as_str(), opened.stage.map(|stage| stage.id)), ("balls", Some("metal")));
-    let Content::Film(read) = opened.content else { panic!("no film") };
+    let saved = opened.saved.unwrap();
+    assert_eq!((opened.recipe.name.as_str(), saved.stage().map(|stage| stage.id)), ("balls", Some("metal")));
+    let read = saved.into_film().unwrap();
     assert_eq!(read.film, film(&[]).1);
     assert_eq!((read.seconds, read.backend.as_deref()), (Some(2.5), Some("cpu")));
     assert_eq!(opened.job, film(&[]).0.job().unwrap());
     // The recipe's name does not matter.
     let renamed = directory.path().join("renamed.png");
     std::fs::rename(&path, &renamed).unwrap();
-    assert!(matches!(open(&renamed).unwrap().content, Content::Film(_)));
+    assert!(open(&renamed).unwrap().saved.unwrap().film.is_some());
 }
 
 #[test]
@@ -47,8 +48,9 @@ fn picture_has_samples_and_is_named_after_its_file() {
     for (entry, samples) in [("7", Some(7)), ("0", None), ("many", None)] {
         let path = written(&directory, "plain.png", &[(key::SAMPLES, entry)]);
         let opened = open(&path).unwrap();
-        let Content::Picture { samples: found } = opened.content else { panic!("{entry}") };
-        assert_eq!((found, opened.recipe.name.as_str()), (samples, "plain"));
+        let saved = opened.saved.unwrap();
+        assert!(saved.film.is_none(), "{entry}");
+        assert_eq!((saved.samples(), opened.recipe.name.as_str()), (samples, "plain"));
         assert!(matches!(open_film(&path), Err(OpenError::Film(CheckpointError::NotExr { .. }))));
     }
 }
@@ -79,9 +81,9 @@ fn film_that_does_not_fit_its_recipe_is_refused() {
         recipe.settings.estimate_error = estimate_error;
         let description = Description::new(&file::to_toml(&recipe));
         write_image(&path, &film, recipe.rules.transfer, &description).unwrap();
-        assert!(matches!(open(&path), Err(OpenError::Recipe { .. })));
+        assert!(matches!(open(&path), Err(OpenError::Recipe(_))));
         let job = recipe.job().unwrap();
-        assert!(matches!(resume(&path, &job), Err(OpenError::Recipe { .. })));
+        assert!(matches!(resume(&path, &job), Err(OpenError::Recipe(_))));
     }
 }
 
@@ -96,7 +98,7 @@ fn refusal_depends_on_the_kind_of_file() {
     std::fs::copy(at("plain.exr"), at("plain.png")).unwrap();
     let error = |name: &str| open(&at(name)).unwrap_err();
     for name in ["text.exr", "plain.exr", "text.png", "plain.png"] {
-        assert!(matches!(error(name), OpenError::Picture(OutputError::NoDescription { .. })), "{name}");
+        assert!(matches!(error(name), OpenError::Picture(_)), "{name}");
     }
     let no_film = |name: &str| match open_film(&at(name)).unwrap_err() {
         OpenError::Film(error) => error,
@@ -107,7 +109,40 @@ fn refusal_depends_on_the_kind_of_file() {
     assert!(matches!(error("missing.exr"), OpenError::Film(CheckpointError::Input(_))));
     // A picture that has a description is a picture by any name, and a scene file by any case.
     std::fs::rename(written(&directory, "a.png", &[]), at("b.exr")).unwrap();
-    assert!(matches!(open(&at("b.exr")).unwrap().content, Content::Picture { .. }));
+    assert!(open(&at("b.exr")).unwrap().saved.unwrap().film.is_none());
     std::fs::write(at("scene.TOML"), file::to_toml(&film(&[]).0)).unwrap();
-    assert!(matches!(open(&at("scene.TOML")).unwrap().content, Content::Scene));
+    assert!(open(&at("scene.TOML")).unwrap().saved.is_none());
+}
+
+#[test]
+fn frame_is_whole_only_if_all_inputs_match() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("frame.png");
+    let mut recipe = Recipe::builtin("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+
+    let mut film = recipe.job().unwrap().new_film();
+    film.record(0..2, 0).unwrap();
+    let mut description = Description::new(&file::to_picture_toml(&recipe));
+    description.set(key::SOFTWARE, "Weekender 1");
+    description.set(key::SAMPLES, 2);
+    let write =
+        |description: &Description| write_image(&path, &film, recipe.rules.transfer, description).unwrap();
+    write(&description);
+    assert!(is_whole_frame(&path, &recipe, "Weekender 1"));
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 2"));
+    let mut other = recipe.clone();
+    other.settings.seed = 5;
+    assert!(!is_whole_frame(&path, &other, "Weekender 1"));
+    description.set(key::SAMPLES, 1);
+    write(&description);
+    assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+    description.set(key::SAMPLES, 2);
+    write(&description);
+    let whole = std::fs::read(&path).unwrap();
+    for damaged in [&whole[..whole.len() - 30], b"no picture"] {
+        std::fs::write(&path, damaged).unwrap();
+        assert!(!is_whole_frame(&path, &recipe, "Weekender 1"));
+    }
 }

@@ -20,28 +20,37 @@ impl Bench<'_> {
         let pairs = self.pairs();
         self.expect_runs(pairs.len() * scenes.len() * (1 + self.options.runs));
         for mut pair in pairs {
-            let skipped = pair.iter_mut().find_map(|candidate| candidate.start().err());
-            let skipped = skipped.map(|error| error.to_string());
-            if let Some(info) = pair[0].info().filter(|info| info.name == "gpu") {
-                pair[0].name = info.device;
-            }
-            let mut device = DeviceFigures { device: pair[0].name.clone(), rows: Vec::new(), skipped };
-            for scene in scenes.iter().take_while(|_| device.skipped.is_none()) {
-                self.progress.at(&format!("{}: {}", scene.name, device.device), 0.0);
-                let row = self.gain(scene, &mut pair);
-                if !self.is_cancelled() || row.gain.is_some() {
-                    device.rows.push(row);
-                }
-                if self.is_cancelled() {
-                    break;
-                }
-            }
+            let device = self.device(scenes, &mut pair);
             self.figures.features.push(device);
             if self.is_cancelled() {
                 break;
             }
         }
         check(&self.figures.features)
+    }
+
+    fn device(&mut self, scenes: &[BenchScene], pair: &mut Pair) -> DeviceFigures {
+        let skipped = pair.iter_mut().find_map(|candidate| candidate.start().err());
+        if let Some(info) = pair[0].info().filter(|info| info.name == "gpu") {
+            pair[0].name = info.device;
+        }
+        let (device, skipped) = (pair[0].name.clone(), skipped.map(|error| error.to_string()));
+        let mut rows = Vec::new();
+        for scene in scenes.iter().take_while(|_| skipped.is_none()) {
+            self.progress.at(&format!("{}: {device}", scene.name));
+            match self.gain(scene, pair) {
+                Ok(row) => rows.push(row),
+                Err(Stop::Cancelled) => break,
+                Err(Stop::Failed(reason)) => {
+                    rows.push(GainRow {
+                        name: scene.name.clone(),
+                        skipped: Some(reason),
+                        ..GainRow::default()
+                    });
+                }
+            }
+        }
+        DeviceFigures { device, rows, skipped }
     }
 
     fn pairs(&self) -> Vec<Pair> {
@@ -64,38 +73,24 @@ impl Bench<'_> {
         pairs
     }
 
-    fn gain(&mut self, scene: &BenchScene, pair: &mut Pair) -> GainRow {
-        let settings = scene.job.settings();
+    fn gain(&mut self, scene: &BenchScene, [own, general]: &mut Pair) -> Result<GainRow, Stop> {
+        let (job, cancel, settings) = (&scene.job, self.cancel, scene.job.settings());
+        let contents = |candidate: &mut Candidate| -> Result<_, Stop> {
+            let renderer = candidate.start()?;
+            renderer.prepare(job, cancel)?;
+            Ok(renderer.kernel())
+        };
+        let (kernel, never) = (contents(own)?, contents(general)?.left_out);
+        let samples = self.affordable_samples(own, job, scene.samples)?;
         let mut row = GainRow {
             name: scene.name.clone(),
             width: settings.width,
             height: settings.height,
+            samples_per_pixel: samples,
+            kernel: kernel.present,
+            left_out: kernel.left_out.into_iter().filter(|word| !never.contains(word)).collect(),
             ..GainRow::default()
         };
-        if let Err(Stop::Failed(reason)) = self.pairs_of_runs(scene, pair, &mut row) {
-            row.skipped = Some(reason);
-        }
-        row.sum_up();
-        row
-    }
-
-    fn pairs_of_runs(
-        &mut self,
-        scene: &BenchScene,
-        [own, general]: &mut Pair,
-        row: &mut GainRow,
-    ) -> Result<(), Stop> {
-        let (job, cancel) = (&scene.job, self.cancel);
-        let contents = |candidate: &mut Candidate| -> Result<_, Stop> {
-            let renderer = candidate.start()?;
-            renderer.prepare(job, cancel)?;
-            Ok(renderer.kernel_contents())
-        };
-        let (kernel, never) = (contents(own)?, contents(general)?.left_out);
-        row.kernel = kernel.present;
-        row.left_out = kernel.left_out.into_iter().filter(|word| !never.contains(word)).collect();
-        row.samples_per_pixel = self.affordable_samples(own, job, scene.samples)?;
-        let samples = row.samples_per_pixel;
         general.trace(job, samples, cancel)?;
         self.progress.finished(1.0);
         for turn in 0..self.options.runs {
@@ -108,7 +103,8 @@ impl Bench<'_> {
             row.same_bits = Some(row.same_bits != Some(false) && of_own.film == of_general.film);
             self.progress.finished(1.0);
         }
-        Ok(())
+        row.sum_up();
+        Ok(row)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The measured figures, as they appear in the JSON.
 
 use super::super::{Candidate, Traced};
-use crate::job::render::RenderJob;
+use crate::job::render::{RenderJob, RenderSettings};
 use crate::numbers::statistics::median;
 use serde::Serialize;
 
@@ -19,11 +19,9 @@ pub struct BenchFigures {
 #[derive(Serialize)]
 pub struct SceneFigures {
     pub scene: String,
-    pub width: u32,
-    pub height: u32,
-    pub max_depth: u32,
     /// The C program always uses independent numbers, as the book does.
-    pub sampler: &'static str,
+    #[serde(flatten)]
+    pub settings: RenderSettings,
     pub spheres: usize,
     /// Rows in the table's order.
     pub rows: Vec<Row>,
@@ -144,11 +142,6 @@ impl Spread {
     fn of_speeds(runs: &[Run], count: fn(&Run) -> u64) -> Option<Self> {
         Spread::of(runs.iter().map(|run| count(run) as f64 / run.seconds))
     }
-
-    /// The range as a share of the median.
-    pub fn share(self) -> f64 {
-        (self.max - self.min) / self.median
-    }
 }
 
 impl Run {
@@ -202,17 +195,8 @@ impl SceneFigures {
         for row in &mut rows {
             row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
-        let settings = job.settings();
-        SceneFigures {
-            scene: scene.to_owned(),
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name(),
-            spheres: job.scene().spheres.len(),
-            rows,
-            denoising: None,
-        }
+        let (scene, spheres) = (scene.to_owned(), job.scene().spheres.len());
+        SceneFigures { scene, settings: *job.settings(), spheres, rows, denoising: None }
     }
 }
 

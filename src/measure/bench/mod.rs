@@ -10,23 +10,20 @@ use super::table::counted;
 use super::{Candidate, Source, Stop, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
-use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::cli::{BenchOptions, BenchScene};
 use crate::denoise;
 use crate::job::render::RenderJob;
-use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// System load above which the figures are doubtful.
 const LOAD_LIMIT: f64 = 0.5;
-
-/// Figures are doubtful if the range of the runs exceeds this share of their median.
-const SPREAD_LIMIT: f64 = 0.1;
 
 /// How long to keep a GPU busy before each measured run.
 const WAKING: Duration = Duration::from_millis(300);
@@ -41,8 +38,8 @@ const WARM_UP_SECONDS: f64 = 0.2;
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let scenes = options.scenes().map_err(Failure::Input)?;
     let levels = options.levels();
-    let json = &options.json;
-    check_outputs(json.as_ref(), None).map_err(Failure::Input)?;
+    let json = options.json.as_deref();
+    options.check().map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
     let progress = Progress::new(options.progress, 1.0);
@@ -57,13 +54,17 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     bench.progress.clear();
     let mut figures = bench.figures;
     figures.interrupted = interrupt.is_set();
-    figures.warnings = warnings(&figures, machine.load_at_start);
-    let written = write(json.as_ref(), &machine, &figures);
+    figures.warnings.extend(machine.load_at_start.filter(|load| *load > LOAD_LIMIT).map(|load| {
+        format!(
+            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
+        )
+    }));
+    let written = write(json, &machine, &figures);
     measured.and(written).map_err(Failure::Run)?;
     Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
-fn write(json: Option<&JsonTarget>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
+fn write(json: Option<&Path>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
     // Write the file even if printing failed.
     let printed = terminal::print_beside(json, &text::text(machine, figures));
     if let Some(target) = json {
@@ -167,7 +168,7 @@ impl Bench<'_> {
         'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
-                    self.progress.at(&format!("{scene}: {}", row.name), 0.0);
+                    self.progress.at(&format!("{scene}: {}", row.name));
                     let outcome = match turn {
                         0 => self
                             .affordable_samples(candidate, job, samples)
@@ -234,45 +235,9 @@ fn affordable(samples: u64, least: u64, seconds_per_sample: f64, limit_seconds: 
     chosen
 }
 
-fn warnings(figures: &BenchFigures, load: Option<f64>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(load) = load.filter(|load| *load > LOAD_LIMIT) {
-        warnings.push(format!(
-            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
-        ));
-    }
-    let spreads = spreads(figures);
-    let wide = || spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
-    if let Some((name, share)) = wide().max_by(|a, b| a.1.total_cmp(&b.1)) {
-        warnings.push(format!(
-            "in {} of {} rows, the runs differ by more than {:.0} % of their median; the largest difference is {:.0} % in {name}",
-            wide().count(),
-            spreads.len(),
-            100.0 * SPREAD_LIMIT,
-            100.0 * share
-        ));
-    }
-    warnings
-}
-
-/// The name of each measured row, with the range of its runs as a share of their median.
-fn spreads(figures: &BenchFigures) -> Vec<(String, f64)> {
-    let mut found: Vec<(String, Option<Spread>)> = Vec::new();
-    for scene in &figures.scenes {
-        let name = |row: &Row| format!("{}, {}", scene.scene, row.name);
-        found.extend(scene.rows.iter().map(|row| (name(row), row.paths_per_second)));
-    }
-    for device in &figures.features {
-        let name = |scene: &str| format!("{scene}, {}", device.device);
-        found.extend(device.rows.iter().map(|row| (name(&row.name), row.gain)));
-    }
-    found.into_iter().filter_map(|(name, spread)| Some((name, spread?.share()))).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use figures::{DeviceFigures, GainRow};
 
     #[test]
     fn samples_fit_time_limit() {
@@ -280,27 +245,5 @@ mod tests {
             assert_eq!(affordable(100, 2, seconds_per_sample, 1.04), expected, "{seconds_per_sample}");
         }
         assert_eq!(affordable(1, 2, 9.0, 1.0), 1);
-    }
-
-    #[test]
-    fn load_and_spread_warn() {
-        let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
-        let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
-        let rows = vec![
-            row("steady", spread(95.0, 105.0)),
-            row("first", spread(90.0, 110.0)),
-            row("second", spread(80.0, 105.0)),
-            row("skipped", None),
-        ];
-        let features = vec![DeviceFigures { device: "avx2".to_owned(), rows, skipped: None }];
-        let figures = BenchFigures { features, ..BenchFigures::default() };
-        let found = warnings(&figures, Some(LOAD_LIMIT));
-        assert_eq!(found.len(), 1);
-        assert!(
-            found[0].contains("in 2 of 3 rows") && found[0].contains("25 % in second, avx2"),
-            "{found:?}"
-        );
-        assert!(warnings(&figures, Some(0.75))[0].contains("load 0.75"));
-        assert_eq!(warnings(&BenchFigures::default(), None), [""; 0]);
     }
 }

@@ -3,6 +3,7 @@
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
 use super::figures::{BenchFigures, Denoising, DeviceFigures, GainRow, Row, SceneFigures, Spread};
+use crate::job::render::RenderSettings;
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
@@ -24,8 +25,9 @@ pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
 }
 
 fn scene(scene: &SceneFigures) -> String {
-    let SceneFigures { scene: name, width, height, max_depth, sampler, spheres, rows, denoising } = scene;
-    let spheres = counted(*spheres, "sphere");
+    let SceneFigures { scene: name, settings, spheres, rows, denoising } = scene;
+    let RenderSettings { width, height, max_depth, sampler, .. } = settings;
+    let (sampler, spheres) = (sampler.name(), counted(*spheres, "sphere"));
     let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
     let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
     format!(
@@ -77,7 +79,7 @@ fn device(device: &DeviceFigures) -> String {
 }
 
 fn gain_row(row: &GainRow) -> String {
-    if let (Some(reason), None) = (&row.skipped, row.gain) {
+    if let Some(reason) = &row.skipped {
         return format!("{} skipped: {reason}\n", row.name);
     }
     let gain = |part: fn(Spread) -> f64| or_dash(row.gain, |spread| format!("{:.2}", part(spread)));

@@ -12,12 +12,12 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 use super::machine::Machine;
 use super::progress::Progress;
 use super::{Candidate, Source, Stop, write_json};
+use crate::cli::ReportOptions;
 use crate::cli::terminal::print;
-use crate::cli::{JsonTarget, ReportOptions};
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
-use crate::job::render::{RenderJob, RenderSettings, SamplerKind, Stats};
+use crate::job::render::{RenderJob, SamplerKind, Stats};
 use crate::numbers::chart;
 use crate::system::console;
 use crate::system::failure::Failure;
@@ -66,6 +66,7 @@ struct Report<'a> {
 impl<'a> Report<'a> {
     /// Checks everything that could fail later.
     fn open(options: &'a ReportOptions) -> Result<Self> {
+        options.check()?;
         let (scenes, candidates) = (options.scenes()?, candidates(options)?);
         make_directory(&options.out)?;
         check_writable(&options.out.join("report.json"))?;
@@ -96,8 +97,8 @@ impl<'a> Report<'a> {
     }
 
     fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
-        self.progress.at(&format!("reference of {}", recipe.name), 0.0);
-        let job = reference::job_of(recipe).map_err(anyhow::Error::from)?;
+        self.progress.at(&format!("reference of {}", recipe.name));
+        let job = reference::job_of(recipe, SamplerKind::Sobol, reference::SEED)?;
         let mut exact = Candidate::backend("reference", self.options.reference()?);
         let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
         self.progress.finished(EXPECTED_SECONDS);
@@ -117,11 +118,11 @@ impl<'a> Report<'a> {
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
         let seconds = self.options.time_limit / f64::from(self.options.seeds);
-        self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler), 0.0);
-        let limits = Limits { seconds, samples: self.options.max_samples };
-        let job = job(recipe, sampler, seed)?;
+        self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler));
+        let job = reference::job_of(recipe, sampler, seed)?;
+        let limit = self.options.max_samples;
         let (about, prepare_seconds, [raw, denoised]) =
-            measured(candidate, &job, reference, limits, self.interrupt.flag())?;
+            measured(candidate, &job, reference, seconds, limit, self.interrupt.flag())?;
         let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
         self.data.runs.push(with(curve.clone(), raw));
         // One denoised curve for each backend suffices.
@@ -135,7 +136,7 @@ impl<'a> Report<'a> {
     fn write(&self) -> Result<()> {
         let (out, targets) = (&self.options.out, self.options.targets());
         let findings = Findings::of(&self.data, &targets);
-        write_json(&JsonTarget::File(out.join("report.json")), &self.machine, &findings)?;
+        write_json(&out.join("report.json"), &self.machine, &findings)?;
         write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
         let figure = figure::figure(&self.data, &findings.curves, targets[0]);
         write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;
@@ -175,13 +176,6 @@ fn settings(options: &ReportOptions) -> Settings {
     }
 }
 
-#[derive(Clone, Copy)]
-struct Limits {
-    seconds: f64,
-    /// Samples per pixel.
-    samples: u64,
-}
-
 /// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
 /// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the backend's
 /// name, the preparation time in seconds, and the figures raw and denoised.
@@ -189,7 +183,8 @@ fn measured(
     candidate: &mut Candidate,
     job: &RenderJob,
     reference: &ReferencePicture,
-    limits: Limits,
+    seconds: f64,
+    most_samples: u64,
     cancel: &AtomicBool,
 ) -> Result<(String, f64, [Vec<Measured>; 2]), Stop> {
     let begin = Instant::now();
@@ -205,7 +200,7 @@ fn measured(
     let (mut total, mut wall, [mut raw, mut denoised]) =
         (Stats::default(), Duration::ZERO, [const { Vec::new() }; 2]);
     let mut samples = 1;
-    while samples <= limits.samples.max(2) {
+    while samples <= most_samples.max(2) {
         let begin = Instant::now();
         let stats = candidate.add(job, film.sample_count()..samples, &mut film, cancel)?;
         // Starting the C program and reading its picture do not count as rendering.
@@ -231,7 +226,7 @@ fn measured(
             denoised.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
         }
         // Assumes that twice the samples take twice as long.
-        if samples >= 2 && 2.0 * wall.as_secs_f64() > limits.seconds {
+        if samples >= 2 && 2.0 * wall.as_secs_f64() > seconds {
             break;
         }
         samples *= 2;
@@ -247,11 +242,6 @@ pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
 /// The chart of a report, with the times to an error of `target` marked.
 pub fn chart(data: &Data, target: f64) -> chart::Figure {
     figure::figure(data, &curves(data, &[target]), target)
-}
-
-fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
-    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
-    Ok(Recipe { settings, ..recipe.clone() }.job()?)
 }
 
 #[cfg(test)]
@@ -290,13 +280,12 @@ mod tests {
     fn points_accumulate_until_limit() {
         let go_on = AtomicBool::new(false);
         let recipe = small();
-        let job = job(&recipe, SamplerKind::Sobol, 3).unwrap();
+        let job = reference::job_of(&recipe, SamplerKind::Sobol, 3).unwrap();
         let film_of = |samples| Candidate::backend("", cpu()).trace(&job, samples, &go_on).unwrap().film;
         let reference = ReferencePicture::of_film("metals", "", &film_of(64)).unwrap();
         let mut candidate = Candidate::backend("cpu", cpu());
-        let mut steps = |seconds, samples| {
-            measured(&mut candidate, &job, &reference, Limits { seconds, samples }, &go_on).unwrap()
-        };
+        let mut steps =
+            |seconds, samples| measured(&mut candidate, &job, &reference, seconds, samples, &go_on).unwrap();
         let (about, _, [points, denoised]) = steps(1e9, 5);
         assert!(about.starts_with("cpu ") && about.ends_with(" 1 threads"), "{about}");
         assert_eq!(points.iter().map(|point| point.samples).collect::<Vec<_>>(), [1, 2, 4]);
@@ -313,8 +302,7 @@ mod tests {
         );
         assert!(points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{points:?}");
         assert_eq!(steps(1e-9, 64).2[0].len(), 2, "two samples are always taken");
-        let limits = Limits { seconds: 1e9, samples: 64 };
-        let cancelled = measured(&mut candidate, &job, &reference, limits, &AtomicBool::new(true));
+        let cancelled = measured(&mut candidate, &job, &reference, 1e9, 64, &AtomicBool::new(true));
         assert_eq!(cancelled.err(), Some(Stop::Cancelled));
     }
 }

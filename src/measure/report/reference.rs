@@ -3,11 +3,11 @@
 use super::data::ReferenceUsed;
 use crate::film::Film;
 use crate::job::recipe::Recipe;
-use crate::job::render::{JobError, RenderJob, RenderSettings, SamplerKind};
+use crate::job::render::{RenderJob, RenderSettings, SamplerKind};
 use anyhow::{Result, bail};
 
 /// Seed of the references. No measured picture uses it, so none shares random numbers with its reference.
-const SEED: u32 = 0x5EED_0000;
+pub const SEED: u32 = 0x5EED_0000;
 
 /// A picture that errors are measured against.
 pub struct ReferencePicture {
@@ -62,11 +62,10 @@ pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
     (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
-/// The job of a scene's reference.
-pub fn job_of(recipe: &Recipe) -> Result<RenderJob, JobError> {
-    let settings =
-        RenderSettings { seed: SEED, sampler: SamplerKind::Sobol, estimate_error: true, ..recipe.settings };
-    Recipe { settings, ..recipe.clone() }.job()
+/// The job of a reference, or of a picture that is compared with one.
+pub fn job_of(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
+    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
+    Ok(Recipe { settings, ..recipe.clone() }.job()?)
 }
 
 #[cfg(test)]

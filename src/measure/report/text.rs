@@ -1,6 +1,6 @@
 //! `report.md`.
 
-use super::super::table::{markdown_table, or_dash};
+use super::super::table::or_dash;
 use super::summary::{Calibration, CurveSummary, Findings, TOLERANCE, distinct};
 use crate::numbers::statistics::fit::Crossing;
 
@@ -110,6 +110,23 @@ fn calibration(rows: &[Calibration]) -> String {
         deviations().fold(0.0, f64::max),
         markdown_table(&heads, 3, cells)
     )
+}
+
+fn markdown_row(cells: &[impl AsRef<str>]) -> String {
+    let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
+    format!("| {} |\n", cells.join(" | "))
+}
+
+/// A Markdown table. Columns after the first `texts` are right-aligned.
+fn markdown_table<H: AsRef<str>, C: AsRef<str>>(
+    heads: &[H],
+    texts: usize,
+    rows: impl IntoIterator<Item = Vec<C>>,
+) -> String {
+    let rule: Vec<&str> =
+        (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }).collect();
+    let rows = rows.into_iter().map(|cells| markdown_row(&cells)).collect::<String>();
+    markdown_row(heads) + &markdown_row(&rule) + &rows
 }
 
 /// Three significant digits.

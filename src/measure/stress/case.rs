@@ -54,7 +54,7 @@ pub struct Watch {
 /// Size of a case's picture in the window, pixels.
 const SHOWN_SIZE: [u32; 2] = [600, 400];
 
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Case {
     /// The family's id and a name within the family: `copies/110`.
     pub id: String,
@@ -73,12 +73,6 @@ pub struct Case {
     pub watch: Option<Watch>,
     /// Whether `cargo test` runs it.
     pub is_quick: bool,
-}
-
-impl fmt::Debug for Case {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Case").field("id", &self.id).finish_non_exhaustive()
-    }
 }
 
 impl PartialEq for Case {
@@ -149,12 +143,7 @@ impl Case {
         Case { watch: Some(Watch { title, look_for }), ..self }
     }
 
-    /// Includes the case in `cargo test`.
-    #[must_use]
-    pub fn quick(self) -> Self {
-        self.quick_if(true)
-    }
-
+    /// Whether `cargo test` runs the case.
     #[must_use]
     pub fn quick_if(self, is_quick: bool) -> Self {
         Case { is_quick, ..self }

@@ -13,19 +13,31 @@ const PAIRED_SHARE: f64 = 0.5;
 /// Pixel difference that rounding may cause without noise.
 const PAIRED_FLOOR: f64 = 1e-4;
 
-/// The difference of two films of the same samples.
+/// The difference of a picture from the expected result, linear radiance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Paired {
-    /// Mean difference over pixels and channels, linear radiance.
+pub struct Difference {
+    /// Mean over pixels and channels.
     pub bias: f64,
-    /// Standard error of the bias, from the spread over the pixels.
+    /// Standard error of the bias.
     pub bias_deviation: f64,
-    /// Root mean square of the pixels' differences, linear radiance.
+    /// Root mean square over pixels; 0 if the expected result is a closed form.
     pub rms: f64,
 }
 
-impl Paired {
-    /// `film` minus `exact`, pixel by pixel. Both must have the same size.
+impl Difference {
+    /// From the radiance of every sample, linear RGB: that of the worst channel.
+    pub fn from_every(level: &Level, value: [f64; 3]) -> Self {
+        let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
+        let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
+        Difference { bias: farther(farther(red, green), blue), ..Difference::default() }
+    }
+
+    /// From the mean over pixels and channels.
+    pub fn from_mean(level: &Level, value: f64) -> Self {
+        Difference { bias: level.grey() - value, bias_deviation: level.deviation, rms: 0.0 }
+    }
+
+    /// From a film of the same samples, pixel by pixel. Both must have the same size.
     pub fn of(film: &Film, exact: &Film) -> Self {
         let count = pixel_count(film);
         let (mut sum, mut sum_of_squares, mut squares) = (0.0, 0.0, 0.0);
@@ -40,7 +52,7 @@ impl Paired {
         let count = count as f64;
         let bias = sum / count;
         let variance = (sum_of_squares / count - bias * bias).max(0.0);
-        Paired {
+        Difference {
             bias,
             // A single pixel has no spread, so use its difference.
             bias_deviation: if count > 1.0 { (variance / (count - 1.0)).sqrt() } else { bias.abs() },
@@ -143,50 +155,19 @@ impl Verdict {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-pub enum Against {
-    /// The radiance of every sample, linear RGB.
-    Every([f64; 3]),
-    /// The mean over pixels and channels, linear radiance.
-    Mean(f64),
-    /// The difference from a picture of the same samples.
-    Picture(Paired),
-}
-
-/// Distance of the mean from the expected one, linear radiance; of the worst channel if each is known.
-pub fn offset(level: &Level, against: Against) -> f64 {
-    match against {
-        Against::Every(value) => {
-            let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
-            let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
-            farther(farther(red, green), blue)
-        }
-        Against::Mean(value) => level.grey() - value,
-        Against::Picture(paired) => paired.bias,
-    }
-}
-
-/// Judges a picture by its radiance.
-pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> Verdict {
-    let off = offset(level, against);
-    let deviation = match against {
-        Against::Every(_) => 0.0,
-        Against::Mean(_) => level.deviation,
-        Against::Picture(paired) => paired.bias_deviation,
-    };
-    let allowed = tolerance + DEVIATIONS * deviation;
+/// Judges a picture by its difference from the expected result.
+pub fn judge(level: &Level, difference: &Difference, tolerance: f64, rejected: u64) -> Verdict {
+    let Difference { bias, bias_deviation, rms } = *difference;
+    let allowed = tolerance + DEVIATIONS * bias_deviation;
     let allowed_rms = (PAIRED_SHARE * level.noise).max(PAIRED_FLOOR);
-    match against {
-        _ if rejected > 0 => {
-            Verdict::Wrong(format!("rejected samples (NaN, infinite or negative): {rejected}"))
-        }
-        _ if off.is_nan() || off.abs() > allowed => {
-            Verdict::Wrong(format!("off by {off:+.1e}; at most {allowed:.1e} is allowed"))
-        }
-        Against::Picture(Paired { rms, .. }) if rms > allowed_rms => {
-            Verdict::Wrong(format!("pixels are off by {rms:.1e} RMS; at most {allowed_rms:.1e} is allowed"))
-        }
-        _ => Verdict::Right,
+    if rejected > 0 {
+        Verdict::Wrong(format!("rejected samples (NaN, infinite or negative): {rejected}"))
+    } else if bias.is_nan() || bias.abs() > allowed {
+        Verdict::Wrong(format!("off by {bias:+.1e}; at most {allowed:.1e} is allowed"))
+    } else if rms > allowed_rms {
+        Verdict::Wrong(format!("pixels are off by {rms:.1e} RMS; at most {allowed_rms:.1e} is allowed"))
+    } else {
+        Verdict::Right
     }
 }
 
@@ -232,29 +213,29 @@ mod tests {
         let film = row(2, [&pixels, &pixels]);
         let close = |x: f64, y: f64| (x - y / 16.0).abs() < 1e-6;
         // The pixels differ by 1, 2, 3 and 6 sixteenths.
-        let pair = Paired::of(&film, &exact);
+        let pair = Difference::of(&film, &exact);
         assert!(close(pair.bias, 3.0) && close(pair.bias_deviation, (3.5_f64 / 3.0).sqrt()), "{pair:?}");
         assert!(close(pair.rms, 12.5_f64.sqrt()), "{pair:?}");
         let [one, other] = [[[1.0, 2.0, 6.0]], [[1.0; 3]]].map(|pixel| row(2, [&pixel, &pixel]));
-        let pair = Paired::of(&other, &one);
+        let pair = Difference::of(&other, &one);
         assert!(close(pair.bias, -2.0) && close(pair.bias_deviation, 2.0), "{pair:?}");
         assert!(close(pair.rms, (26.0_f64 / 3.0).sqrt()), "{pair:?}");
     }
 
     #[test]
     fn worst_channel_counts() {
-        let every = Against::Every([0.5, 0.25, 0.75]);
+        let from = |mean| Difference::from_every(&Level { mean, ..Level::default() }, [0.5, 0.25, 0.75]);
         for (mean, off) in [
             ([0.75, 0.5, 0.625], 0.25),
             ([0.375, -0.25, 0.875], -0.5),
             ([-0.5, 0.25, 0.75], -1.0),
             ([0.5, 0.25, 0.75], 0.0),
         ] {
-            assert_eq!(offset(&Level { mean, ..Level::default() }, every), off, "{mean:?}");
+            assert_eq!(from(mean).bias, off, "{mean:?}");
         }
         for mean in [[f64::NAN, 0.25, 0.75], [0.5, 0.25, f64::NAN]] {
-            let level = Level { mean, ..Level::default() };
-            assert!(offset(&level, every).is_nan() && !judge(&level, every, 1.0, 0).is_right());
+            let difference = from(mean);
+            assert!(difference.bias.is_nan() && !judge(&Level::default(), &difference, 1.0, 0).is_right());
         }
     }
 
@@ -263,18 +244,20 @@ mod tests {
     fn limits_lie_where_they_should() {
         let level = |deviation, noise| Level { mean: [1.0; 3], deviation, noise };
         let (quiet, noisy) = (level(0.0, 0.0), level(1e-3, 0.1));
-        let picture = |bias_deviation, bias, rms| Against::Picture(Paired { bias, bias_deviation, rms });
+        let every = |value| Difference::from_every(&quiet, [value; 3]);
+        let mean = |value| Difference::from_mean(&noisy, value);
+        let picture = |bias_deviation, bias, rms| Difference { bias, bias_deviation, rms };
         for (level, within, beyond) in [
-            (quiet, Against::Every([1.0 - 0.99e-6; 3]), Against::Every([1.0 - 1.01e-6; 3])),
-            (noisy, Against::Mean(1.0039), Against::Mean(1.0041)),
-            (noisy, Against::Mean(0.9961), Against::Mean(0.9959)),
+            (quiet, every(1.0 - 0.99e-6), every(1.0 - 1.01e-6)),
+            (noisy, mean(1.0039), mean(1.0041)),
+            (noisy, mean(0.9961), mean(0.9959)),
             (noisy, picture(1e-4, 3.9e-4, 0.0), picture(1e-4, 4.1e-4, 0.0)),
             (noisy, picture(0.0, 0.0, 0.049), picture(0.0, 0.0, 0.051)),
             (quiet, picture(0.0, 0.0, 0.99e-4), picture(0.0, 0.0, 1.01e-4)),
         ] {
-            assert!(judge(&level, within, 1e-6, 0).is_right(), "{within:?}");
-            assert!(!judge(&level, beyond, 1e-6, 0).is_right(), "{beyond:?}");
-            assert!(!judge(&level, within, 1e-6, 1).is_right(), "rejected");
+            assert!(judge(&level, &within, 1e-6, 0).is_right(), "{within:?}");
+            assert!(!judge(&level, &beyond, 1e-6, 0).is_right(), "{beyond:?}");
+            assert!(!judge(&level, &within, 1e-6, 1).is_right(), "rejected");
         }
     }
 }

@@ -12,7 +12,7 @@ mod suite;
 
 pub use case::{Case, Expected, Family, Form, Watch, with_far_spheres};
 pub use families::{cases, shown_cases};
-pub use judge::{Level, Paired, Verdict};
+pub use judge::{Difference, Level, Verdict};
 pub use report::{BookMeasured, CaseReport, Measured, StressReport};
 pub use suite::{Suite, by_the_book, trace};
 
@@ -22,10 +22,9 @@ use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::StressOptions;
 use crate::cli::terminal;
-use crate::pictures::check_outputs;
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::system::failure::Failure;
-use crate::system::files::{make_directory, write_text};
+use crate::system::files::check_writable;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
 use std::process::ExitCode;
@@ -35,9 +34,7 @@ use std::time::Instant;
 /// Runs the suite, prints the table and writes the files. [`Failure::Input`] if nothing was run; [`Failure::Run`]
 /// otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
-    let table = options.out.as_ref().map(|directory| directory.join("table.md"));
-    options.out.iter().try_for_each(|directory| make_directory(directory)).map_err(Failure::Input)?;
-    check_outputs(options.json.as_ref(), table.as_deref()).map_err(Failure::Input)?;
+    options.json.as_deref().map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
         let ids: Vec<&str> = families::families().map(|family| family.id).collect();
@@ -93,25 +90,22 @@ fn suite(
     };
     let json = &options.json;
     // Write the figures even if the table cannot be printed.
-    let mut printed = terminal::print_beside(json.as_ref(), &report::head());
+    let mut printed = terminal::print_beside(json.as_deref(), &report::head());
     for case in chosen {
-        progress.at(&case.id, 0.0);
+        progress.at(&case.id);
         let found = suite.run(case, interrupt);
         if interrupt.load(Ordering::Relaxed) {
             report.interrupted = true;
             break;
         }
-        let row = || terminal::print_beside(json.as_ref(), &found.text());
+        let row = || terminal::print_beside(json.as_deref(), &found.text());
         printed = printed.and(progress.above(row));
         progress.finished(1.0);
         report.cases.push(found);
     }
     progress.clear();
     report.seconds = begin.elapsed().as_secs_f64();
-    printed = printed.and(terminal::print_beside(json.as_ref(), &report.summary()));
-    if let Some(directory) = &options.out {
-        write_text(&directory.join("table.md"), &report.markdown())?;
-    }
+    printed = printed.and(terminal::print_beside(json.as_deref(), &report.summary()));
     if let Some(target) = &json {
         write_json(target, &machine, &report)?;
     }

@@ -2,7 +2,7 @@
 
 use super::super::{Candidate, Stop, Traced};
 use super::case::{Case, Expected, Form};
-use super::judge::{Against, Level, Paired, Verdict, judge, offset};
+use super::judge::{Difference, Level, Verdict, judge};
 use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
@@ -125,7 +125,7 @@ impl CaseRun<'_> {
         for tracer in 0..reference {
             let traced = self.trace(tracer, &recipe);
             let rounding = traced.as_ref().ok().zip(exact.as_ref().ok());
-            let rounding = rounding.map(|(traced, exact)| Paired::of(&traced.film, &exact.film));
+            let rounding = rounding.map(|(traced, exact)| Difference::of(&traced.film, &exact.film));
             measured.push(Measured { rounding, ..self.measure(tracer, form, traced) });
         }
         measured.push(self.measure(reference, form, exact));
@@ -154,21 +154,18 @@ impl CaseRun<'_> {
 
     /// How far a tracer's film is off, and the verdict.
     fn judge(&mut self, tracer: usize, level: &Level, film: &Film) -> (Option<f64>, Verdict) {
-        let against = match &self.case.expected {
-            Expected::Every(value) => Ok(Against::Every(*value)),
-            Expected::Mean(value) => Ok(Against::Mean(*value)),
-            Expected::Same(other) => {
-                self.shared(tracer, other).map(|other| Against::Picture(Paired::of(film, &other)))
+        let difference = match &self.case.expected {
+            Expected::Every(value) => Ok(Difference::from_every(level, *value)),
+            Expected::Mean(value) => Ok(Difference::from_mean(level, *value)),
+            Expected::Same(other) => self.shared(tracer, other).map(|other| Difference::of(film, &other)),
+            Expected::Reference => {
+                self.oracle.as_ref().map(|oracle| Difference::of(film, oracle)).map_err(Clone::clone)
             }
-            Expected::Reference => match &self.oracle {
-                Ok(oracle) => Ok(Against::Picture(Paired::of(film, oracle))),
-                Err(reason) => Err(reason.clone()),
-            },
         };
-        match against {
-            Ok(against) => {
-                let verdict = judge(level, against, self.case.tolerance, film.rejected());
-                (Some(offset(level, against)), verdict)
+        match difference {
+            Ok(difference) => {
+                let verdict = judge(level, &difference, self.case.tolerance, film.rejected());
+                (Some(difference.bias), verdict)
             }
             Err(reason) => (None, Verdict::None(reason)),
         }

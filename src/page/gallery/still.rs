@@ -1,6 +1,5 @@
 //! The stills of a directory and their `gallery.json`.
 
-use crate::cli::JsonTarget;
 use crate::cli::terminal::write_json;
 use crate::film::{Checksum, checkpoint::SAMPLE_VERSION};
 use crate::job::recipe::{Recipe, file::to_toml};
@@ -151,7 +150,7 @@ impl Stills {
     pub(super) fn write(&self) -> Result<()> {
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let json = Json { schema: SCHEMA, version, pictures: self.pictures.clone() };
-        write_json(&json, &JsonTarget::File(self.directory.join(INDEX)))
+        write_json(&json, &self.directory.join(INDEX))
     }
 
     /// Whether the still of `stage` has one of these fingerprints and its file is as written.

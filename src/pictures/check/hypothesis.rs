@@ -292,6 +292,14 @@ pub struct Compared {
     pub expected: Vec<[f64; 3]>,
 }
 
+impl Compared {
+    /// The same, if a mistake explains the difference.
+    pub fn blamed_on(&self, mistake: &'static Mistake) -> Compared {
+        let hypothesis = Hypothesis { mistake: Some(mistake), ..self.hypothesis.clone() };
+        Compared { hypothesis, is_noise: true, ..self.clone() }
+    }
+}
+
 pub fn compare(mine: &Mine, hypothesis: Hypothesis, expected: Vec<[f64; 3]>) -> Compared {
     let (width, height) = (mine.width as usize, mine.height as usize);
     let step = mine.step();

@@ -190,8 +190,7 @@ impl<'a> Trial<'a> {
                     Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..self.right.hypothesis.clone() };
                 let single = self.studio.render(&single, 1)?;
                 if test(self.mine, &self.right, &single) {
-                    let hypothesis = Hypothesis { mistake: Some(mistake), ..self.right.hypothesis.clone() };
-                    let found = Compared { hypothesis, is_noise: true, ..self.right.clone() };
+                    let found = self.right.blamed_on(mistake);
                     return Ok(self.finding(Some(found)));
                 }
             }
@@ -204,9 +203,7 @@ impl<'a> Trial<'a> {
             Change::InBytes(test, _) => test(self.mine, &self.right),
             _ => false,
         };
-        let mistake = MISTAKES.iter().find(shows)?;
-        let hypothesis = Hypothesis { mistake: Some(mistake), ..self.right.hypothesis.clone() };
-        Some(Compared { hypothesis, is_noise: true, ..self.right.clone() })
+        Some(self.right.blamed_on(MISTAKES.iter().find(shows)?))
     }
 }
 

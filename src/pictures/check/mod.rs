@@ -19,11 +19,10 @@ pub use judge::{Finding, judge, stages};
 pub use mine::Mine;
 pub use mistakes::MISTAKES;
 
-use super::answer::{Verdict, check_outputs, deliver, lines};
+use super::answer::{Verdict, deliver, lines};
 use crate::cli::terminal::Display;
-use crate::cli::{CheckOptions, ProgressChoice};
+use crate::cli::{CheckOptions, ProgressChoice, check_outputs};
 use crate::numbers::heat::HeatScale;
-use crate::system::failure::Failure;
 use crate::system::files::{make_directory, replace_file};
 use anyhow::{Context, Result};
 use image::{ImageFormat, RgbImage};
@@ -33,15 +32,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Checks a picture. Exit code 0 means right, 1 wrong, and 2 ([`Failure::Input`]) that it could not be checked.
-pub fn run(options: &CheckOptions) -> Result<ExitCode, Failure> {
-    checked(options).map_err(Failure::Input)
-}
-
-fn checked(options: &CheckOptions) -> Result<ExitCode> {
+/// Checks a picture. Exit code 0 means right, 1 wrong, and 2 that it could not be checked.
+pub fn run(options: &CheckOptions) -> Result<ExitCode> {
     options.out.iter().try_for_each(|directory| make_directory(directory))?;
     let files = options.pictures();
-    check_outputs(options.json.as_ref(), files.iter().map(PathBuf::as_path))?;
+    check_outputs([options.picture.as_path()], files.iter().chain(&options.json).map(PathBuf::as_path))?;
     let mine = Mine::read(&options.picture)?;
     let mut display = Display::new(ProgressChoice::Auto, 1, "{wide_msg}", "", Duration::ZERO);
     let finding = judge(&mine, options.stage, |what| display.update(0, || what))?;
@@ -52,7 +47,7 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
         replace_file(path, |writer| image.write_to(writer, ImageFormat::Png).map_err(io::Error::other))?;
     }
     let text = text(&options.picture, &mine, &finding, &files);
-    deliver(options.json.as_ref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
+    deliver(options.json.as_deref(), &text, 1, &figures(&options.picture, &mine, &finding, &files))?;
     Ok(finding.answer(&mine).verdict().exit_code())
 }
 

@@ -4,11 +4,10 @@ mod verdict;
 
 pub use verdict::{Comparison, ROUNDING_BIAS, compare, half_differences};
 
-use super::answer::{Verdict, check_outputs, deliver, lines};
+use super::answer::{Verdict, deliver, lines};
 use super::picture::Picture;
-use crate::cli::CompareOptions;
+use crate::cli::{CompareOptions, check_outputs};
 use crate::numbers::statistics::blocks::{Block, SUM_DEVIATIONS};
-use crate::system::failure::Failure;
 use anyhow::{Result, bail};
 use serde_json::json;
 use std::process::ExitCode;
@@ -17,14 +16,10 @@ use std::process::ExitCode;
 const NAMED_BLOCKS: usize = 5;
 
 /// Compares two pictures and prints how they differ. Exit code 0 means equal except for noise, 1 different, and 2
-/// undecided or ([`Failure::Input`]) not comparable.
-pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
-    compared(options).map_err(Failure::Input)
-}
-
-fn compared(options: &CompareOptions) -> Result<ExitCode> {
-    let json = options.json.as_ref();
-    check_outputs(json, None)?;
+/// undecided or not comparable.
+pub fn run(options: &CompareOptions) -> Result<ExitCode> {
+    let json = options.json.as_deref();
+    check_outputs([options.first.as_path(), &options.second], json)?;
     let sides =
         [Picture::read(&options.first, options.encoding)?, Picture::read(&options.second, options.encoding)?];
     let comparison = compare_sides(&sides)?;
@@ -43,7 +38,6 @@ pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
     let of_files =
         sides.iter().flat_map(|side| side.notes.iter().map(|note| format!("{}: {note}", side.name)));
     comparison.notes.extend(of_files);
-    comparison.notes.extend(note_on_jobs(a, b).map(str::to_owned));
     if comparison.verdict() == Verdict::Different {
         let mut flipped = b.clone();
         flipped.pixels = b.pixels.chunks_exact(b.width as usize).rev().flatten().copied().collect();
@@ -52,20 +46,6 @@ pub fn compare_sides(sides: &[Picture; 2]) -> Result<Comparison> {
         }
     }
     Ok(comparison)
-}
-
-/// A note on the jobs of the pictures, if they explain the result.
-fn note_on_jobs(a: &Picture, b: &Picture) -> Option<&'static str> {
-    let (job_a, job_b) = (a.job.as_ref()?, b.job.as_ref()?);
-    let (film_a, film_b) = (a.film.as_ref()?, b.film.as_ref()?);
-    if job_a == job_b {
-        let is_paired = film_a.samples() == film_b.samples();
-        return is_paired.then_some("both hold the same samples, so they can differ only by rounding");
-    }
-    let is_other_picture =
-        job_a.scene() != job_b.scene() || job_a.camera() != job_b.camera() || job_a.rules() != job_b.rules();
-    is_other_picture
-        .then_some("the recipes differ in scene, camera or rules: these should be different pictures")
 }
 
 pub fn text(sides: &[Picture; 2], comparison: &Comparison) -> String {

@@ -4,13 +4,10 @@ use super::verdict::NonFinite;
 use super::*;
 use crate::film::{FIXED_POINT_SCALE, Film, PixelSum, fixed_point};
 use crate::job::output::Encoding;
-use crate::job::recipe::Recipe;
 use crate::kernel::sampling::pcg4d;
 use crate::numbers::statistics::blocks::CHANCE;
 use crate::numbers::statistics::normal::largest_of;
-use crate::stages::{Diffuse, Transfer};
-use std::ops::Range;
-use std::sync::Arc;
+use crate::stages::Transfer;
 
 const PIXELS: usize = 80 * 48;
 
@@ -325,43 +322,4 @@ fn only_differing_channels_count_as_tries() {
         places.iter().for_each(|(x, y, channel)| other.pixels[y * 80 + x][*channel] += 0.05);
         assert_eq!(compare(&one, &other).test.largest_limit, largest_of(tries, CHANCE), "{places:?}");
     }
-}
-
-/// Three spheres at 8x6 with 5 samples per pixel.
-fn small() -> Recipe {
-    let mut recipe = Recipe::find("three-spheres").unwrap();
-    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (8, 6, 5);
-    recipe
-}
-
-/// A film of `recipe` with the samples of `ranges`.
-fn rendered(recipe: &Recipe, ranges: &[Range<u64>]) -> Picture {
-    let mut film = recipe.job().unwrap().new_film();
-    ranges.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
-    Picture::of_rendered("film.exr".to_owned(), recipe.clone(), Arc::new(film)).unwrap()
-}
-
-#[test]
-fn jobs_are_noted_if_relevant() {
-    type Change = fn(&mut Recipe);
-    let film = |change: Change, samples: Range<u64>| {
-        let mut recipe = small();
-        change(&mut recipe);
-        rendered(&recipe, &[samples])
-    };
-    let note = |second: Picture| note_on_jobs(&film(|_| {}, 0..4), &second).map(|note| &note[..6]);
-    assert_eq!(note(film(|_| {}, 0..4)), Some("both h"));
-    assert_eq!(note(film(|_| {}, 4..8)), None);
-    // Only the job matters, not the recipe's number of samples.
-    assert_eq!(note(film(|recipe| recipe.samples_per_pixel = 9, 0..4)), Some("both h"));
-    let changes: [(Change, Option<&str>); 4] = [
-        (|recipe| recipe.settings.seed = 1, None),
-        (|recipe| recipe.camera.vfov_degrees = 40.0, Some("the re")),
-        (|recipe| recipe.rules.diffuse = Diffuse::Hemisphere, Some("the re")),
-        (|recipe| recipe.scene = Recipe::find("metals").unwrap().scene, Some("the re")),
-    ];
-    for (change, expected) in changes {
-        assert_eq!(note(film(change, 0..4)), expected);
-    }
-    assert_eq!(note(Picture { job: None, ..film(|recipe| recipe.camera.vfov_degrees = 40.0, 0..4) }), None);
 }

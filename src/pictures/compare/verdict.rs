@@ -69,8 +69,7 @@ impl Comparison {
 
 /// Compares two pictures of equal size.
 pub fn compare(a: &Picture, b: &Picture) -> Comparison {
-    let relations = Relation::of_all(a, b);
-    let values: Vec<[f64; 3]> = relations.iter().map(|pixel| pixel.map(Relation::difference)).collect();
+    let (values, non_finite) = differences(a, b);
     let noise = a.film.as_deref().zip(b.film.as_deref()).and_then(|(a, b)| HalvesNoise::of(a, b));
     let steps = steps_of_both(a, b);
     let differences = Differences {
@@ -103,7 +102,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
         bias_deviation: noise.as_ref().map(|noise| noise.of_mean.hypot(ROUNDING_BIAS)),
         noise: noise.map(|noise| noise.of_both),
         left_out: 3 * values.len() - count,
-        non_finite: NonFinite::of(&relations, a.width),
+        non_finite,
         test,
         reasons: Vec::new(),
         notes: Vec::new(),
@@ -236,64 +235,47 @@ pub fn half_differences(film: &Film) -> Option<Vec<[f64; 3]>> {
     (count_a > 0.0 && count_b > 0.0).then(|| first.iter().zip(second).map(half).collect())
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Relation {
-    /// Second minus first.
-    Difference(f64),
-    /// NaN in both pictures, or infinite with the same sign.
-    Alike,
-    /// Finite in only one picture, NaN in one and infinite in the other, or infinite with different signs.
-    Apart,
-    /// At or above an integer format's largest value, which stands for any larger one.
-    Unknown,
-}
-
-impl Relation {
-    fn of_all(a: &Picture, b: &Picture) -> Vec<[Relation; 3]> {
-        let limit = a.limit.min(b.limit);
-        let of = |a: Option<f64>, b: Option<f64>| match (a, b) {
-            (Some(a), Some(b)) if a < limit && b < limit && a.is_finite() && b.is_finite() => {
-                Relation::Difference(b - a)
-            }
-            (Some(a), Some(b)) if a.is_finite() && b.is_finite() => Relation::Unknown,
-            (Some(a), Some(b)) if a == b || (a.is_nan() && b.is_nan()) => Relation::Alike,
-            (Some(_), Some(_)) => Relation::Apart,
-            (Some(x), None) | (None, Some(x)) if x.is_nan() || x == f64::NEG_INFINITY => Relation::Apart,
-            _ => Relation::Unknown,
-        };
-        let pixel = |pixel| [0, 1, 2].map(|channel| of(a.value(pixel, channel), b.value(pixel, channel)));
-        (0..a.pixels.len()).map(pixel).collect()
-    }
-
-    fn difference(self) -> f64 {
-        if let Relation::Difference(difference) = self { difference } else { f64::NAN }
-    }
-}
-
 /// Counts of NaN and infinite channels in float pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NonFinite {
     pub differing_pixels: usize,
-    /// Channels that are `Relation::Apart`: these are differences.
+    /// Channels that are finite in only one picture, NaN in one and infinite in the other, or infinite with different
+    /// signs: these are differences.
     pub differing: usize,
     /// Column and row of the first differing pixel.
     pub first: Option<[u32; 2]>,
-    /// Channels that are `Relation::Alike`: equal, and left out of all means.
+    /// Channels that are NaN in both pictures, or infinite with the same sign: equal, and left out of all means.
     pub alike: usize,
 }
 
-impl NonFinite {
-    fn of(relations: &[[Relation; 3]], width: u32) -> Self {
-        let count = |relation| relations.iter().flatten().filter(|found| **found == relation).count();
-        let mut apart = (0..).zip(relations).filter(|(_, pixel)| pixel.contains(&Relation::Apart));
-        let first = apart.next().map(|(pixel, _): (u32, _)| [pixel % width.max(1), pixel / width.max(1)]);
-        NonFinite {
-            differing_pixels: usize::from(first.is_some()) + apart.count(),
-            differing: count(Relation::Apart),
-            first,
-            alike: count(Relation::Alike),
+/// The differences, second less first, and what cannot be subtracted. A channel's difference is NaN if one of the two is
+/// not finite, or at or above the largest value of an integer format, which stands for any larger one.
+fn differences(a: &Picture, b: &Picture) -> (Vec<[f64; 3]>, NonFinite) {
+    let limit = a.limit.min(b.limit);
+    let mut found = NonFinite::default();
+    let mut pixel = |pixel: usize| {
+        let mut apart = 0;
+        let values = [0, 1, 2].map(|channel| {
+            match (a.value(pixel, channel), b.value(pixel, channel)) {
+                (Some(a), Some(b)) if a.is_finite() && b.is_finite() => {
+                    return if a < limit && b < limit { b - a } else { f64::NAN };
+                }
+                (Some(a), Some(b)) if a == b || (a.is_nan() && b.is_nan()) => found.alike += 1,
+                (Some(_), Some(_)) => apart += 1,
+                (Some(x), None) | (None, Some(x)) if x.is_nan() || x == f64::NEG_INFINITY => apart += 1,
+                _ => {}
+            }
+            f64::NAN
+        });
+        if apart > 0 {
+            found.differing += apart;
+            found.differing_pixels += 1;
+            found.first.get_or_insert([pixel as u32 % a.width, pixel as u32 / a.width]);
         }
-    }
+        values
+    };
+    let values = (0..a.pixels.len()).map(&mut pixel).collect();
+    (values, found)
 }
 
 /// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): their number, the
@@ -311,65 +293,59 @@ fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> O
 
 /// Adds the reasons for calling the pictures different.
 fn judge(comparison: &mut Comparison) {
-    let Comparison { test, non_finite, .. } = comparison;
-    let mut reason = |is_so: bool, text: String| comparison.reasons.extend(is_so.then_some(text));
-    if let Some([column, row]) = non_finite.first {
-        let NonFinite { differing, differing_pixels, .. } = non_finite;
-        reason(
-            true,
-            format!(
-                "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
-                 {column},{row}: find out what made them"
-            ),
-        );
+    let Comparison { test, non_finite, reasons, .. } = comparison;
+    if let NonFinite { differing, differing_pixels, first: Some([column, row]), .. } = non_finite {
+        reasons.push(format!(
+            "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
+             {column},{row}: find out what made them"
+        ));
     }
     let excess = test.largest_excess();
-    reason(
-        excess > SUM_DEVIATIONS,
-        format!(
+    if excess > SUM_DEVIATIONS {
+        reasons.push(format!(
             "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
              {SUM_DEVIATIONS:.0}"
-        ),
-    );
+        ));
+    }
     let (largest, limit) = (test.largest, test.largest_limit);
-    reason(
-        largest > limit,
-        format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}"),
-    );
+    if largest > limit {
+        reasons.push(format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}"));
+    }
     let off = comparison.bias_deviation.map_or(0.0, |deviation| comparison.bias.abs() / deviation);
-    reason(
-        off > SUM_DEVIATIONS,
-        format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"),
-    );
+    if off > SUM_DEVIATIONS {
+        reasons.push(format!(
+            "the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"
+        ));
+    }
 }
 
 fn note(comparison: &mut Comparison) {
-    let Comparison { test, notes, is_same, left_out, non_finite, .. } = comparison;
-    let mut note = |is_so: bool, text: &str| notes.extend(is_so.then(|| text.to_owned()));
-    note(
-        comparison.noise.is_none() && !*is_same,
-        "the noise is estimated from the spread of the differences within each block, so differences finer than 8 pixels \
-         pass for noise; films with two halves (--checkpoint) give a sharper comparison",
-    );
-    note(
-        test.is_too_near(),
-        "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern finer \
-         than 8 pixels, or their halves do not belong together",
-    );
-    let alike = non_finite.alike;
-    note(
-        alike > 0,
-        &format!(
+    let Comparison { test, notes, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
+    if comparison.noise.is_none() && !*is_same {
+        notes.push(
+            "the noise is estimated from the spread of the differences within each block, so differences finer than 8 \
+             pixels pass for noise; films with two halves (--checkpoint) give a sharper comparison"
+                .to_owned(),
+        );
+    }
+    if test.is_too_near() {
+        notes.push(
+            "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern \
+             finer than 8 pixels, or their halves do not belong together"
+                .to_owned(),
+        );
+    }
+    if *alike > 0 {
+        notes.push(format!(
             "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
-        ),
-    );
-    note(
-        *left_out > 0,
-        &format!(
+        ));
+    }
+    if *left_out > 0 {
+        notes.push(format!(
             "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the largest \
              value of an integer format"
-        ),
-    );
+        ));
+    }
 }
 
 /// Withholds the verdict if too little can be compared.

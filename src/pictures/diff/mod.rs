@@ -6,10 +6,9 @@ mod text;
 
 pub use paths::{Difference, Pair, PathComparison};
 
-use super::answer::{Verdict, check_outputs, deliver, lines};
-use crate::cli::{DiffOptions, PathChoice};
-use crate::job::render::{RenderError, RenderJob};
-use crate::system::failure::Failure;
+use super::answer::{Verdict, deliver, lines};
+use crate::cli::DiffOptions;
+use crate::job::render::{RenderError, RenderJob, RenderSettings};
 use anyhow::Result;
 use paths::radiance_amount;
 use serde_json::json;
@@ -17,34 +16,31 @@ use side::Side;
 use std::process::ExitCode;
 
 /// Compares a path and prints it. Exit code 0 means that the sides agree within the tolerance and 1 that they do not,
-/// so every failure, even of a backend midway, is [`Failure::Input`].
-pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
-    compared(options).map_err(Failure::Input)
-}
-
-fn compared(options: &DiffOptions) -> Result<ExitCode> {
-    let DiffOptions { job, tolerance, json, .. } = options;
-    check_outputs(json.as_ref(), None)?;
-    let [a, b] = &options.sides;
-    let mut sides = [Side::open(a)?, Side::open(b)?];
+/// so every failure, even of a backend midway, is an error of the request.
+pub fn run(options: &DiffOptions) -> Result<ExitCode> {
+    let DiffOptions { tolerance, json, .. } = options;
+    options.check()?;
+    let (scene, job) = options.job()?;
+    let [a, b] = options.sides()?;
+    let mut sides = [Side::open(&a)?, Side::open(&b)?];
     if sides[0].name == sides[1].name {
         sides[0].name.push_str(" (left)");
         sides[1].name.push_str(" (right)");
     }
-    let found = match options.path {
-        PathChoice::Given { pixel, sample } => Found { pixel, sample, searched: 0, differing: 0 },
-        PathChoice::Find { samples } => find(job, &mut sides, samples, *tolerance)?,
+    let found = match options.find {
+        Some(samples) => find(&job, &mut sides, samples, *tolerance)?,
+        None => Found { pixel: options.pixel(&job)?, sample: options.sample, searched: 0, differing: 0 },
     };
-    let mut record = |side: usize| sides[side].record(job, found.pixel, found.sample);
+    let mut record = |side: usize| sides[side].record(&job, found.pixel, found.sample);
     let paths = [&record(0)?, &record(1)?];
     let names = [sides[0].name.as_str(), sides[1].name.as_str()];
-    let pair = Pair { job, names, paths, tolerance: *tolerance };
+    let pair = Pair { job: &job, names, paths, tolerance: *tolerance };
     let comparison = pair.compare();
 
-    let text = opening(options, &sides, found) + "\n" + &text::text(&pair, &comparison);
+    let text = opening(&scene, &pair, &sides, found) + "\n" + &text::text(&pair, &comparison);
     let side = |side: usize| json!({ "name": names[side], "about": sides[side].about, "path": paths[side] });
     let figures = json!({
-        "scene": options.scene,
+        "scene": scene,
         "width": job.settings().width,
         "height": job.settings().height,
         "pixel": found.pixel,
@@ -57,24 +53,20 @@ fn compared(options: &DiffOptions) -> Result<ExitCode> {
         "radiance": comparison.radiance,
         "verdict": pair.verdict(&comparison),
     });
-    deliver(json.as_ref(), &text, 3, &figures)?;
+    deliver(json.as_deref(), &text, 3, &figures)?;
     let verdict = if comparison.first.is_some() { Verdict::Different } else { Verdict::Same };
     Ok(verdict.exit_code())
 }
 
-fn opening(options: &DiffOptions, sides: &[Side; 2], found: Found) -> String {
-    let settings = options.job.settings();
-    let (width, height, sampler) = (settings.width, settings.height, settings.sampler.name());
+fn opening(scene: &str, pair: &Pair, sides: &[Side; 2], found: Found) -> String {
+    let RenderSettings { width, height, max_depth, sampler, seed, .. } = *pair.job.settings();
     let Found { pixel: [x, y], sample, searched, differing } = found;
-    let scene = &options.scene;
-    let depth = settings.max_depth;
-    let mut text = vec![(
-        "scene",
-        format!("{scene}, {width}x{height}, depth {depth}, {sampler}, seed {}", settings.seed),
-    )];
+    let sampler = sampler.name();
+    let mut text =
+        vec![("scene", format!("{scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}"))];
     if searched > 0 {
         let all = u64::from(width) * u64::from(height) * searched;
-        let tolerance = options.tolerance;
+        let tolerance = pair.tolerance;
         text.push(("search", format!("{differing} of {all} samples differ by more than {tolerance:.0e}")));
         text.push(("again", format!("--size {width}x{height} --pixel {x},{y} --sample {sample}")));
     }

@@ -185,9 +185,9 @@ impl Render {
 
     fn note_prepared(&mut self, renderer: &mut dyn Renderer, took: Duration) {
         let info = renderer.info();
-        self.status.kernel = renderer.kernel();
-        self.status.left_out = renderer.kernel_contents().left_out;
-        self.status.hierarchy += renderer.hierarchy_time();
+        let kernel = renderer.kernel();
+        (self.status.kernel, self.status.left_out) = (kernel.about, kernel.left_out);
+        self.status.hierarchy += kernel.hierarchy_time;
         self.status.prepare += took;
         self.status.say(renderer.take_messages());
         log::info!("prepared {info:?} in {:.3} s; kernel: {}", took.as_secs_f64(), self.status.kernel);

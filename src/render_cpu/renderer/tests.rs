@@ -32,12 +32,12 @@ fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
     inside.look_from = scene.spheres.iter().find(is_small_and_opaque).expect("one").center;
     let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
     film(&mut renderer, &first);
-    assert_ne!(renderer.hierarchy_time(), Duration::ZERO);
+    assert_ne!(renderer.kernel().hierarchy_time, Duration::ZERO);
     // Inside an opaque ball nothing else is visible, so there is nothing to build.
     for (camera, is_kept) in [(moved, true), (inside, true), (moved, false), (*first.camera(), true)] {
         let job = first.seen_by(camera, *first.settings()).expect("valid");
         let again = film(&mut renderer, &job);
-        assert_eq!(renderer.hierarchy_time() == Duration::ZERO, is_kept, "{camera:?}");
+        assert_eq!(renderer.kernel().hierarchy_time == Duration::ZERO, is_kept, "{camera:?}");
         let mut fresh = CpuRenderer::new(CpuOptions::default()).expect("available");
         assert!(again == film(&mut fresh, &job), "{camera:?}");
     }

@@ -12,7 +12,7 @@ pub use identity::FileIdentity;
 pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
 pub use paths::{
-    JsonPath, NAME_LIMIT, STANDARD, ShownPath, cache_directory, free_name, home_directory, make_directory,
+    NAME_LIMIT, STANDARD, ShownPath, cache_directory, free_name, home_directory, make_directory,
     pictures_directory, state_directory,
 };
 pub use read::{InputError, open, read};

@@ -2,7 +2,6 @@
 
 use crate::system::console::printable;
 use anyhow::{Context, Result};
-use serde::{Serialize, Serializer};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
@@ -21,22 +20,6 @@ pub trait ShownPath {
 impl<P: AsRef<OsStr> + ?Sized> ShownPath for P {
     fn shown(&self) -> String {
         printable(&self.as_ref().to_string_lossy()).into_owned()
-    }
-}
-
-/// A path that can be written as JSON, which holds only Unicode: bytes that are not UTF-8 become U+FFFD there.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct JsonPath(pub PathBuf);
-
-impl From<PathBuf> for JsonPath {
-    fn from(path: PathBuf) -> Self {
-        JsonPath(path)
-    }
-}
-
-impl Serialize for JsonPath {
-    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        serializer.serialize_str(&self.0.to_string_lossy())
     }
 }
 
@@ -116,12 +99,10 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn non_unicode_bytes_are_replaced_in_messages_and_json() {
+    fn non_unicode_bytes_are_replaced_in_messages() {
         use std::os::unix::ffi::OsStrExt;
         let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
         assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
-        let json = serde_json::to_value(JsonPath(path)).unwrap();
-        assert_eq!(json, "d\u{fffd}/a\n.png");
     }
 
     #[test]

@@ -28,5 +28,5 @@ mod named;
 mod read;
 mod write;
 
-pub use read::{FileError, load, parse};
+pub use read::{load, parse};
 pub use write::{to_picture_toml, to_toml};

@@ -7,7 +7,8 @@ use crate::scene::animation::{FRAME_LIMIT, Keyframe};
 use crate::scene::{Camera, Material, Scene, SceneError, Sky};
 use crate::stages::Rules;
 use crate::system::files::{self, InputError, ShownPath};
-use crate::system::memory::{self, MemoryError};
+use crate::system::memory;
+use anyhow::anyhow;
 use glam::DVec3;
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashMap};
@@ -15,7 +16,6 @@ use std::fmt::Display;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
-use thiserror::Error;
 use toml::Spanned;
 
 /// Longest scene file, bytes: about ten million spheres.
@@ -25,43 +25,19 @@ const FILE_LIMIT: u64 = 1 << 30;
 /// the most, and with the shortest values.
 const VALUE_BYTES: u64 = 260;
 
-/// Why a scene file cannot be used. The message names the file and the line, and says what to do.
-#[derive(Debug, Error)]
-pub enum FileError {
-    /// The file cannot be read, or it is too long for a scene file.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// There is not enough memory to read the file.
-    #[error(transparent)]
-    Memory(#[from] MemoryError),
-    /// The text is not valid, or no picture can be made from it.
-    #[error("{name}:{line}:{column}: {reason}")]
-    Invalid {
-        name: String,
-        /// From 1.
-        line: usize,
-        /// In characters, from 1.
-        column: usize,
-        /// Key, value, limit and remedy.
-        reason: String,
-    },
-}
-
-impl FileError {
-    /// An error at this byte of the text.
-    fn at(text: &str, name: &str, byte: usize, reason: String) -> Self {
-        let before = text.get(..byte).unwrap_or(text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let (line, column) = (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count());
-        FileError::Invalid { name: name.to_owned(), line, column, reason }
-    }
+/// An error at this byte of the text, with line and column in characters from 1.
+fn error_at(text: &str, name: &str, byte: usize, reason: &str) -> anyhow::Error {
+    let before = text.get(..byte).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let (line, column) = (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count());
+    anyhow!("{name}:{line}:{column}: {reason}")
 }
 
 /// Reads a scene file. The recipe is named after the file, without its extension.
 ///
 /// # Errors
-/// [`FileError`] if the file cannot be read or is malformed, or if no picture can be made from it.
-pub fn load(path: &Path) -> Result<Recipe, FileError> {
+/// If the file cannot be read or is malformed, or if no picture can be made from it; with the line and what to do.
+pub fn load(path: &Path) -> anyhow::Result<Recipe> {
     let label = path.shown();
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
     let text = String::from_utf8(bytes).map_err(|_| {
@@ -74,30 +50,17 @@ pub fn load(path: &Path) -> Result<Recipe, FileError> {
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
 ///
 /// # Errors
-/// [`FileError`] if the text is malformed, or if no picture can be made from it.
-pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
+/// If the text is malformed, or if no picture can be made from it; with the line and what to do.
+pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
     let values = text.bytes().filter(|byte| b",=[{\n".contains(byte)).count() as u64;
     let bytes = text.len() as u64 + VALUE_BYTES * values;
     let remedy = "use a scene of fewer spheres, or close other programs";
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
         let place = error.span().unwrap_or_default().start;
-        let mut reason = toml_message(error);
-        if has_decimal_comma(text, place) {
-            reason += "; write a point in a number, not a comma";
-        }
-        FileError::at(text, name, place, reason)
+        error_at(text, name, place, &toml_message(error))
     })?;
-    recipe_of(raw, name).map_err(|refusal| FileError::at(text, name, refusal.place.start, refusal.reason))
-}
-
-/// Whether the line at `place` has a comma between two digits and is no list.
-fn has_decimal_comma(text: &str, place: usize) -> bool {
-    let (before, after) = text.split_at_checked(place).unwrap_or((text, ""));
-    let start = before.rfind('\n').map_or(0, |end| end + 1);
-    let line = text[start..].lines().next().unwrap_or_default();
-    let is_comma = |three: &[u8]| matches!(three, [b'0'..=b'9', b',', b'0'..=b'9']);
-    !after.is_empty() && !line.contains('[') && line.as_bytes().windows(3).any(is_comma)
+    recipe_of(raw, name).map_err(|refusal| error_at(text, name, refusal.place.start, &refusal.reason))
 }
 
 /// Puts a TOML error on one line, with the key's path and without Rust's terms.

@@ -58,15 +58,12 @@ fn settings(recipe: &Recipe) -> String {
     for Keyframe { frame, camera } in &recipe.keyframes {
         text += &format!("\n[[keyframes]]\nframe = {frame}\n{}", camera_keys(camera));
     }
-    let RenderSettings { width, height, .. } = recipe.settings;
-    let samples = recipe.samples_per_pixel;
-    text +=
-        &format!("\n[render]\nwidth = {width} # pixels\nheight = {height}\nsamples_per_pixel = {samples}\n");
-    let values = toml::Table::try_from(recipe.settings).unwrap_or_default();
-    for named in RenderSettings::NAMED {
-        let comment = if named.comment.is_empty() { String::new() } else { format!(" # {}", named.comment) };
-        text += &format!("{} = {}{comment}\n", named.key, values[named.key]);
-    }
+    let RenderSettings { width, height, max_depth, sampler, seed, estimate_error } = recipe.settings;
+    let (samples, sampler) = (recipe.samples_per_pixel, sampler.name());
+    text += &format!(
+        "\n[render]\nwidth = {width} # pixels\nheight = {height}\nsamples_per_pixel = {samples}\nmax_depth = {max_depth} # \
+         rays of a path\nsampler = \"{sampler}\"\nseed = {seed}\nestimate_error = {estimate_error}\n"
+    );
     text + &rules(&recipe.rules)
 }
 

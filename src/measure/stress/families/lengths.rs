@@ -64,7 +64,7 @@ pub fn scaled_scenes() -> Vec<Case> {
             let expected = Expected::Same(Box::new(tame()));
             let recipe = moved(&tame(), factor, DVec3::ZERO);
             let case = Case::new(&SCALED, format!("1e{exponent}"), stiff, recipe).of_unit(factor);
-            let case = case.expect(expected, why, 2e-6).quick();
+            let case = case.expect(expected, why, 2e-6).quick_if(true);
             match exponent {
                 -3 => case.watched(
                     "Balls of half a millimetre",
@@ -121,7 +121,7 @@ pub fn lenses() -> Vec<Case> {
     ];
     let mut cases: Vec<Case> = cases
         .into_iter()
-        .map(|(name, stiff, recipe)| Case::new(&LENSES, name, stiff, recipe).quick())
+        .map(|(name, stiff, recipe)| Case::new(&LENSES, name, stiff, recipe).quick_if(true))
         .collect();
     let balls = [
         (DVec3::new(0.0, -1e6, 0.0), 1e6, matte(0.5)),
