@@ -130,3 +130,27 @@ fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     assert!(line.contains("pictures missing; run the same command again to go on"), "{line}");
     assert!(directory.path().join("index.html").exists());
 }
+
+/// The small pictures come first and have no progress of their own.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_counts_missing_small_pictures() {
+    let directory = TempDir::new().unwrap();
+    assert!(companion(directory.path(), &[]).status.success());
+    let small = directory.path().join("figures/more");
+    std::fs::remove_dir_all(&small).unwrap();
+    let arguments = ["companion", "--quick", "--out", ".", "--progress", "off"];
+    let mut command = program_common::weekender(directory.path(), &arguments);
+    let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let start = std::time::Instant::now();
+    while !small.read_dir().is_ok_and(|mut files| files.next().is_some()) {
+        assert!(start.elapsed().as_secs() < 60, "no picture was written");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let output = child.wait_with_output().unwrap();
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("pictures missing; run the same command again"), "{message}");
+}
