@@ -129,7 +129,7 @@ struct Work<'a> {
 impl Work<'_> {
     /// Counts the finished stills in `rendered`. A signal ends it early.
     fn render_all(&mut self, tasks: &[Task], stills: &mut Stills, rendered: &mut usize) -> Result<()> {
-        while *rendered < tasks.len() {
+        while *rendered < tasks.len() && !self.interrupt.is_set() {
             let Some(still) = self.render(tasks, *rendered)? else { break };
             let line = still.line();
             stills.set(still);
