@@ -160,7 +160,8 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
 /// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
 fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
-    let text = site.library.read(&path)?;
+    // The line to name is the directive's.
+    let text = site.library.read(&path).map_err(Error::msg)?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
     let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
