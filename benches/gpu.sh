@@ -27,7 +27,6 @@ header() {
     echo "|---|---|---|---|---|---|---|"
 }
 trace() { "$bench" trace "$@" "${adapter[@]}" 2> /dev/null; }
-pair() { "$bench" pair "$@" "${adapter[@]}" 2> /dev/null; }
 
 header "Scenes (tracing only)"
 # shellcheck disable=SC2086
@@ -51,18 +50,9 @@ header "Scenes (tracing only)"
     done
 }
 
-printf '\nWhole and compressed boxes, run in turn\n\n'
-echo "| scene, width, height, samples, depth, runs | compressed, ns per path | whole, ns per path | whole / compressed |"
-echo "|---|---|---|---|"
-# shellcheck disable=SC2086
-{
-    pair book $book $book_spp 50 $runs
-    pair $field $field_size $field_spp 24 $runs
-}
-
 printf '\nSize and build time of the hierarchy, on one core\n\n'
-echo "| scene | compressed, bytes per sphere | whole, bytes per sphere | build ms |"
-echo "|---|---|---|---|"
+echo "| scene | bytes per sphere | build ms |"
+echo "|---|---|---|"
 "$bench" hierarchy book "$field"
 
 printf '\nSize of the kernel in operations\n\n| scene | general | specialised | features |\n|---|---|---|---|\n'

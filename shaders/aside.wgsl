@@ -7,7 +7,7 @@
 
 const ABSORBED_BIT = 0x80000000u;
 
-fn put_aside(path: Path, next_block: u32, base: u32) {
+fn put_aside(path: Path, base: u32) {
     store_vector(base + ASIDE_ORIGIN, path.ray.origin);
     words[base + ASIDE_LEFT] = path.ray.left;
     store_vector(base + ASIDE_DIRECTION, path.ray.direction);
@@ -15,18 +15,18 @@ fn put_aside(path: Path, next_block: u32, base: u32) {
     store_vector(base + ASIDE_THROUGHPUT, path.throughput);
     // A path has at most 10,000 rays, and a block at most 128 samples.
     words[base + ASIDE_STATE] = path.bounce | (path.remaining << 16u) | select(0u, ABSORBED_BIT, path.absorbed);
-    words[base + ASIDE_NEXT_BLOCK] = next_block;
+    words[base + ASIDE_ITEM] = path.item;
     store_words(base + ASIDE_SUMS, path.sums);
     words[base + ASIDE_SINE2] = bitcast<u32>(path.sine2);
 }
 
-// Returns the next block. If nothing was put aside, no samples are left.
-fn take_up(path: ptr<function, Path>, base: u32) -> u32 {
+// If nothing was put aside, no samples are left.
+fn take_up(path: ptr<function, Path>, tile: Tile, base: u32) {
     let state = words[base + ASIDE_STATE];
     let remaining = (state & ~ABSORBED_BIT) >> 16u;
     (*path).remaining = remaining;
     if remaining == 0u {
-        return 0u;
+        return;
     }
     words[base + ASIDE_STATE] = 0u;
     (*path).ray = Ray(
@@ -38,12 +38,8 @@ fn take_up(path: ptr<function, Path>, base: u32) -> u32 {
     (*path).throughput = load_vector(base + ASIDE_THROUGHPUT);
     (*path).bounce = state & 0xFFFFu;
     (*path).absorbed = (state & ABSORBED_BIT) != 0u;
-    (*path).sums = load_words(base + ASIDE_SUMS);
     (*path).sine2 = bitcast<f32>(words[base + ASIDE_SINE2]);
-    let next_block = words[base + ASIDE_NEXT_BLOCK];
-    if next_block > 0u {
-        let block = blocks[next_block - 1u];
-        enter_block(path, block, block.count - remaining);
-    }
-    return next_block;
+    (*path).item = words[base + ASIDE_ITEM];
+    enter_block(path, tile, blocks[(*path).item / (tile.size.x * tile.size.y)].count - remaining);
+    (*path).sums = load_words(base + ASIDE_SUMS);
 }

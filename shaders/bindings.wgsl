@@ -9,7 +9,7 @@
 
 @group(1) @binding(0) var<uniform> order: Dispatch;
 @group(1) @binding(1) var<storage, read> blocks: array<Block>;
-@group(1) @binding(2) var<storage, read_write> film: array<PixelSum>;
+@group(1) @binding(2) var<storage, read_write> film: array<atomic<u32>>;
 @group(1) @binding(3) var<storage, read_write> counters: Counters;
 
 @group(2) @binding(0) var<storage, read_write> words: array<u32>;
@@ -46,28 +46,29 @@ fn anchored_at(number: u32) -> AnchoredSphere {
     return anchored[number];
 }
 
-fn cwbvh_node_at(number: u32) -> CwbvhNode {
-    let first = 5u * number;
-    let low = nodes[first];
-    let more = nodes[first + 1u];
-    return CwbvhNode(
-        bitcast<vec3f>(low.xyz), low.w, more.x, more.y, more.zw, nodes[first + 2u], nodes[first + 3u], nodes[first + 4u],
-    );
-}
-
 // A sphere's place in the list, which differs from its place in the leaves. The places are stored after the nodes.
 fn rank_of(number: u32) -> u32 {
-    return nodes[select(WHOLE_ROWS, 5u, CWBVH) * job.node_count + number / 4u][number % 4u];
+    return nodes[NODE_ROWS * job.node_count + number / 4u][number % 4u];
 }
 
-// Adds sums to a pixel of the film. No other thread writes to this pixel.
-fn add_to_film(half: u32, pixel: u32, sums: vec3u) {
-    let index = half * job.width * order.row_count + pixel;
-    let sum = film[index];
-    film[index] = PixelSum(wide_sum(sum.red, sums.x), wide_sum(sum.green, sums.y), wide_sum(sum.blue, sums.z));
+// Adds the path's sums to its pixel of the film.
+fn add_to_film(path: Path) {
+    let row = (path.pixel >> 16u) - order.first_row;
+    // A recorded path has a film of its own.
+    let within = select(row * job.width + (path.pixel & 0xFFFFu), 0u, RECORD);
+    let pixel = path.half * order.row_count * job.width + within;
+    add_wide(6u * pixel, path.sums.x);
+    add_wide(6u * pixel + 2u, path.sums.y);
+    add_wide(6u * pixel + 4u, path.sums.z);
 }
 
-fn wide_sum(sum: vec2u, more: u32) -> vec2u {
-    let low = sum.x + more;
-    return vec2u(low, sum.y + select(0u, 1u, low < more));
+// Adds to a sum, whose low word has number `low` in the film. Several threads may add to it at the same time.
+fn add_wide(low: u32, more: u32) {
+    if atomicAdd(&film[low], more) > 0xFFFFFFFFu - more {
+        atomicAdd(&film[low + 1u], 1u);
+    }
+}
+
+fn film_sum(index: u32) -> vec2u {
+    return vec2u(atomicLoad(&film[index]), atomicLoad(&film[index + 1u]));
 }

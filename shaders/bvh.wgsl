@@ -1,6 +1,6 @@
 // Traversal of a hierarchy with eight children per node by a single ray. (Ylitie, Karras and Laine 2017, "Efficient
-// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4.) The boxes of its nodes are
-// compressed (CWBVH) or whole. Whole boxes take three times the memory and three fifths of the instructions.
+// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4, but with boxes of 32-bit bounds:
+// compressed ones take a third of the memory and 1.3 times as long.)
 //
 // Twin: src/render_cpu/bvh.rs
 
@@ -8,12 +8,10 @@
 // stand for spheres.
 const NODE_HITS = 0xFF000000u;
 
-const BYTE_SHIFTS = vec4u(0u, 8u, 16u, 24u);
-
-// Rows of a node with whole boxes: the bounds of children 0 to 3 and 4 to 7, lower then upper, along x, y and z; the
+// Rows of a node: the bounds of children 0 to 3 and 4 to 7, lower then upper, along x, y and z; the
 // bits that each child adds to a mask of hits; first child, first sphere and mask of nodes; one row of padding, because
 // 16 rows are two cache lines and make cheap addresses.
-const WHOLE_ROWS = 16u;
+const NODE_ROWS = 16u;
 
 // A ray prepared for box tests: 1/d, and the origin moved outwards by the largest possible rounding error.
 struct Slabs {
@@ -22,10 +20,10 @@ struct Slabs {
     high: vec3f,
 }
 
-// `margin_share` is the rounding error relative to the largest coordinate.
-fn slabs_of(ray: Ray, extent: f32, margin_share: f32) -> Slabs {
+// `extent` is the largest coordinate of the boxes.
+fn slabs_of(ray: Ray, extent: f32) -> Slabs {
     let o = abs(ray.origin);
-    let margin = max(max(o.x, o.y), max(o.z, extent)) * margin_share;
+    let margin = max(max(o.x, o.y), max(o.z, extent)) * BOX_MARGIN;
     let d = ray.direction;
     let inverse = vec3f(inverse_of(d.x), inverse_of(d.y), inverse_of(d.z));
     return Slabs(inverse, (ray.origin + margin) * inverse, (ray.origin - margin) * inverse);
@@ -83,66 +81,13 @@ fn hit_bits(
     return hits.x | hits.y | hits.z | hits.w;
 }
 
-fn bytes_of(word: u32) -> vec4u {
-    return (vec4u(word) >> BYTE_SHIFTS) & vec4u(0xFFu);
-}
-
-// The bytes as floats. A processor converts few integers at once, so two of them are made from the bits of 2^23 + byte.
-fn floats_of(word: u32) -> vec4f {
-    let middle = bitcast<vec2f>((vec2u(word >> 8u, word >> 16u) & vec2u(0xFFu)) | vec2u(0x4B000000u)) - 8388608.0;
-    return vec4f(f32(word & 0xFFu), middle, f32(word >> 24u));
-}
-
-// Along each axis the distance to the entry plane is `bound * step + near`, and to the exit plane `bound * step + far`.
-struct Grid {
-    step: vec3f,
-    near: vec3f,
-    far: vec3f,
-}
-
-// The hits among four compressed children, as the bits that their marks select. `x`, `y` and `z` hold the bounds of the
-// entry and exit planes. `octants` holds the ray's octant in each byte; it orders the slots of nodes.
-fn four_hits(grid: Grid, x: vec2u, y: vec2u, z: vec2u, marks: u32, octants: u32, limit: f32) -> u32 {
-    // A mark's upper 3 bits, shifted by its lower 5, which for nodes are 24 + slot.
-    let is_node = ((marks & (marks << 1u)) >> 4u) & 0x01010101u;
-    let places = marks ^ (octants & (is_node * 0xFFu));
-    let bits = (bytes_of(marks) >> vec4u(5u)) << (bytes_of(places) & vec4u(31u));
-    return hit_bits(
-        fma(floats_of(x.x), vec4f(grid.step.x), vec4f(grid.near.x)),
-        fma(floats_of(y.x), vec4f(grid.step.y), vec4f(grid.near.y)),
-        fma(floats_of(z.x), vec4f(grid.step.z), vec4f(grid.near.z)),
-        fma(floats_of(x.y), vec4f(grid.step.x), vec4f(grid.far.x)),
-        fma(floats_of(y.y), vec4f(grid.step.y), vec4f(grid.far.y)),
-        fma(floats_of(z.y), vec4f(grid.step.z), vec4f(grid.far.z)),
-        limit,
-        bits,
-    );
-}
-
-fn compressed_hits(number: u32, slope: Slope, limit: f32) -> Hits {
-    let node = cwbvh_node_at(number);
-    let unit = bitcast<vec3f>(bytes_of(node.units).xyz << vec3u(23u));
-    let grid = Grid(
-        unit * slope.inverse,
-        fma(node.low, slope.inverse, -slope.near),
-        fma(node.low, slope.inverse, -slope.far),
-    );
-    let x = select(node.x, node.x.zwxy, slope.backward.x);
-    let y = select(node.y, node.y.zwxy, slope.backward.y);
-    let z = select(node.z, node.z.zwxy, slope.backward.z);
-    let octants = slope.octant * 0x01010101u;
-    let bits = four_hits(grid, x.xz, y.xz, z.xz, node.marks.x, octants, limit)
-        | four_hits(grid, x.yw, y.yw, z.yw, node.marks.y, octants, limit);
-    return Hits(bits, node.first_child, node.first_sphere, node.units >> 24u);
-}
-
 // Distances to four planes.
 fn planes_at(row: u32, inverse: f32, origin: f32) -> vec4f {
     return fma(bitcast<vec4f>(nodes[row]), vec4f(inverse), vec4f(-origin));
 }
 
-// The hits among four whole children. `near` and `far` are the rows of the entry and exit planes.
-fn four_whole_hits(near: vec3u, far: vec3u, slope: Slope, limit: f32, bits: vec4u) -> u32 {
+// The hits among four children. `near` and `far` are the rows of the entry and exit planes.
+fn four_hits(near: vec3u, far: vec3u, slope: Slope, limit: f32, bits: vec4u) -> u32 {
     return hit_bits(
         planes_at(near.x, slope.inverse.x, slope.near.x),
         planes_at(near.y, slope.inverse.y, slope.near.y),
@@ -155,14 +100,14 @@ fn four_whole_hits(near: vec3u, far: vec3u, slope: Slope, limit: f32, bits: vec4
     );
 }
 
-fn whole_hits(number: u32, slope: Slope, limit: f32) -> Hits {
-    let first = number * WHOLE_ROWS;
+fn hits_of(number: u32, slope: Slope, limit: f32) -> Hits {
+    let first = number * NODE_ROWS;
     let flip = select(vec3u(0u), vec3u(2u), slope.backward);
     let near = first + vec3u(0u, 4u, 8u) + flip;
     let far = first + vec3u(2u, 6u, 10u) - flip;
     let last = nodes[first + 14u];
-    let bits = four_whole_hits(near, far, slope, limit, nodes[first + 12u])
-        | four_whole_hits(near + 1u, far + 1u, slope, limit, nodes[first + 13u]);
+    let bits = four_hits(near, far, slope, limit, nodes[first + 12u])
+        | four_hits(near + 1u, far + 1u, slope, limit, nodes[first + 13u]);
     return Hits(in_order(bits, slope.octant), last.x, last.y, last.z);
 }
 
@@ -177,7 +122,7 @@ fn in_order(hits: u32, octant: u32) -> u32 {
 
 // The groups of children that are still to be visited. Not a variable of the function, which would be cleared for each
 // ray.
-var<private> stack: array<vec2u, CWBVH_STACK_SIZE>;
+var<private> stack: array<vec2u, WIDE_STACK_SIZE>;
 
 // Finds the nearest hit among the spheres of the hierarchy.
 fn traverse(ray: Ray, found: Nearest) -> Nearest {
@@ -192,7 +137,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
             nearest = Nearest(key, start);
         }
     }
-    let slope = slope_of(slabs_of(ray, job.extent, select(BOX_MARGIN, CWBVH_MARGIN, CWBVH)));
+    let slope = slope_of(slabs_of(ray, job.extent));
     // The children of one parent that are still to be visited: the first child, and the hits with the parent's mask of
     // nodes below. The traversal starts with the root as an only child.
     var group = vec2u(0u, 1u << 31u);
@@ -210,12 +155,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
             depth++;
         }
         let limit = bitcast<f32>(nearest.key);
-        var hits: Hits;
-        if CWBVH {
-            hits = compressed_hits(number, slope, limit);
-        } else {
-            hits = whole_hits(number, slope, limit);
-        }
+        let hits = hits_of(number, slope, limit);
         var left = hits.bits & ~NODE_HITS;
         // Terminates, because each turn clears one of 24 bits.
         for (; left != 0u; left &= left - 1u) {

@@ -1,5 +1,6 @@
-// The path loop. Each thread traces one pixel through blocks of its samples. When a path ends, the thread starts the
-// next sample immediately, so no thread waits for the longest path beside it.
+// The path loop. A thread traces blocks of a pixel's samples. When a path ends, it starts the next sample immediately, so
+// no thread waits for the longest path beside it. Where paths can be long, a thread that has finished its block takes the
+// next one of the workgroup's tile, so none waits for the longest pixel either.
 //
 // Twin: src/render_cpu/path
 
@@ -15,6 +16,8 @@ struct Path {
     step: u32,
     // Samples left in the block, including the current one.
     remaining: u32,
+    // Number of the block among those of the tile; NONE before the first.
+    item: u32,
     // Key of the Sobol sampler.
     key: u32,
     // x | y << 16
@@ -25,6 +28,12 @@ struct Path {
     // Whether the path was absorbed, or none has started yet: it ends without another ray.
     absorbed: bool,
     rejected: u32,
+}
+
+// The pixels of a workgroup. Their blocks of samples are numbered: first a block of every pixel, then the next.
+struct Tile {
+    corner: vec2u,
+    size: vec2u,
 }
 
 // What a thread has traced.
@@ -45,20 +54,21 @@ var<private> turns: u32;
 // Whether the current ray's traversal ended early: some drivers end loops that have many turns.
 var<private> ray_is_cut: bool;
 
-// Traces the blocks of the dispatch at a pixel, which has number `slot` in the film buffer, or continues them. After
-// the number of loop turns that the dispatch allows, the path is put aside in the words from `aside` on.
-fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
+// The number of the next block of the tile that no thread has begun.
+var<workgroup> queue: atomic<u32>;
+
+// Traces blocks of the dispatch in a tile, or continues them. After the number of loop turns that the dispatch allows,
+// the path is put aside in the words from `aside` on.
+fn trace(tile: Tile, thread: u32, aside: u32) -> Traced {
+    let pixels = tile.size.x * tile.size.y;
     var path: Path;
-    path.pixel = position.x | (position.y << 16u);
-    path.corner = screen(job.camera, vec2f(position));
     path.absorbed = true;
     path.remaining = 1u;
+    path.item = NONE;
     var traced: Traced;
-    var next_block = 0u;
     if ASIDE && order.resumes > 0u {
-        next_block = take_up(&path, aside);
+        take_up(&path, tile, aside);
     }
-    let first_block = max(next_block, 1u) - 1u;
     let list_turns = turns_over_lists();
     var is_done = path.remaining == 0u;
     turns = 0u;
@@ -85,33 +95,36 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
         var point: SurfacePoint;
         let ended = collect(&path, nearest, record, &point);
         if ended && path.remaining == 0u {
-            if next_block > 0u {
-                add_to_film(path.half, slot, path.sums);
+            if path.item != NONE {
+                add_to_film(path);
+                traced.finished += blocks[path.item / pixels].count;
             }
-            if next_block == order.block_count {
+            path.item = next_item(path.item, thread, pixels);
+            if path.item >= pixels * order.block_count {
                 is_done = true;
                 break;
             }
-            enter_block(&path, blocks[next_block], 0u);
-            path.sums = vec3u(0u);
-            next_block++;
+            enter_block(&path, tile, 0u);
         }
         send_on(&path, ended, nearest.sphere, record, point);
     }
-    // The count is computed outside the branch, because some drivers execute a branch whether or not it is taken.
-    let end_block = select(max(next_block, 1u) - 1u, next_block, is_done);
-    for (var i = first_block; i < end_block; i++) {
-        traced.finished += blocks[i].count;
-    }
     if !is_done {
         if ASIDE {
-            put_aside(path, next_block, aside);
+            put_aside(path, aside);
         }
         traced.unfinished = 1u;
         traced.stuck = select(0u, 1u, ray_is_cut && traced.rays == 0u);
     }
     traced.rejected = path.rejected;
     return traced;
+}
+
+// The block after `item` that the thread traces: the next of the tile, or the next of the thread's own pixel.
+fn next_item(item: u32, thread: u32, pixels: u32) -> u32 {
+    if ASIDE {
+        return atomicAdd(&queue, 1u);
+    }
+    return select(item + pixels, thread, item == NONE);
 }
 
 // Turns of one ray's loops over lists: see `intersect`. Loops over a hierarchy count their own turns.
@@ -251,8 +264,15 @@ fn add_radiance(path: ptr<function, Path>, light: vec3f) {
     }
 }
 
-// Starts sample `place` of a block.
-fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
+// Starts sample `place` of the path's block.
+fn enter_block(path: ptr<function, Path>, tile: Tile, place: u32) {
+    let pixels = tile.size.x * tile.size.y;
+    let block = blocks[(*path).item / pixels];
+    let number = (*path).item % pixels;
+    let position = tile.corner + vec2u(number % tile.size.x, number / tile.size.x);
+    (*path).pixel = position.x | (position.y << 16u);
+    (*path).corner = screen(job.camera, vec2f(position));
+    (*path).sums = vec3u(0u);
     (*path).half = block.half;
     (*path).counter = block.counter + place * block.step;
     (*path).step = block.step;

@@ -1,4 +1,4 @@
-// Entry point: traces samples, with one thread per pixel and one workgroup per tile.
+// Entry point: traces samples, with one workgroup per tile of the picture.
 
 var<workgroup> group_rays: atomic<u32>;
 var<workgroup> group_rejected: atomic<u32>;
@@ -16,13 +16,19 @@ fn path_trace(
     let tile = order.first_tile + number;
     let tile_height = WORKGROUP_SIZE / job.tile_width;
     let tiles_across = (job.width + job.tile_width - 1u) / job.tile_width;
-    let within = vec2u(thread % job.tile_width, thread / job.tile_width);
     let corner = vec2u((tile % tiles_across) * job.tile_width, (tile / tiles_across) * tile_height);
-    let in_film = corner + within;
-    if number < order.tile_count && in_film.x < job.width && in_film.y < order.row_count {
-        let position = vec2u(in_film.x, in_film.y + order.first_row);
-        let aside = order.first_aside + (number * WORKGROUP_SIZE + thread) * ASIDE_WORDS;
-        let traced = trace(position, in_film.y * job.width + in_film.x, aside);
+    let size = min(vec2u(job.tile_width, tile_height), vec2u(job.width, order.row_count) - corner);
+    let first_aside = order.first_aside + number * WORKGROUP_SIZE * ASIDE_WORDS;
+    if ASIDE {
+        if thread == 0u && order.resumes > 0u {
+            atomicStore(&queue, words[first_aside + ASIDE_QUEUE]);
+        }
+        workgroupBarrier();
+    }
+    if number < order.tile_count && (ASIDE || thread < size.x * size.y) {
+        let traced = trace(
+            Tile(vec2u(corner.x, corner.y + order.first_row), size), thread, first_aside + thread * ASIDE_WORDS,
+        );
         atomicAdd(&group_rays, traced.rays);
         atomicAdd(&group_finished, traced.finished);
         if traced.rejected > 0u {
@@ -51,6 +57,9 @@ fn path_trace(
         if unfinished > 0u {
             atomicAdd(&counters.dispatch.unfinished, unfinished);
             atomicAdd(&counters.dispatch.stuck, atomicLoad(&group_stuck));
+            if ASIDE {
+                words[first_aside + ASIDE_QUEUE] = atomicLoad(&queue);
+            }
         }
     }
 }

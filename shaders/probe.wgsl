@@ -116,9 +116,6 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         }
         case PROBE_FIXED_POINT: {
             words[base] = fixed_point(f(base, 0u));
-            let sum = wide_sum(vec2u(words[base + 1u], words[base + 2u]), words[base + 3u]);
-            words[base + 1u] = sum.x;
-            words[base + 2u] = sum.y;
         }
         case PROBE_INCIDENCE: {
             let by_cosine = incidence_of(f(base, 0u));
@@ -133,7 +130,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             put(base, 7u, reflectance);
         }
         case PROBE_BOX: {
-            let slabs = slabs_of(probe_ray(base), f(base, 15u), BOX_MARGIN);
+            let slabs = slabs_of(probe_ray(base), f(base, 15u));
             let slope = slope_of(slabs);
             let low = fma(v3(base, 8u), slope.inverse, -slabs.low);
             let high = fma(v3(base, 11u), slope.inverse, -slabs.high);
@@ -143,13 +140,6 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
                 vec4f(near.x), vec4f(near.y), vec4f(near.z), vec4f(far.x), vec4f(far.y), vec4f(far.z),
                 f(base, 14u), vec4u(1u, 2u, 4u, 8u),
             );
-        }
-        case PROBE_FOUR_HITS: {
-            let grid = Grid(v3(base, 0u), v3(base, 3u), v3(base, 6u));
-            let x = vec2u(words[base + 9u], words[base + 10u]);
-            let y = vec2u(words[base + 11u], words[base + 12u]);
-            let z = vec2u(words[base + 13u], words[base + 14u]);
-            words[base] = four_hits(grid, x, y, z, words[base + 15u], words[base + 16u] * 0x01010101u, f(base, 17u));
         }
         default: {}
     }

@@ -24,10 +24,9 @@ fn resolve(
     let row = order.first_row + index / job.width;
     let lower = row >= job.height / 2u;
     let gamma = order.transfer == TRANSFER_GAMMA2 || (order.transfer == TRANSFER_LINEAR_ABOVE_GAMMA2 && lower);
-    let sum = film[index];
     let count = max(f32(order.sample_count), 1.0);
-    let red = to_byte(mean_of(sum.red, count), gamma);
-    let green = to_byte(mean_of(sum.green, count), gamma);
-    let blue = to_byte(mean_of(sum.blue, count), gamma);
+    let red = to_byte(mean_of(film_sum(6u * index), count), gamma);
+    let green = to_byte(mean_of(film_sum(6u * index + 2u), count), gamma);
+    let blue = to_byte(mean_of(film_sum(6u * index + 4u), count), gamma);
     words[index] = red | (green << 8u) | (blue << 16u) | 0xFF000000u;
 }

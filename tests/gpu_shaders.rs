@@ -19,13 +19,12 @@ fn parsed(entry_point: EntryPoint) -> naga::Module {
     }
 }
 
-/// The overrides of general kernels with a list and with each hierarchy, and of one with every stage rule.
-fn variants() -> [Vec<(String, f64)>; 4] {
+/// The overrides of general kernels with a list and with a hierarchy, and of one with every stage rule.
+fn variants() -> [Vec<(String, f64)>; 3] {
     let general = Features::default();
     let variants = [
         general,
         Features { hierarchy: true, ..general },
-        Features { hierarchy: true, cwbvh: true, ..general },
         Features {
             specks: true,
             steep_glass: true,

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
-use weekender::render_gpu::{GpuOptions, HierarchyKind};
+use weekender::render_gpu::GpuOptions;
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::Rules;
 
@@ -79,16 +79,12 @@ fn closed_forms_hold() {
         ("a closed ball on the ground", vec![(DVec3::ZERO, 1.0, WHITE), ground], inside, 300, 0.0),
         ("total reflection", vec![(DVec3::ZERO, 1.0, GLASS)], trapped, 1000, 0.0),
     ];
-    for kind in [HierarchyKind::Whole, HierarchyKind::Compressed] {
-        let Some(mut gpu) = gpu(GpuOptions { hierarchy: Some(kind), ..GpuOptions::default() }) else {
-            return;
-        };
-        for (what, balls, camera, max_depth, expected) in &cases {
-            for balls in [balls.clone(), among_many(balls)] {
-                let found = mean(&film(&mut gpu, &job(&balls, *camera, *max_depth)));
-                let count = balls.len();
-                assert!((found - expected).abs() <= 1e-6, "{what}, {count} balls, {kind:?}: {found}");
-            }
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    for (what, balls, camera, max_depth, expected) in &cases {
+        for balls in [balls.clone(), among_many(balls)] {
+            let found = mean(&film(&mut gpu, &job(&balls, *camera, *max_depth)));
+            let count = balls.len();
+            assert!((found - expected).abs() <= 1e-6, "{what}, {count} balls: {found}");
         }
     }
 }

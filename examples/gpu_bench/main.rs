@@ -1,10 +1,8 @@
 //! Times the GPU backend; benches/gpu.sh calls it.
 //!
-//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [whole|compressed] [samples=N] [target_ms=N] [adapter=NAME]`
+//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [samples=N] [target_ms=N] [adapter=NAME]`
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
-//! `gpu_bench pair SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [OPTION...]` runs whole and compressed
-//! boxes in turn and prints the median of each and of the ratios.
-//! `gpu_bench hierarchy SCENE...` prints the size of both kinds and how long the hierarchy takes to build.
+//! `gpu_bench hierarchy SCENE...` prints the size of the hierarchy and how long it takes to build.
 //! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
 //! `gpu_bench work SCENE...` prints the operations of one turn of the path loop, for scenes without a hierarchy.
@@ -22,16 +20,15 @@ use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer};
 use weekender::numbers::statistics;
 use weekender::prepared::PreparedScene;
-use weekender::prepared::wide_bvh::{CwBvhNode, WideBvh};
+use weekender::prepared::wide_bvh::WideBvh;
 use weekender::progressive::{Plan, Progressive, RenderRequest};
-use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind};
+use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::stages::Shading;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.split_first() {
         Some((mode, rest)) if mode == "trace" => trace(rest),
-        Some((mode, rest)) if mode == "pair" => pair(rest),
         Some((mode, rest)) if mode == "hierarchy" => rest.iter().try_for_each(|scene| hierarchy(scene)),
         Some((mode, rest)) if mode == "adapter" => {
             println!("{}", GpuRenderer::new(options_of(rest)?)?.adapter());
@@ -41,9 +38,9 @@ fn main() -> anyhow::Result<()> {
         Some((mode, rest)) if mode == "work" => rest.iter().try_for_each(|scene| work(scene)),
         Some((mode, rest)) if mode == "passes" => passes(rest),
         Some((mode, rest)) if mode == "first" => first(rest),
-        _ => anyhow::bail!(
-            "the first argument must be trace, pair, passes, first, hierarchy, adapter, size or work"
-        ),
+        _ => {
+            anyhow::bail!("the first argument must be trace, passes, first, hierarchy, adapter, size or work")
+        }
     }
 }
 
@@ -60,8 +57,6 @@ fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
     for option in arguments {
         match option.split_once('=') {
             None if option == "general" => options.specialise = false,
-            None if option == "whole" => options.hierarchy = Some(HierarchyKind::Whole),
-            None if option == "compressed" => options.hierarchy = Some(HierarchyKind::Compressed),
             Some(("samples", count)) => options.samples_per_dispatch = Some(count.parse()?),
             Some(("target_ms", ms)) => options.dispatch_target = Duration::from_millis(ms.parse()?),
             Some(("adapter", name)) => options.adapter = Some(name.to_owned()),
@@ -113,54 +108,20 @@ fn median(values: &[f64]) -> f64 {
     statistics::median(values.iter().copied()).unwrap_or(f64::NAN)
 }
 
-fn pair(arguments: &[String]) -> anyhow::Result<()> {
-    let [scene, width, height, samples, depth, runs, rest @ ..] = arguments else {
-        anyhow::bail!("pair needs SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS");
-    };
-    let job = job(scene, [width.parse()?, height.parse()?, depth.parse()?])?;
-    let range = 0..samples.parse()?;
-    let go_on = AtomicBool::new(false);
-    let mut renderers = Vec::new();
-    for hierarchy in [HierarchyKind::Compressed, HierarchyKind::Whole].map(Some) {
-        renderers.push(GpuRenderer::new(GpuOptions { hierarchy, ..options_of(rest)? })?);
-    }
-    let mut times = [Vec::new(), Vec::new()];
-    for run in 0..2 + runs.parse::<usize>()? {
-        for (renderer, times) in renderers.iter_mut().zip(&mut times) {
-            let stats = renderer.accumulate(&job, range.clone(), &mut job.new_film(), &go_on)?;
-            if run >= 2 {
-                times.push(stats.trace.as_secs_f64() * 1e9 / stats.paths as f64);
-            }
-        }
-    }
-    let ratios: Vec<f64> =
-        times[1].iter().zip(&times[0]).map(|(whole, compressed)| whole / compressed).collect();
-    let [compressed, whole] = &times;
-    println!(
-        "| {} | {:.1} | {:.1} | {:.2} |",
-        arguments.join(" "),
-        median(compressed),
-        median(whole),
-        median(&ratios)
-    );
-    Ok(())
-}
-
 fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
     let prepared = PreparedScene::<f32>::new(&job);
     let spheres: Vec<_> = prepared.spheres_of_hierarchy(&job).collect();
     let count = spheres.len() as f64;
     let mut times = Vec::new();
-    let mut sizes = [0.0; 2];
+    let mut size = 0.0;
     for _ in 0..5 {
         let start = Instant::now();
         let built = WideBvh::build(spheres.iter().copied(), prepared.origin);
         times.push(start.elapsed().as_secs_f64() * 1e3);
-        let bytes = [built.nodes.len() * size_of::<CwBvhNode>(), size_of_val(&*built.whole_nodes())];
-        sizes = bytes.map(|bytes| bytes as f64 / count + size_of::<u32>() as f64);
+        size = size_of_val(&*built.rows()) as f64 / count + size_of::<u32>() as f64;
     }
-    println!("| {scene} | {:.1} | {:.1} | {:.2} |", sizes[0], sizes[1], median(&times));
+    println!("| {scene} | {size:.1} | {:.2} |", median(&times));
     Ok(())
 }
 

@@ -6,45 +6,29 @@ use std::rc::Rc;
 use weekender::film::PixelSum;
 use weekender::job::render::RenderJob;
 use weekender::kernel::sampling::SampleBlock;
-use weekender::kernel::{GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, WORKGROUP_SIZE};
+use weekender::kernel::{Features, GpuAside, GpuBlock, GpuCounters, GpuDispatch, WORKGROUP_SIZE};
 use weekender::render_gpu::layout::tile_size;
 use weekender::render_gpu::shader_source::shared;
-use weekender::render_gpu::{Exported, TURN_LIMIT};
+use weekender::render_gpu::{Exported, SHARED_BLOCK, TURN_LIMIT};
 use wgpu::{BufferUsages, PollType};
 
 const ENTRIES: &str = include_str!("mappings.wgsl");
-
-/// Additions to a pixel that any number of threads may make at once.
-const ATOMIC_FILM: &str = "
-fn add_to_film(half: u32, pixel: u32, sums: vec3u) {
-    let index = 6u * pixel;
-    add_wide(index, sums.x);
-    add_wide(index + 2u, sums.y);
-    add_wide(index + 4u, sums.z);
-}
-
-fn add_wide(index: u32, more: u32) {
-    let before = atomicAdd(&film[index], more);
-    if before + more < before {
-        atomicAdd(&film[index + 1u], 1u);
-    }
-}
-";
 
 /// Who traces what.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Way {
     Pixels,
+    SharedBlocks,
     SamplesOfATile,
     SamplesOfAPixel,
 }
 
 impl Way {
-    const ALL: [Way; 3] = [Way::Pixels, Way::SamplesOfATile, Way::SamplesOfAPixel];
+    const ALL: [Way; 4] = [Way::Pixels, Way::SharedBlocks, Way::SamplesOfATile, Way::SamplesOfAPixel];
 
     fn entry_point(self) -> &'static str {
         match self {
-            Way::Pixels => "pixels",
+            Way::Pixels | Way::SharedBlocks => "pixels",
             Way::SamplesOfATile => "samples_of_a_tile",
             Way::SamplesOfAPixel => "samples_of_a_pixel",
         }
@@ -53,35 +37,30 @@ impl Way {
     fn name(self) -> &'static str {
         match self {
             Way::Pixels => "a thread per pixel",
+            Way::SharedBlocks => "a group of threads per tile, which share its samples in blocks",
             Way::SamplesOfATile => "a thread per sample, neighbouring pixels in a group",
             Way::SamplesOfAPixel => "a thread per sample, a pixel's samples in a group",
         }
     }
 
-    /// The program's shaders with the parts in which this way differs.
+    /// The program's shaders. With one thread per sample, a thread has a single block instead of every one of its pixel.
     fn source(self) -> anyhow::Result<String> {
         let mut text = shared();
-        // A thread begins with its own block. With one thread per sample, it ends there, too.
-        let end = if self == Way::Pixels { "order.block_count" } else { "own_block + 1u" };
-        let mut replacements = vec![
-            ("var next_block = 0u;", "var next_block = own_block;".to_owned()),
-            (
-                "if next_block > 0u {\n                add_to_film",
-                "if next_block > own_block {\n                add_to_film".to_owned(),
-            ),
-            ("if next_block == order.block_count", format!("if next_block == {end}")),
-        ];
-        if self != Way::Pixels {
-            let body = text.split("fn add_to_film").nth(1).and_then(|rest| rest.split("\n}\n").next());
-            let old = format!("fn add_to_film{}\n}}\n", body.context("add_to_film is not in the shaders")?);
-            text = text.replace(&old, ATOMIC_FILM);
-            replacements.push(("film: array<PixelSum>", "film: array<atomic<u32>>".to_owned()));
-        }
-        for (old, new) in replacements {
-            anyhow::ensure!(text.matches(old).count() == 1, "{old:?} is not in the shaders once");
-            text = text.replace(old, &new);
+        if matches!(self, Way::SamplesOfATile | Way::SamplesOfAPixel) {
+            let next = "select(item + pixels, thread, item == NONE)";
+            anyhow::ensure!(text.matches(next).count() == 1, "{next:?} is not in the shaders once");
+            text = text.replace(next, "select(NONE, own_item, item == NONE)");
         }
         Ok(text + ENTRIES)
+    }
+
+    /// Most samples in a block.
+    fn block_limit(self) -> u32 {
+        match self {
+            Way::Pixels => u32::MAX,
+            Way::SharedBlocks => SHARED_BLOCK,
+            Way::SamplesOfATile | Way::SamplesOfAPixel => 1,
+        }
     }
 }
 
@@ -117,7 +96,7 @@ pub fn measure(options: &Options) -> anyhow::Result<Comparison> {
     let described = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&described))?;
     let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
-    let length = pixels * size_of::<GpuPixelSum>() as u64;
+    let length = pixels * size_of::<PixelSum>() as u64;
     let buffer = |size: u64, usage| {
         device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
     };
@@ -146,9 +125,10 @@ impl GpuWay {
     fn new(way: Way, shared: &Rc<Shared>, job: &RenderJob, samples: u64) -> anyhow::Result<Self> {
         let (device, queue) = (&shared.device, &shared.queue);
         let exported = Exported::new(job).map_err(|reason| anyhow!(reason))?;
+        let features = Features { aside: way == Way::SharedBlocks, ..exported.features };
         let source = wgpu::ShaderSource::Wgsl(way.source()?.into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-        let overrides = exported.features.overrides();
+        let overrides = features.overrides();
         let constants: Vec<(&str, f64)> =
             overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
         let filled = |bytes: &[u8], usage: BufferUsages| {
@@ -159,9 +139,9 @@ impl GpuWay {
             queue.write_buffer(&buffer, 0, bytes);
             buffer
         };
-        let limit = if way == Way::Pixels { exported.block_limit } else { 1 };
+        let limit = way.block_limit().min(exported.block_limit);
         let ranges: Vec<_> = match way {
-            Way::Pixels => std::iter::once(0..samples).collect(),
+            Way::Pixels | Way::SharedBlocks => std::iter::once(0..samples).collect(),
             _ => (0..samples).map(|sample| sample..sample + 1).collect(),
         };
         let blocks: Vec<GpuBlock> = ranges
@@ -257,7 +237,7 @@ impl GpuWay {
         let samples = samples as u32;
         let pixels = width * height;
         let workgroups = match way {
-            Way::Pixels => [tiles, 1, 1],
+            Way::Pixels | Way::SharedBlocks => [tiles, 1, 1],
             Way::SamplesOfATile => [tiles, samples, 1],
             Way::SamplesOfAPixel => {
                 anyhow::ensure!(
@@ -305,7 +285,7 @@ impl Mapping for GpuWay {
         device.poll(PollType::wait_indefinitely())?;
         let (outcome, seconds) = timed(|| self.dispatch());
         outcome?;
-        let length = pixels * size_of::<GpuPixelSum>() as u64;
+        let length = pixels * size_of::<PixelSum>() as u64;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(film, 0, staging, 0, length);
         let counted = size_of::<GpuCounters>() as u64;

@@ -56,7 +56,7 @@ constants! {
     pub const UNIFORM_ANCHORED: usize = 4;
 
     /// Stack entries of a traversal on the GPU, one per level, and therefore the most levels of a tree.
-    pub const CWBVH_STACK_SIZE: usize = 24;
+    pub const WIDE_STACK_SIZE: usize = 24;
 
     /// Words of a probe's input and output.
     pub const PROBE_STRIDE: usize = 18;
@@ -100,10 +100,6 @@ constants! {
 
     /// Upper bound of the rounding error in sphere and box tests, relative to the largest coordinate involved.
     pub const BOX_MARGIN: f64 = 8.0 * HALF_EPSILON;
-
-    /// The same bound for boxes relative to a node's corner: rounding the distance to the corner adds 2 units, and a
-    /// box extends beyond its contents by at most 1 / 127 of its node.
-    pub const CWBVH_MARGIN: f64 = 12.0 * HALF_EPSILON;
 
     /// Factor for the distance to a box's far side, which covers the rounding of the distances themselves.
     pub const BOX_WIDENING: f64 = 1.0 + 8.0 * HALF_EPSILON;

@@ -191,9 +191,9 @@ macro_rules! features {
                 off.map(|(part, _, label)| (part, label)).collect()
             }
 
-            /// For each feature, its name and the label of its value.
-            fn labels(&self) -> Vec<(&'static str, &'static str)> {
-                vec![$((stringify!($name), label(self.$name, &[$($($labels),+)?]))),*]
+            /// For each feature, the label of its value.
+            fn labels(&self) -> Vec<&'static str> {
+                vec![$(label(self.$name, &[$($($labels),+)?])),*]
             }
         }
     };
@@ -237,8 +237,6 @@ features! {
     steep_glass: bool [off false, cpu EXTREMES, says "steep glass"] = has_steep_glass(job);
     /// The scene has a hierarchy.
     hierarchy: bool [off false, cpu HIERARCHY, says "hierarchy"] = spheres.has_hierarchy;
-    /// The hierarchy is the compressed one; the GPU decides this.
-    cwbvh: bool [off false, general false, says "compressed hierarchy"] = false;
     /// The spheres fit the uniform buffer, and the next two counts are those of the scene.
     few_spheres: bool [off false, general false] = are_few(spheres);
     /// Number of spheres with one root, if there are few spheres.
@@ -262,7 +260,8 @@ features! {
     hemisphere: bool [off false, cpu RULES, says "hemisphere"] = job.rules().diffuse == Diffuse::Hemisphere;
     /// The reflectance depends on the picture strip.
     reflectance_strips: bool [off false, cpu RULES, says "strips"] = job.rules().reflectance_strips;
-    /// Paths may be too long for one dispatch of the GPU; the GPU decides this.
+    /// Paths may be too long for one dispatch of the GPU, and the threads of a workgroup share its blocks of samples. The
+    /// GPU decides this.
     aside: bool [off true, general true] = true;
     /// What a ray contributes.
     shading: Shading [off Shading::Path, cpu RULES] = job.rules().shading;
@@ -273,9 +272,7 @@ features! {
 impl Features {
     /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
-        let is_listed =
-            |(name, label): &(&str, &str)| !(label.is_empty() || self.cwbvh && *name == "hierarchy");
-        let labels = self.labels().into_iter().filter(is_listed).map(|(_, label)| label.to_owned());
+        let labels = self.labels().into_iter().filter(|label| !label.is_empty()).map(str::to_owned);
         let count = self.opaque_count + self.two_root_count;
         let few = self.few_spheres.then(|| format!("{count} spheres in constants"));
         labels.chain(few).collect::<Vec<_>>().join(", ")
@@ -283,9 +280,7 @@ impl Features {
 
     /// Names what a kernel with exactly these features leaves out. The rules of the stages count as one.
     pub fn left_out(&self) -> Vec<&'static str> {
-        let is_listed = |(part, label): &(u32, &'static str)| {
-            !label.is_empty() && *part != parts::RULES && *label != "compressed hierarchy"
-        };
+        let is_listed = |(part, label): &(u32, &'static str)| !label.is_empty() && *part != parts::RULES;
         let off = self.labels_off().into_iter().filter(is_listed).map(|(_, label)| label);
         let rules = (self.parts() & parts::RULES == 0).then_some(parts::STAGE_RULES);
         off.chain(rules).collect()
@@ -357,7 +352,7 @@ mod tests {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
         let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };
         assert_eq!(special.generalised(), own);
-        let hemisphere = Features { hemisphere: true, hierarchy: true, cwbvh: true, lens: false, ..own };
-        assert_eq!(hemisphere.generalised(), Features { cwbvh: false, lens: true, ..hemisphere });
+        let hemisphere = Features { hemisphere: true, hierarchy: true, lens: false, ..own };
+        assert_eq!(hemisphere.generalised(), Features { lens: true, ..hemisphere });
     }
 }

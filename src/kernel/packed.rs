@@ -22,12 +22,14 @@ record! {
         pub throughput: [f32; 3],
         /// Bounce, samples left and whether the path is absorbed; 0 if nothing was put aside.
         pub state: u32,
-        /// Number of blocks that the thread has begun.
-        pub next_block: u32,
+        /// Number of the block among those of the tile.
+        pub item: u32,
         /// Sums of the block.
         pub sums: [u32; 3],
         /// Squared sine of the angle of incidence inside steep glass.
         pub sine2: f32,
+        /// In the first thread of a workgroup: number of the next block that no thread has begun.
+        pub queue: u32,
     }
 }
 

@@ -176,29 +176,6 @@ pub struct Node<R> {
 }
 
 record! {
-    /// Eight compressed boxes, in the byte layout of obvhs. (Ylitie, Karras and Laine 2017.)
-    #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-    pub struct GpuCwbvhNode as "CwbvhNode" {
-        /// Lowest corner, which the children's boxes are relative to.
-        pub low: [f32; 3],
-        /// Low 24 bits: for each axis, 8 bits with the exponent of its unit. High 8 bits: which children are nodes.
-        pub units: u32,
-        /// First child that is a node; these children are adjacent.
-        pub first_child: u32,
-        /// First sphere of the other children; their spheres are adjacent.
-        pub first_sphere: u32,
-        /// 8 bits per child: the upper 3 are added to a mask of hits, shifted by the number in the lower 5.
-        pub marks: [u32; 2],
-        /// 8 bits per child: lower bounds of children 0 to 3 and 4 to 7, then upper bounds, along x.
-        pub x: [u32; 4],
-        /// The same along y.
-        pub y: [u32; 4],
-        /// The same along z.
-        pub z: [u32; 4],
-    }
-}
-
-record! {
     /// The parameters of a job, the same for all its dispatches.
     #[derive(Clone, Copy, Debug)]
     pub struct GpuJob as "Job" {
@@ -278,19 +255,6 @@ record! {
 }
 
 record! {
-    /// Sums of a pixel in units of 2^-24, in the byte layout of a [`crate::film::PixelSum`].
-    #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-    pub struct GpuPixelSum as "PixelSum" {
-        /// Red: low and high word.
-        pub red: [u32; 2],
-        /// Green: low and high word.
-        pub green: [u32; 2],
-        /// Blue: low and high word.
-        pub blue: [u32; 2],
-    }
-}
-
-record! {
     /// Counters since the film was last fetched.
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuCounters as "Counters" {
@@ -344,11 +308,9 @@ all! {
     ShadingRecord<f32> = RECORD_COLUMNS * size_of::<f32>(),
     AnchoredSphere<f32> = size_of::<AnchoredSphere<f32>>(),
     CameraTable<f32> = size_of::<CameraTable<f32>>(),
-    GpuCwbvhNode = size_of::<GpuCwbvhNode>(),
     GpuJob = size_of::<GpuJob>(),
     GpuDispatch = size_of::<GpuDispatch>(),
     GpuBlock = size_of::<GpuBlock>(),
-    GpuPixelSum = size_of::<GpuPixelSum>(),
     GpuCounters = size_of::<GpuCounters>(),
     GpuDispatchCounters = size_of::<GpuDispatchCounters>(),
 }

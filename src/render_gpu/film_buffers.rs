@@ -4,16 +4,16 @@
 use super::arrival::{PIXEL_WORDS, add_rows, view};
 use super::device::Gpu;
 use super::failed;
-use super::layout::{GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, tile_size};
+use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
 use super::schedule::BLOCK_LIMIT;
-use crate::film::{Film, SampleRanges};
+use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
 /// Size of a pixel's sums in bytes.
-const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
+const PIXEL_SIZE: u64 = size_of::<PixelSum>() as u64;
 
 /// Unrequested transfers of the film may take at most one part in this many of the time.
 const ARRIVAL_SHARE: u32 = 20;

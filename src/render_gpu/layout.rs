@@ -3,11 +3,9 @@
 use crate::job::render::RenderSettings;
 use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 pub use crate::kernel::{
-    GpuAside, GpuBlock, GpuCounters, GpuCwbvhNode, GpuDispatch, GpuDispatchCounters, GpuJob, GpuPixelSum,
-    WORKGROUP_SIZE,
+    GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuDispatchCounters, GpuJob, WORKGROUP_SIZE,
 };
 use crate::prepared::PreparedScene;
-use crate::prepared::wide_bvh::CwBvhNode;
 
 impl GpuJob {
     /// The parameters of a job whose hierarchy has `node_count` nodes.
@@ -51,12 +49,6 @@ pub fn tile_size(width: u32, height: u32) -> [u32; 2] {
         tile_width /= 2;
     }
     [tile_width, WORKGROUP_SIZE / tile_width]
-}
-
-impl From<&CwBvhNode> for GpuCwbvhNode {
-    fn from(node: &CwBvhNode) -> Self {
-        bytemuck::cast(*node)
-    }
 }
 
 #[cfg(test)]

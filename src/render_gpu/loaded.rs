@@ -7,7 +7,7 @@ use super::options::InjectionPoint;
 use super::scene::SceneData;
 use super::scene::{TURN_LIMIT, turns_over_lists};
 use super::shader_source::EntryPoint;
-use super::{GpuRenderer, HierarchyKind, failed};
+use super::{GpuRenderer, failed};
 use crate::job::render::{RenderError, RenderJob};
 use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
@@ -114,20 +114,14 @@ impl GpuRenderer {
         let prepared = made.ok_or(RenderError::Cancelled)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
         let begin = Instant::now();
-        let data = SceneData::new(job, &prepared, self.hierarchy_kind(&prepared)).map_err(failed)?;
+        let data = SceneData::new(job, &prepared).map_err(failed)?;
         self.report.hierarchy_time = prepared.hierarchy_time + begin.elapsed();
         self.copied(prepared, data).map_err(failed)
-    }
-
-    fn hierarchy_kind(&self, prepared: &PreparedScene<f32>) -> HierarchyKind {
-        let of_scene = HierarchyKind::of(self.gpu.adapter.is_software, prepared.two_root.len());
-        self.options.hierarchy.unwrap_or(of_scene)
     }
 
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
         let needed = prepared.features;
         let features = if self.options.specialise { needed } else { needed.generalised() };
-        let features = self.hierarchy_kind(prepared).in_features(features);
         Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 

@@ -23,10 +23,9 @@ mod trace;
 
 pub use adapter::{AdapterInfo, adapters};
 pub use options::{
-    BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
-    InjectionPoint,
+    BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, INTERACTIVE_TARGET, InjectionPoint,
 };
-pub use scene::{Exported, TURN_LIMIT};
+pub use scene::{Exported, SHARED_BLOCK, TURN_LIMIT};
 
 use crate::film::Film;
 use crate::job::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};

@@ -1,6 +1,5 @@
 //! Options for opening and using an adapter, errors if none can be used, and the renderer's report.
 
-use crate::kernel::Features;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -15,31 +14,6 @@ pub const PATIENCE: Duration = Duration::from_secs(8);
 
 /// Factor for the wait at a kernel's first dispatch, when the driver may have to compile it.
 pub const COMPILING_PATIENCE: u32 = 6;
-
-/// The boxes in the hierarchy of scenes of many spheres. Both kinds find the same hits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HierarchyKind {
-    /// Whole boxes, 256 bytes per node: three fifths of the instructions.
-    Whole,
-    /// Compressed boxes, 80 bytes per node (CWBVH): a third of the memory.
-    Compressed,
-}
-
-/// Most spheres of a hierarchy with whole boxes. Nodes and spheres of so many fit the first-level cache of a
-/// multiprocessor (256 kB on the H100).
-const WHOLE_LIMIT: usize = 3000;
-
-impl HierarchyKind {
-    /// The faster kind. Software adapters are faster with compressed boxes.
-    pub(super) fn of(is_software: bool, spheres: usize) -> Self {
-        if is_software || spheres > WHOLE_LIMIT { HierarchyKind::Compressed } else { HierarchyKind::Whole }
-    }
-
-    /// The features of a kernel that traverses a hierarchy of this kind, if it traverses one.
-    pub(super) fn in_features(self, features: Features) -> Features {
-        Features { cwbvh: features.hierarchy && self == HierarchyKind::Compressed, ..features }
-    }
-}
 
 /// A way in which a device can fail in the middle of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,8 +64,6 @@ pub struct GpuOptions {
     pub dispatch_target: Duration,
     /// Whether kernels contain only what the job needs. Turned off to measure the gain.
     pub specialise: bool,
-    /// The kind of hierarchy for scenes of many spheres; by default the faster one.
-    pub hierarchy: Option<HierarchyKind>,
     /// Samples per pixel in a dispatch, for measurements; by default as many as the target time allows.
     pub samples_per_dispatch: Option<u64>,
     /// Loop turns after which a thread puts its path aside, for tests; by default as many as are safe.
@@ -111,7 +83,6 @@ impl Default for GpuOptions {
             allow_software: false,
             dispatch_target: BATCH_TARGET,
             specialise: true,
-            hierarchy: None,
             samples_per_dispatch: None,
             turn_limit: None,
             film_limit: None,
@@ -212,22 +183,6 @@ mod tests {
         assert_eq!((best.adapter.as_deref(), best.allow_software), (None, false));
         let named = GpuOptions::of_adapter(Some("llvmpipe"));
         assert_eq!((named.adapter.as_deref(), named.allow_software), (Some("llvmpipe"), true));
-    }
-
-    #[test]
-    fn only_a_kernel_with_a_hierarchy_traverses_the_compressed_one() {
-        for (hierarchy, kind, expected) in [
-            (true, HierarchyKind::Compressed, true),
-            (true, HierarchyKind::Whole, false),
-            (false, HierarchyKind::Compressed, false),
-            (false, HierarchyKind::Whole, false),
-        ] {
-            // Whatever the features say, the kind decides.
-            for cwbvh in [false, true] {
-                let features = kind.in_features(Features { hierarchy, cwbvh, ..Features::default() });
-                assert_eq!((features.hierarchy, features.cwbvh), (hierarchy, expected), "{kind:?}");
-            }
-        }
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! A scene's spheres, shading records and hierarchy, in the order in which the kernel reads them, for this host and for
 //! others, such as a web page.
 
-use super::HierarchyKind;
-use super::layout::{GpuCwbvhNode, GpuJob};
+use super::layout::GpuJob;
 use crate::job::render::RenderJob;
-use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, Features, RECORD_COLUMNS, words_of};
+use crate::kernel::{AnchoredSphere, Features, RECORD_COLUMNS, WIDE_STACK_SIZE, words_of};
 use crate::prepared::PreparedScene;
 use crate::prepared::wide_bvh::WideBvh;
 use crate::stages::SurfaceRule;
@@ -26,11 +25,11 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// Collects the data of a scene, with a hierarchy of the given kind if the prepared scene has one.
+    /// Collects the data of a scene, with a hierarchy if the prepared scene has one.
     ///
     /// # Errors
     /// If the hierarchy has more levels than a traversal supports.
-    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>, kind: HierarchyKind) -> Result<Self, String> {
+    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>) -> Result<Self, String> {
         let mut data = SceneData {
             spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
             records: prepared.records.iter().map(|row| row.0).collect(),
@@ -39,10 +38,10 @@ impl SceneData {
             node_count: 0,
         };
         let Some(hierarchy) = &prepared.hierarchy else { return Ok(data) };
-        let depth = data.take_hierarchy(job, prepared, &hierarchy.ranks, kind);
-        if depth > CWBVH_STACK_SIZE {
+        let depth = data.take_hierarchy(job, prepared, &hierarchy.ranks);
+        if depth > WIDE_STACK_SIZE {
             return Err(format!(
-                "the hierarchy has {depth} levels, but the kernel has room for {CWBVH_STACK_SIZE}; render this scene on the CPU"
+                "the hierarchy has {depth} levels, but the kernel has room for {WIDE_STACK_SIZE}; render this scene on the CPU"
             ));
         }
         Ok(data)
@@ -66,27 +65,15 @@ impl SceneData {
     }
 
     /// Builds the hierarchy, puts spheres and records in the order of its leaves, and returns its depth.
-    fn take_hierarchy(
-        &mut self,
-        job: &RenderJob,
-        prepared: &PreparedScene<f32>,
-        ranks: &[u32],
-        kind: HierarchyKind,
-    ) -> usize {
+    fn take_hierarchy(&mut self, job: &RenderJob, prepared: &PreparedScene<f32>, ranks: &[u32]) -> usize {
         let built = WideBvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
         let records: Vec<_> = built.order.iter().map(|i| self.records[*i as usize]).collect();
         self.records[..records.len()].copy_from_slice(&records);
         let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
         self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
-        self.node_count = built.nodes.len() as u32;
-        self.nodes = match kind {
-            HierarchyKind::Whole => built.whole_nodes(),
-            HierarchyKind::Compressed => {
-                let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();
-                bytemuck::cast_slice(&nodes).to_vec()
-            }
-        };
+        self.node_count = built.node_count() as u32;
+        self.nodes = built.rows();
         let ranks: Vec<u32> = built.order.iter().map(|place| ranks[*place as usize]).collect();
         self.nodes.extend(ranks.chunks(4).map(|four| {
             let mut places = [0; 4];
@@ -103,6 +90,10 @@ impl SceneData {
 /// This is half of the smallest limit known. llvmpipe ends every loop once the loops of a thread have taken 65,535
 /// turns together; it runs 8 threads in step, and turns that two of them take count twice.
 pub const TURN_LIMIT: u32 = 1 << 15;
+
+/// Most samples in a block where the threads of a workgroup share its blocks. A thread that finds none left waits no
+/// longer than the others need for a block; each one costs the time of some rays.
+pub const SHARED_BLOCK: u32 = 16;
 
 /// Loop turns over lists for one ray. Twin: `turns_over_lists` in shaders/path.wgsl.
 pub fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
@@ -129,15 +120,14 @@ pub struct Exported {
 }
 
 impl Exported {
-    /// Prepares a job with the compressed hierarchy if it needs one.
+    /// Prepares a job.
     ///
     /// # Errors
     /// If the hierarchy has more levels than a traversal supports.
     pub fn new(job: &RenderJob) -> Result<Self, String> {
         let prepared = PreparedScene::<f32>::new(job);
-        let kind = HierarchyKind::Compressed;
-        let data = SceneData::new(job, &prepared, kind)?;
-        let features = kind.in_features(prepared.features);
+        let data = SceneData::new(job, &prepared)?;
+        let features = prepared.features;
         Ok(Exported {
             features,
             buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
@@ -154,6 +144,7 @@ mod tests {
     use super::*;
     use crate::job::recipe::Recipe;
     use crate::job::render::RenderSettings;
+    use crate::prepared::wide_bvh::NODE_ROWS;
     use crate::scene::{Camera, Material, Scene};
     use crate::stages::Rules;
 
@@ -161,25 +152,21 @@ mod tests {
     fn each_sphere_has_its_record_and_its_rank() {
         let job = Recipe::find("field:500").unwrap().job().unwrap();
         let prepared = PreparedScene::<f32>::new(&job);
-        let ranks_in_the_scene = |kind, rows_of_a_node: usize| {
-            let data = SceneData::new(&job, &prepared, kind).unwrap();
-            for (sphere, record) in data.spheres.iter().zip(&data.records) {
-                assert_eq!(sphere[..3], record[..3], "the centre");
-            }
-            let count = data.node_count as usize;
-            let ranks: Vec<u32> = data.nodes[rows_of_a_node * count..].concat();
-            // They fill whole rows of four.
-            assert_eq!(ranks.len(), data.spheres.len().next_multiple_of(4));
-            let mut ranks: Vec<(u32, u32)> = data.scene_index.iter().copied().zip(ranks).collect();
-            ranks.truncate(data.spheres.len());
-            ranks.sort_unstable();
-            ranks
-        };
-        let whole = ranks_in_the_scene(HierarchyKind::Whole, 16);
-        assert_eq!(ranks_in_the_scene(HierarchyKind::Compressed, 5), whole);
-        let mut order: Vec<u32> = whole.iter().map(|(_, rank)| *rank).collect();
-        order.sort_unstable();
-        assert!(order.into_iter().eq(0..whole.len() as u32), "each rank once");
+        let data = SceneData::new(&job, &prepared).unwrap();
+        for (sphere, record) in data.spheres.iter().zip(&data.records) {
+            assert_eq!(sphere[..3], record[..3], "the centre");
+        }
+        let mut ranks = data.nodes[NODE_ROWS * data.node_count as usize..].concat();
+        // They fill whole rows of four.
+        assert_eq!(ranks.len(), data.spheres.len().next_multiple_of(4));
+        ranks.truncate(data.spheres.len());
+        let places = &prepared.hierarchy.as_ref().unwrap().ranks;
+        for (rank, index) in ranks.iter().zip(&data.scene_index) {
+            let place = prepared.scene_index.iter().position(|other| other == index).unwrap();
+            assert_eq!(*rank, places[place]);
+        }
+        ranks.sort_unstable();
+        assert!(ranks.into_iter().eq(0..data.spheres.len() as u32), "each rank once");
     }
 
     #[test]
@@ -187,7 +174,7 @@ mod tests {
         for name in ["three-spheres", "field:500"] {
             let job = Recipe::find(name).unwrap().job().unwrap();
             let prepared = PreparedScene::<f32>::new(&job);
-            let data = SceneData::new(&job, &prepared, HierarchyKind::Compressed).unwrap();
+            let data = SceneData::new(&job, &prepared).unwrap();
             let buffers = data.buffers(&prepared);
             let bytes = buffers.each_ref().map(|(label, bytes)| (*label, bytes.len()));
             let spheres = prepared.opaque.len() + prepared.two_root.len();
@@ -253,7 +240,7 @@ mod tests {
         let job = Recipe::find("field:60").unwrap().job().unwrap();
         let prepared = PreparedScene::<f32>::new(&job);
         let exported = Exported::new(&job).unwrap();
-        assert!(exported.features.hierarchy && exported.features.cwbvh, "{:?}", exported.features);
+        assert!(exported.features.hierarchy, "{:?}", exported.features);
         assert_eq!(exported.turns_over_lists, prepared.anchored.len() as u64);
         assert_eq!(exported.block_limit, prepared.block_limit);
         let mut indices = exported.scene_index;

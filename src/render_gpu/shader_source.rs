@@ -74,14 +74,12 @@ pub enum Probe {
     Scatter,
     /// `screen`, `pinhole_ray` and `lens_ray`.
     Camera,
-    /// `fixed_point` and `wide_sum`.
+    /// `fixed_point`.
     FixedPoint,
     /// `incidence_of`, `incidence_of_sine2`, `hemisphere` and `strip_reflectance`.
     Incidence,
     /// `slabs_of`, `slope_of` and `hit_bits`.
     Box,
-    /// `four_hits`.
-    FourHits,
 }
 
 tags::tags!(Probe {
@@ -96,7 +94,6 @@ tags::tags!(Probe {
     FixedPoint = "PROBE_FIXED_POINT",
     Incidence = "PROBE_INCIDENCE",
     Box = "PROBE_BOX",
-    FourHits = "PROBE_FOUR_HITS",
 });
 
 /// The declarations from Rust, as WGSL.

@@ -4,6 +4,7 @@ use super::dispatches::{BoundDispatch, Broken, CAUTION_LIMIT, CAUTION_SHIFT};
 use super::layout::{GpuBlock, GpuDispatch, tile_size};
 use super::loaded::Loaded;
 use super::options::InjectionPoint;
+use super::scene::SHARED_BLOCK;
 use super::schedule::Blocks;
 use super::{Fault, GpuRenderer, failed};
 use crate::film::Film;
@@ -38,7 +39,9 @@ impl GpuRenderer {
             let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
             let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
-            let mut left = Blocks::of_range(range.clone(), &settings, loaded.scene.prepared.block_limit);
+            let limit = loaded.scene.prepared.block_limit;
+            let limit = if loaded.features.aside { limit.min(SHARED_BLOCK) } else { limit };
+            let mut left = Blocks::of_range(range.clone(), &settings, limit);
             loop {
                 let affordable = self.dispatches.budget(&loaded.features).paths();
                 let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());

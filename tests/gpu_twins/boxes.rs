@@ -1,10 +1,9 @@
-//! Boxes of both hierarchies.
+//! Boxes of the hierarchies.
 
 use super::gpu_common::gpu;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
-use weekender::kernel::sampling::pcg4d;
-use weekender::kernel::{BOX_WIDENING, NONE, Node};
+use weekender::kernel::{NONE, Node};
 use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_gpu::GpuOptions;
@@ -92,75 +91,4 @@ fn boxes_are_met_alike() {
         }
     }
     assert!(met > 500 && missed > 500, "{met} met, {missed} missed");
-}
-
-/// The shader's function in scalar code with equal rounding.
-fn four_hits(words: &Words) -> u32 {
-    let [step, near, far] = [0, 3, 6].map(|i| list(vector(words, i)));
-    let (marks, octant, limit) = (words[15].to_le_bytes(), words[16], float(words, 17));
-    let mut hits = 0;
-    for (child, mark) in marks.into_iter().enumerate() {
-        let (mut enter, mut leave) = (0.0_f32, limit);
-        for axis in 0..3 {
-            let bound = |word: u32| f32::from(word.to_le_bytes()[child]);
-            let [first, last] = [words[9 + 2 * axis], words[10 + 2 * axis]].map(bound);
-            enter = enter.max(first.mul_add(step[axis], near[axis]));
-            leave = leave.min(last.mul_add(step[axis], far[axis]));
-        }
-        let mark = u32::from(mark);
-        let place = mark & 31;
-        let place = if place >= 24 { place ^ octant } else { place };
-        if leave * BOX_WIDENING as f32 >= enter {
-            hits |= (mark >> 5) << place;
-        }
-    }
-    hits
-}
-
-#[test]
-fn compressed_box_hits() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let (mut parted, mut met, mut ordered) = (0, 0, 0);
-    let inputs = |i: u32| {
-        let [a, b, c, d] = uniform(i, 80);
-        let steps = [a, b, c].map(|x| 0.002 + 0.02 * x);
-        let starts = unit_vector(i, 81);
-        let mut words = words(&[
-            steps[0],
-            steps[1],
-            steps[2],
-            starts[0],
-            starts[1],
-            starts[2],
-            starts[0] + 0.01,
-            starts[1] + 0.01,
-            starts[2] + 0.01,
-        ]);
-        let bytes = pcg4d([i, 82, 1, 2]);
-        let more = pcg4d([i, 83, 1, 2]);
-        for axis in 0..3 {
-            let near = bytes[axis] & 0x7F7F_7F7F;
-            words[9 + 2 * axis] = near;
-            // No carry between bytes.
-            words[10 + 2 * axis] = near + (more[axis] & 0x7F7F_7F7F);
-        }
-        // Marks of nodes, at bit 24 and above, and of up to three spheres, below.
-        let mark = |child: u32| {
-            let place = pcg4d([i, 84, child, 2])[0];
-            if place & 256 != 0 { 1 << 5 | 24 | (place & 7) } else { 7 << 5 | (place % 22) }
-        };
-        words[15] = mark(0) | mark(1) << 8 | mark(2) << 16 | mark(3) << 24;
-        words[16] = more[3] & 7;
-        words[17] = (4.0 * d).to_bits();
-        words
-    };
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::FourHits, inputs) {
-        let expected = four_hits(&input);
-        parted += u32::from(output[0] != expected);
-        met += u32::from(expected & 0xFF_FFFF != 0);
-        ordered += u32::from(expected >> 24 != 0 && input[16] != 0);
-    }
-    // Allows edges within the rounding of a driver that does not fuse.
-    assert!(parted <= 2, "{parted} of 4096 parted");
-    assert!(met > 300 && ordered > 300, "{met} spheres, {ordered} nodes");
 }

@@ -17,7 +17,10 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "path.wgsl",
         twins: &["path/mod.rs", "path/collect.rs", "path/arrive.rs", "path/draw.rs", "path/send.rs"],
-        shader_alone: &[("turns_over_lists", "no loop of the CPU is cut off")],
+        shader_alone: &[
+            ("next_item", "threads share a list of blocks, packets a list of pixels"),
+            ("turns_over_lists", "no loop of the CPU is cut off"),
+        ],
         twin_alone: &[
             ("idle", "a packet before its first work; the shader's path is made in `trace`"),
             ("shade", "packets take turns, a thread has one path"),
@@ -54,13 +57,9 @@ const PAIRS: &[Pair] = &[
         shader_alone: &[
             ("slope_of", "a thread knows in which direction its ray goes; the rays of a packet differ"),
             ("hit_bits", "`misses_box` for four boxes"),
-            ("bytes_of", "compressed boxes"),
-            ("floats_of", "compressed boxes"),
-            ("four_hits", "compressed boxes"),
-            ("compressed_hits", "eight children"),
             ("planes_at", "eight children"),
-            ("four_whole_hits", "eight children"),
-            ("whole_hits", "eight children"),
+            ("four_hits", "eight children"),
+            ("hits_of", "eight children"),
             ("in_order", "the order of eight children"),
         ],
         twin_alone: &[
