@@ -161,7 +161,7 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
 fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
     // The line to name is the directive's.
-    let text = site.library.read(&path).map_err(Error::msg)?;
+    let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
     let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
