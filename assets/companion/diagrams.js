@@ -224,7 +224,7 @@ export const diagrams = {
     draw(s) {
       const { steps, throughput, isLit } = walk(s), balls = ROOM.map(({ c, r, colour }) => `<circle cx="${c[0]}" cy="${c[1]}" r="${r}" style="fill:${rgb(colour)};fill-opacity:.55;stroke-opacity:.3"/>`);
       const rays = steps.map(({ o, p, n }) => line(o, p, "q1 thick") + (n ? arrow(p, at(p, 26, n), "q2") + spot(p, "", "q3") : ""));
-      const swatches = steps.map(({ throughput: t }, i) => (t ? box([60 + 34 * i, 268, 28, 20], "edge", `style="fill:${rgb(t)}"`) : ""));
+      const swatches = steps.map(({ throughput: t }, i) => (t ? box([84 + 34 * i, 268, 28, 20], "edge", `style="fill:${rgb(t)}"`) : ""));
       const svg = `<svg x="0" y="0" width="560" height="262" viewBox="0 0 560 262">${balls.join("")}${rays.join("")}</svg>` + spot([30, 120], "eye", "") + label([8, 283], "product", "weak") + swatches.join("");
       const product = throughput.map((x) => x.toFixed(2)).join(", ");
       const climb = Math.atan2(120 - s.aim[1], s.aim[0] - 30);
@@ -335,7 +335,7 @@ export const diagrams = {
       const drawn = (node) => box(node.bounds, visits.some((visit) => visit.node === node) ? "q4" : "fine") + node.children.map(drawn).join("");
       const ends = rays.map((d, i) => at(o, nearest[i], d));
       const rows = visits.map(({ mask }, row) => mask.map((isIn, i) => box([622 + 11 * i, 26 + 8.5 * row, 9, 6.5], isIn ? "q1 solid" : "edge")).join(""));
-      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + label([622, 18], "visited boxes", "weak") + rows.join("");
+      const svg = drawn(TREE) + SPHERES.map((ball) => circle(ball.c, ball.r, tested.has(ball) ? "q3" : "body")).join("") + ends.map((end) => line(o, end, "q1")).join("") + label([710, 18], "visited boxes", "weak", "end") + rows.join("");
       const mean = visits.reduce((sum, { mask }) => sum + mask.filter(Boolean).length, 0) / (visits.length || 1);
       return [svg, `The packet opens ${visits.length} boxes, and on average ${mean.toFixed(1)} of its 8 rays are in one. It tests ${tested.size} of ${SPHERES.length} balls.`];
     },

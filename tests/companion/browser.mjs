@@ -36,6 +36,17 @@ for (const figure of await page.locator("figure:is(.diagram, .timeline)").all())
   await page.waitForTimeout(100);
 }
 
+// Chapters that come near get their height, and the page moves until then.
+const placed = async (element) => {
+  await element.scrollIntoViewIfNeeded();
+  for (let box, before; ; before = box) {
+    await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    await page.waitForTimeout(100);
+    box = await element.boundingBox();
+    if (box.y === before?.y) return box;
+  }
+};
+
 // Each handle is dragged and moved by keys, each slider is set: the reading must change.
 for (const figure of await page.locator("figure:has(.reading)").all()) {
   const reading = figure.locator(".reading"), id = await figure.getAttribute("id");
@@ -46,11 +57,8 @@ for (const figure of await page.locator("figure:has(.reading)").all()) {
   };
   for (const knob of await figure.locator(".knob").all()) {
     const name = await knob.getAttribute("aria-label");
-    await knob.scrollIntoViewIfNeeded();
-    // Chapters that come near get their height, and the page moves until then.
-    await page.waitForTimeout(200);
     await changes(`drag ${name}`, async () => {
-      const { x, y, width } = await knob.boundingBox();
+      const { x, y, width } = await placed(knob);
       await page.mouse.move(x + width / 2, y + width / 2);
       await page.mouse.down();
       await page.mouse.move(x + 40, y + 45, { steps: 4 });

@@ -130,3 +130,30 @@ fn ctrl_c_keeps_page_and_tells_how_to_resume() {
     assert!(line.contains("pictures missing; run the same command again to go on"), "{line}");
     assert!(directory.path().join("index.html").exists());
 }
+
+/// The small pictures come first and have no progress of their own; a quick still is done in one pass.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_quick_pictures() {
+    let directory = TempDir::new().unwrap();
+    assert!(companion(directory.path(), &[]).status.success());
+    let figures = directory.path().join("figures");
+    for (removed, first) in [(figures.join("more"), "more"), (figures.clone(), "sky.png")] {
+        std::fs::remove_dir_all(removed).unwrap();
+        let arguments = ["companion", "--quick", "--out", ".", "--progress", "off"];
+        let mut command = program_common::weekender(directory.path(), &arguments);
+        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let (start, first) = (std::time::Instant::now(), figures.join(first));
+        while !first.is_file() && first.read_dir().map_or(0, Iterator::count) == 0 {
+            assert!(start.elapsed().as_secs() < 120, "no picture was written");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+        assert!(signalled.success());
+        let output = child.wait_with_output().unwrap();
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(130), "{message}");
+        assert!(message.contains("pictures missing; run the same command again"), "{message}");
+    }
+    assert!(!figures.join("book.png").exists());
+}

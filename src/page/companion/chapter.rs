@@ -51,10 +51,10 @@ impl Chapter {
     /// The number to show: the book's or, beyond the book, a letter. `None` where it could be mistaken for that of one
     /// of the book's chapters.
     pub fn shown_number(&self) -> Option<String> {
-        let is_of_book = self.facts.book.as_deref() == Some(self.number.to_string().as_str());
+        let own = Some(self.number.to_string());
         let letter =
             self.number.checked_sub(FIRST_BEYOND_BOOK).map(|place| char::from(b'A' + place).to_string());
-        if is_of_book { Some(self.number.to_string()) } else { letter }
+        if self.facts.book == own { own } else { letter }
     }
 
     /// The number to show and a space, or nothing.

@@ -1,5 +1,6 @@
 //! Directives: paragraphs such as `{{figure sky}}` that become parts of the page.
 
+use super::back_matter;
 use super::excerpt::{self, Excerpt};
 use super::library::FOLDER;
 use super::pictures::{self, Picture};
@@ -9,17 +10,11 @@ use super::timeline;
 use crate::page::gallery::{Figure, is_about_pixels};
 use crate::stages::Stage;
 use crate::system::suggest::similar_names;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Error, Result, bail};
 use maud::{Markup, PreEscaped, html};
 
 /// The directives and their arguments. More lines hold a caption, or what to quote.
 const KNOWN: &str = "figure ID, code, mistakes STAGE, limits STAGE, denoised STAGE SAMPLES, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
-
-/// Marks the glossary's place until all chapters are rendered.
-pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
-
-/// Marks the references' place.
-pub const REFERENCES_MARK: &str = "<!-- references -->";
 
 /// Marks the place of a figure's number.
 pub const NUMBER_MARK: &str = "<!-- number -->";
@@ -27,6 +22,18 @@ pub const NUMBER_MARK: &str = "<!-- number -->";
 /// The caption of a figure that has a number.
 pub fn numbered(caption: &Markup) -> Markup {
     html! { figcaption { (PreEscaped(NUMBER_MARK)) (caption) } }
+}
+
+/// Code within a line, which does not break after the hyphens of a flag.
+pub fn code_words(text: &str) -> Markup {
+    html! {
+        code {
+            @for (place, word) in text.split(' ').enumerate() {
+                @if place > 0 { " " }
+                @if word.starts_with('-') { span .nb { (word) } } @else { (word) }
+            }
+        }
+    }
 }
 
 /// Replaces apostrophes by typographic ones.
@@ -41,7 +48,8 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
     // A caption is Markdown.
     let mut caption = || match more {
         "" => Ok(None),
-        text => place.inside(site, text, uses).map(Some),
+        // The line to name is the directive's.
+        text => place.inside(site, text, uses).map(Some).map_err(|fault| Error::msg(fault.message)),
     };
     match words.as_slice() {
         ["figure", id] => figure(id, caption()?, None, uses),
@@ -62,8 +70,8 @@ pub fn html(site: &Site, place: &Place<'_>, directive: &str, uses: &mut Uses) ->
         ["chart", name] => site.measured.chart(name),
         ["diagram", name] => diagram(site, name, caption()?),
         ["timeline", stage] => timeline::figure(stage),
-        ["glossary"] => Ok(PreEscaped(GLOSSARY_MARK.to_owned())),
-        ["references"] => Ok(PreEscaped(REFERENCES_MARK.to_owned())),
+        ["glossary"] => Ok(back_matter::glossary(site, uses)?),
+        ["references"] => Ok(back_matter::references(site, uses)?),
         _ => bail!("{{{{{directive}}}}} is no directive; use one of {KNOWN}"),
     }
 }
@@ -119,7 +127,7 @@ fn figure(id: &str, caption: Option<Markup>, crop: Option<[f64; 4]>, uses: &mut 
 fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
     let excerpts: Result<Vec<Excerpt>, String> =
         wanted.lines().map(|line| excerpt::cut(&site.library, line)).collect();
-    let excerpts = excerpts.map_err(anyhow::Error::msg)?;
+    let excerpts = excerpts.map_err(Error::msg)?;
     let language = |excerpt: &Excerpt| excerpt.file.rsplit('.').next().unwrap_or_default().to_owned();
     let mut languages: Vec<String> = excerpts.iter().map(language).collect();
     languages.dedup();
@@ -142,8 +150,7 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
                         code .path { (file) } " "
                         span .lines { @if first == last { "line " (first) } @else { "lines " (first) " to " (last) } }
                     }
-                    @let colours = if language == "toml" { "text" } else { &language };
-                    pre { code { (place.coloured(&site.highlighter.html(colours, text)?)) } }
+                    pre { code { (place.coloured(&site.highlighter.html(&language, text)?)) } }
                 }
             }
         }
@@ -153,14 +160,15 @@ fn code(site: &Site, place: &Place<'_>, wanted: &str) -> Result<Markup> {
 /// Diagrams are SVG files that take their colours from the text around them. Without a caption, they have their title.
 fn diagram(site: &Site, name: &str, caption: Option<Markup>) -> Result<Markup> {
     let path = format!("{FOLDER}/diagrams/{name}.svg");
-    let text = site.library.read(&path)?;
+    // The line to name is the directive's.
+    let text = site.library.read(&path).map_err(|fault| Error::msg(fault.to_string()))?;
     let start = text.find("<svg").with_context(|| format!("{path} has no <svg> element"))?;
     let title = text.split_once("<title").and_then(|(_, rest)| rest.split_once('>'));
     let title = title.and_then(|(_, rest)| rest.split_once("</title>")).map(|(title, _)| title.trim());
     let caption = caption.or(title.map(|title| PreEscaped(title.to_owned())));
     Ok(html! {
         figure .diagram id={ "diagram-" (name) } {
-            div .scroll { (PreEscaped(text[start..].trim())) }
+            div .scroll tabindex="0" role="group" aria-label="Diagram" { (PreEscaped(text[start..].trim())) }
             (numbered(&caption.unwrap_or_default()))
         }
     })

@@ -4,6 +4,7 @@ use std::fmt;
 use thiserror::Error;
 
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{file}{}: {message}", if *.line == 0 { String::new() } else { format!(":{}", .line) })]
 pub struct Fault {
     /// Path in the checkout.
     pub file: String,
@@ -16,15 +17,6 @@ pub struct Fault {
 impl Fault {
     pub fn new(file: &str, line: usize, message: impl fmt::Display) -> Self {
         Fault { file: file.to_owned(), line, message: message.to_string() }
-    }
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            0 => write!(f, "{}: {}", self.file, self.message),
-            line => write!(f, "{}:{line}: {}", self.file, self.message),
-        }
     }
 }
 

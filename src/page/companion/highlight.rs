@@ -17,12 +17,10 @@ const SYNTAXES: [&str; 5] = [
     include_str!("../../../assets/companion/syntaxes/sh.sublime-syntax"),
 ];
 
-/// The language of blocks that are not highlighted.
-const PLAIN: &str = "text";
+/// What is not highlighted.
+const PLAIN: [&str; 2] = ["text", "toml"];
 
-pub struct Highlighter {
-    syntaxes: SyntaxSet,
-}
+pub struct Highlighter(SyntaxSet);
 
 impl Highlighter {
     /// Reads the syntax definitions.
@@ -32,20 +30,19 @@ impl Highlighter {
             let read = SyntaxDefinition::load_from_str(text, true, None);
             builder.add(read.context("cannot read a syntax definition of the page")?);
         }
-        Ok(Highlighter { syntaxes: builder.build() })
+        Ok(Highlighter(builder.build()))
     }
 
     /// The code as HTML. `language` is a name or a file extension; an unknown one is an error.
     pub fn html(&self, language: &str, code: &str) -> Result<PreEscaped<String>> {
-        if language == PLAIN {
+        if PLAIN.contains(&language) {
             return Ok(PreEscaped(maud::html! { (code) }.into_string()));
         }
-        let syntax = self.syntaxes.find_syntax_by_token(language).ok_or_else(|| {
-            let known: Vec<&str> =
-                self.syntaxes.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
-            anyhow!("code in {language:?} has no colours; use {PLAIN}, {}", known.join(", "))
+        let syntax = self.0.find_syntax_by_token(language).ok_or_else(|| {
+            let known: Vec<&str> = self.0.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
+            anyhow!("code in {language:?} has no colours; use text, {}", known.join(", "))
         })?;
-        let mut html = ClassedHTMLGenerator::new_with_class_style(syntax, &self.syntaxes, ClassStyle::Spaced);
+        let mut html = ClassedHTMLGenerator::new_with_class_style(syntax, &self.0, ClassStyle::Spaced);
         for line in code.split_inclusive('\n') {
             html.parse_html_for_line_which_includes_newline(line).context("cannot colour code")?;
         }

@@ -1,12 +1,11 @@
 //! Tables and charts of stored measurements, each with its command and machine.
 
-use super::directive::numbered;
+use super::directive::{code_words, numbered};
 use super::fault::Fault;
 use super::library::{FOLDER, Library};
 use crate::measure;
 use crate::measure::report::{self, CurveSummary};
 use crate::numbers::chart::{self, UNTITLED_TOP};
-use crate::progressive::describe::counted;
 use anyhow::{Context, Result, ensure};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
@@ -120,16 +119,13 @@ fn speed_tables(kept: &Kept) -> Result<Markup> {
     let json = &kept.json;
     ensure!(json["schema"] == measure::SCHEMA, "is no benchmark of version {}", measure::SCHEMA);
     let machine = format!("{}, {} cores", text(&json["machine"]["processor"]), json["machine"]["cores"]);
-    let columns = ["tracer", "threads", SPEED, "× C89", "lanes in use", "1/(MSE s)"];
+    let columns = ["tracer", SPEED, "× C89", "lanes in use", "1/(MSE s)"];
     let table = |scene: &Value| {
         let rows = items(&scene["rows"]);
         let row = |row: &Value| match row["skipped"].as_str() {
-            Some(reason) => vec![tracer(row), html! { "not measured: " (reason) }],
+            Some(reason) => vec![html! { (text(&row["name"])) }, html! { "not measured: " (reason) }],
             None => vec![
-                tracer(row),
-                shown(row["threads"].as_u64().filter(|_| row["kind"] != "gpu"), |threads| {
-                    threads.to_string()
-                }),
+                html! { (text(&row["name"])) },
                 speed(row, rows),
                 shown(row["ratio_to_baseline"].as_f64(), |ratio| format!("{ratio:.2}")),
                 shown(row["lanes_in_use"].as_f64(), percent),
@@ -177,7 +173,7 @@ fn error_table(kept: &Kept) -> Result<Markup> {
         for curve in scene {
             let about = &curve.curve;
             let mut row = vec![
-                html! { (backend(&about.backend)) ", " (about.sampler) },
+                html! { (about.backend) ", " (about.sampler) },
                 shown(curve.slope, |[slope, _]| format!("{slope:.2}").replace('-', "−")),
             ];
             row.extend(curve.times.iter().map(|crossing| {
@@ -194,7 +190,7 @@ fn error_table(kept: &Kept) -> Result<Markup> {
          Times with ~ are extrapolated. The last column compares the times to .01. " (origin(kept, None))
     };
     let columns = ["tracer, random numbers", "slope", "to .01", "to .001", "× C89"];
-    Ok(table("Time to an error", &caption, &columns, rows))
+    Ok(table("Time to an error", &caption, &columns, rows.into_iter()))
 }
 
 /// The chart of the same data, in the page's colours.
@@ -222,8 +218,13 @@ fn error_chart(kept: &Kept) -> Result<Markup> {
     })
 }
 
+/// The report's curves without those of denoised pictures, which the page treats later.
 fn report_of(kept: &Kept) -> Result<report::Data> {
-    serde_json::from_value(kept.json.clone()).context("is no report; make it with weekender report --out DIR")
+    let json = kept.json.clone();
+    let mut data: report::Data =
+        serde_json::from_value(json).context("is no report; make it with weekender report --out DIR")?;
+    data.runs.retain(|run| !run.curve.is_denoised());
+    Ok(data)
 }
 
 /// Heading of the column whose cells have bars.
@@ -231,12 +232,7 @@ const SPEED: &str = "million paths per second";
 
 /// A table that scrolls in its own box where it is wider than the page. A row's first cell is its head; a row of one is
 /// the head of those below it, and the last cell of a short one is as wide as the rest.
-fn table(
-    name: &str,
-    caption: &Markup,
-    columns: &[&str],
-    rows: impl IntoIterator<Item = Vec<Markup>>,
-) -> Markup {
+fn table(name: &str, caption: &Markup, columns: &[&str], rows: impl Iterator<Item = Vec<Markup>>) -> Markup {
     html! {
         figure .measured {
             div .scroll tabindex="0" role="group" aria-label=(name) {
@@ -270,8 +266,7 @@ fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
         "Measured on " (kept.date)
         @if let Some(machine) = machine.or(kept.machine.as_deref()) { ", " (machine) }
         ", by "
-        // Don't break a flag after its first hyphen.
-        code { @for word in kept.command.split(' ') { span .nb { (word) } " " } }
+        (code_words(&kept.command))
         "."
     }
 }
@@ -306,27 +301,6 @@ fn shown<T>(value: Option<T>, words: impl FnOnce(T) -> String) -> Markup {
     html! { (value.map(words).unwrap_or_default()) }
 }
 
-/// The tracer's name. A benchmark puts the level before lanes and threads.
-fn tracer(row: &Value) -> Markup {
-    let name = text(&row["name"]);
-    let level = name.split(',').next().unwrap_or_default();
-    match (text(&row["kind"]), row["lanes"].as_u64()) {
-        ("baseline", _) => html! { (level) },
-        ("gpu", _) | (_, None) => html! { (name) },
-        (_, Some(lanes)) => html! { (counted(lanes, "lane")) ", " (level) },
-    }
-}
-
-fn backend(name: &str) -> &str {
-    match name {
-        "cpu" => "packets, all threads",
-        "scalar" => "1 lane, all threads",
-        "c89" => "C89, 1 thread",
-        "gpu" => "GPU",
-        other => other,
-    }
-}
-
 fn percent(share: f64) -> String {
     format!("{:.1} %", 100.0 * share)
 }
@@ -338,15 +312,11 @@ fn digits(number: f64, count: i32) -> String {
         return format!("{number:.0$}", places as usize);
     }
     let unit = 10_f64.powi(-places);
-    let whole = format!("{:.0}", (number / unit).round() * unit);
-    let mut grouped = String::new();
-    for (place, digit) in whole.chars().enumerate() {
-        if place > 0 && (whole.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
+    let mut whole = format!("{:.0}", (number / unit).round() * unit);
+    for place in (1..whole.len()).rev().skip(2).step_by(3) {
+        whole.insert(place, ',');
     }
-    grouped
+    whole
 }
 
 #[cfg(test)]
@@ -376,15 +346,12 @@ mod tests {
     #[test]
     fn benchmark_table_rows() {
         let speeds = |median: f64| json!({"median": median, "min": 0.5 * median, "max": 2.0 * median});
-        let row = |name: &str, kind: &str, lanes: usize, speed: Value, skipped: Option<&str>| {
-            json!({"name": name, "kind": kind, "lanes": lanes, "threads": 3, "paths_per_second": speed, "skipped": skipped,
-                   "lanes_in_use": 0.875, "ratio_to_baseline": 8.0, "efficiency": 1234.0})
-        };
+        let row = |name: &str, speed: Value, skipped: Option<&str>| json!({"name": name, "paths_per_second": speed, "skipped": skipped, "lanes_in_use": 0.875, "ratio_to_baseline": 8.0, "efficiency": 1234.0});
         let bench = |schema: u32| {
             let rows = [
-                row("C89, cc -O2, 1 thread", "baseline", 1, speeds(5e6), None),
-                row("avx2, 8 lanes, 3 threads", "threads", 8, speeds(40e6), None),
-                row("other GPU", "gpu", 64, Value::Null, Some("it has no memory")),
+                row("C89, cc -O2, 1 thread", speeds(5e6), None),
+                row("avx2, 8 lanes, 3 threads", speeds(40e6), None),
+                row("other GPU", Value::Null, Some("it has no memory")),
             ];
             let scene = json!({"scene": "book", "width": 200, "height": 113, "max_depth": 50, "spheres": 485, "rows": rows});
             json!({"schema": schema, "machine": {"processor": "A CPU", "cores": 4}, "scenes": [scene]})
@@ -393,8 +360,8 @@ mod tests {
         assert_eq!(
             rows(&html),
             [
-                &["C89", "3", "5.00 2.50–10.0", "8.00", "87.5 %", "1,200"][..],
-                &["8 lanes, avx2", "3", "40.0 20.0–80.0", "8.00", "87.5 %", "1,200"],
+                &["C89, cc -O2, 1 thread", "5.00 2.50–10.0", "8.00", "87.5 %", "1,200"][..],
+                &["avx2, 8 lanes, 3 threads", "40.0 20.0–80.0", "8.00", "87.5 %", "1,200"],
                 &["other GPU", "not measured: it has no memory"],
             ]
         );

@@ -7,7 +7,6 @@ mod chapter;
 mod directive;
 mod excerpt;
 mod fault;
-mod formula;
 mod highlight;
 mod library;
 mod measured;
@@ -24,13 +23,11 @@ pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
 use crate::page::gallery::{self, Order, Quality};
-use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{check_page, write_text};
 use crate::system::interrupt::Interrupt;
 use anyhow::{Context, Result};
 use library::Library;
-use page::Page;
 use site::Site;
 use std::process::ExitCode;
 use std::thread::sleep;
@@ -39,17 +36,8 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 /// How often `--watch` looks for changes.
 const POLL_INTERVAL: Duration = Duration::from_millis(300);
 
-/// Reloads the page when `build.js` tells of another build. A page from disk may load scripts but not fetch files.
-const RELOAD: &str = "<script>
-function built(build) { if (build !== BUILD) location.reload(); }
-setInterval(() => {
-  const script = document.createElement(\"script\");
-  script.src = `build.js?${Date.now()}`;
-  script.onload = () => script.remove();
-  document.head.append(script);
-}, 1000);
-</script>
-";
+/// What `--watch` adds to the page.
+const RELOAD: &str = include_str!("../../../assets/companion/reload.js");
 
 /// Writes the page and renders the stills that changed. [`Failure::Input`] if nothing was written;
 /// [`Failure::BrokeOff`] or [`Failure::Run`] otherwise.
@@ -64,11 +52,9 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
         let now = library.stamps();
         if now != stamps {
             stamps = now;
-            match write(options, &interrupt) {
-                Ok(_) => console::note(&format!("rebuilt {}", index.display())),
-                // The author corrects the text and saves again.
-                Err(failure) => drop(failure.report()),
-            }
+            let outcome = write(options, &interrupt).and_then(|outcome| outcome.report(&index, &interrupt));
+            // The author corrects the text and saves again.
+            outcome.unwrap_or_else(|failure| failure.report());
         }
     }
     Ok(if interrupt.is_set() { interrupt.exit_code() } else { code })
@@ -83,17 +69,17 @@ fn library(options: &CompanionOptions) -> Library {
 /// # Errors
 /// Those of [`run`].
 pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<gallery::Outcome, Failure> {
-    let page = build(options).map_err(Failure::Input)?;
+    let page = Site::read(&library(options)).and_then(|site| page::render(&site)).map_err(Failure::Input)?;
     let out = &options.out;
-    std::fs::create_dir_all(out)
+    std::fs::create_dir_all(out.join(pictures::FOLDER))
         .with_context(|| format!("cannot create the directory {}; choose another with --out", out.display()))
         .map_err(Failure::Input)?;
     let index = out.join("index.html");
     check_page(&index).map_err(Failure::input)?;
     // Write the page first, so that it can be read while its figures are rendered.
     let build = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_millis();
-    let reload = if options.watch { RELOAD.replace("BUILD", &build.to_string()) } else { String::new() };
-    write_text(&index, &(page.html + &reload)).map_err(Failure::run)?;
+    let reload = format!("<script>\n{}</script>\n", RELOAD.replace("BUILD", &build.to_string()));
+    write_text(&index, &(page.html + if options.watch { &reload } else { "" })).map_err(Failure::run)?;
     let order = Order {
         directory: &out.join("figures"),
         stages: &page.stages,
@@ -102,22 +88,17 @@ pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<galler
         progress: options.progress,
         prints_stills: false,
     };
-    let pictures = out.join(pictures::FOLDER);
-    std::fs::create_dir_all(&pictures)
-        .with_context(|| format!("cannot create the directory {}", pictures.display()))
-        .map_err(Failure::Run)?;
+    let mut missing = page.pictures.len();
     for picture in page.pictures.iter().take_while(|_| !interrupt.is_set()) {
         picture.render(out).map_err(Failure::Run)?;
+        missing -= 1;
     }
-    let outcome = gallery::render(&order, interrupt)?;
+    let mut outcome = gallery::render(&order, interrupt)?;
+    outcome.missing += missing;
     if options.watch {
         write_text(&out.join("build.js"), &format!("built({build});\n")).map_err(Failure::run)?;
     }
     Ok(outcome)
-}
-
-fn build(options: &CompanionOptions) -> Result<Page> {
-    page::render(&Site::read(&library(options))?)
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The page around the chapters.
 
-use super::back_matter;
 use super::directive;
 use super::fault::Fault;
 use super::pictures::Picture;
@@ -33,7 +32,7 @@ pub fn render(site: &Site) -> Result<Page> {
     let chapters = html! {
         @for place in 0..site.chapters.len() { (section(site, place, &mut uses)?) }
     };
-    let chapters = back_matter::fill(&numbered(&chapters.into_string()), site, &mut uses)?;
+    let chapters = numbered(&chapters.into_string());
     site.check(&uses)?;
     let mut stages: Vec<&Stage> =
         uses.figures.iter().flat_map(|figure| &figure.panels).map(Panel::stage).collect();

@@ -97,12 +97,8 @@ impl Picture {
             Subject::Denoised(_) => sampled(&recipe, true)?,
         };
         let mut png = Vec::new();
-        PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive).write_image(
-            &bytes,
-            width,
-            height,
-            ExtendedColorType::Rgb8,
-        )?;
+        let encoder = PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive);
+        encoder.write_image(&bytes, width, height, ExtendedColorType::Rgb8)?;
         Ok(replace_file(&path, |writer| writer.write_all(&png))?)
     }
 

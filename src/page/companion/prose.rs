@@ -7,6 +7,7 @@ use super::fault::{Fault, line_of};
 use super::site::{Site, Uses};
 use crate::page::gallery::Figure;
 use anyhow::{Context, Result, bail, ensure};
+use math_core::MathDisplay;
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{
     BrokenLink, CodeBlockKind, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as writer,
@@ -27,7 +28,7 @@ pub struct Place<'a> {
 
 impl Place<'_> {
     /// A text inside a directive, without its paragraph.
-    pub fn inside(&self, site: &Site, text: &str, uses: &mut Uses) -> Result<Markup> {
+    pub fn inside(&self, site: &Site, text: &str, uses: &mut Uses) -> Result<Markup, Fault> {
         let html = convert(site, &Place { text: text.trim(), ..*self }, uses)?.into_string();
         let inside = html.trim().strip_prefix("<p>").and_then(|html| html.strip_suffix("</p>"));
         Ok(PreEscaped(inside.unwrap_or(&html).to_owned()))
@@ -74,16 +75,10 @@ pub fn chapter(site: &Site, chapter: &Chapter, uses: &mut Uses) -> Result<Markup
     convert(site, &place, uses)
 }
 
-/// A short text of the back matter as HTML, without its paragraph.
-pub fn short_text(
-    site: &Site,
-    file: &str,
-    line: usize,
-    text: &str,
-    uses: &mut Uses,
-) -> Result<Markup, Fault> {
-    let place = Place { file, lines_before: line.saturating_sub(1), chapter: None, text };
-    place.inside(site, text, uses).map_err(|error| Fault::new(file, line, format!("{error:#}")))
+/// A short text of the back matter, from line `at` of a file, as HTML without its paragraph.
+pub fn short_text(site: &Site, file: &str, at: usize, text: &str, uses: &mut Uses) -> Result<Markup, Fault> {
+    let place = Place { file, lines_before: at.saturating_sub(1), chapter: None, text };
+    place.inside(site, text, uses)
 }
 
 /// The anchor for a heading: `What a lane is` becomes `what-a-lane-is`.
@@ -116,7 +111,12 @@ fn convert(site: &Site, place: &Place<'_>, uses: &mut Uses) -> Result<Markup, Fa
     while let Some((event, range)) = events.next() {
         converter.line = place.lines_before + line_of(place.text, range.start);
         let converted = converter.convert(event, &range, &mut events, &mut out);
-        converted.map_err(|error| Fault::new(place.file, converter.line, format!("{error:#}")))?;
+        converted.map_err(|error| {
+            // A text inside has named its own place.
+            error
+                .downcast()
+                .unwrap_or_else(|error| Fault::new(place.file, converter.line, format!("{error:#}")))
+        })?;
     }
     let mut html = String::new();
     writer::push_html(&mut html, out.into_iter());
@@ -179,15 +179,16 @@ impl Converter<'_> {
             }
             Event::End(TagEnd::Link) => out.extend(self.closing.pop().map(inline)),
             Event::InlineMath(latex) => {
-                let formula = self.place.coloured(&self.site.formulas.convert(&latex, false)?);
+                let formula = self.formula(&latex, MathDisplay::Inline)?;
                 out.push(inline(with_punctuation(&formula, rest)));
             }
             Event::DisplayMath(latex) => {
-                let formula = self.place.coloured(&self.site.formulas.convert(&latex, true)?);
+                let formula = self.formula(&latex, MathDisplay::Block)?;
                 out.push(inline(
                     html! { span .formula tabindex="0" role="group" aria-label="Formula" { (formula) } },
                 ));
             }
+            Event::Code(text) => out.push(inline(directive::code_words(&text))),
             Event::Html(_) | Event::InlineHtml(_) | Event::Start(Tag::Image { .. }) => {
                 bail!("HTML and pictures are not allowed in the text; use Markdown or a directive");
             }
@@ -238,12 +239,8 @@ impl Converter<'_> {
         };
         let link = html! { a .anchor href={ "#" (anchor) } aria-label="Link to this section" { "#" } };
         // h1 is the page's title, h2 a chapter's.
-        match level {
-            2 => Ok(html! { h3 id=(anchor) { (title) (link) } }),
-            3 => Ok(html! { h4 id=(anchor) { (title) (link) } }),
-            4 => Ok(html! { h5 id=(anchor) { (title) (link) } }),
-            _ => bail!("headings in a chapter have two to four #; the title is in the facts"),
-        }
+        ensure!(level == 2, "headings in a chapter have two #; the title is in the facts");
+        Ok(html! { h3 id=(anchor) { (title) (link) } })
     }
 
     /// The heading of a section of the book, with a link to it.
@@ -258,6 +255,13 @@ impl Converter<'_> {
                 "book" span .hidden { ", section " (number) }
             }
         })
+    }
+
+    fn formula(&self, latex: &str, display: MathDisplay) -> Result<Markup> {
+        match self.site.formulas.convert_with_local_state(latex.trim(), display) {
+            Ok(converted) => Ok(self.place.coloured(&PreEscaped(converted.mathml))),
+            Err(error) => bail!("the formula {:?} is not understood: {error}", latex.trim()),
+        }
     }
 
     fn code(&self, kind: &CodeBlockKind<'_>, rest: &mut Events<'_>) -> Result<Markup> {
@@ -308,12 +312,6 @@ impl Converter<'_> {
                 let id = self.is_first_use(rest).then(|| format!("use-{rest}"));
                 opened("term", &format!("#term-{rest}"), "", id)
             }
-            "book" => {
-                let section = site.book.url(rest).zip(site.book.heading(rest));
-                let (url, title) = section.with_context(|| format!("the book has no section {rest:?}"))?;
-                let kind = if rest.contains('.') { "section" } else { "chapter" };
-                opened("book", &url, &format!("The book, {kind} {rest}: {title}"), None)
-            }
             "page" => {
                 let (name, fragment) = rest.split_once('#').unwrap_or((rest, ""));
                 let chapter = site.chapters.iter().find(|chapter| chapter.id == name);
@@ -341,11 +339,7 @@ impl Converter<'_> {
                     .with_context(|| format!("no figure shows the stage {id:?}"))?;
                 let anchor = format!("figure-{}", figure.id);
                 self.note_target(&anchor);
-                let link = html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) {} };
-                return Ok((
-                    PreEscaped(link.into_string().replace("</a>", "")),
-                    PreEscaped("</a>".to_owned()),
-                ));
+                unclosed(&html! { a .try href={ "#" (anchor) } data-stage=(id) data-set=(settings) {} })
             }
             "source" => {
                 // The page has no copy of the repository, so it cites the path like a reference.
@@ -357,7 +351,7 @@ impl Converter<'_> {
                 opened("", target, "", None)
             }
             _ => {
-                let kinds = "glossary:TERM, book:SECTION, page:CHAPTER, live:STAGE?SLIDER=VALUE, source:PATH, [@REFERENCE] or https://";
+                let kinds = "glossary:TERM, page:CHAPTER, live:STAGE?SLIDER=VALUE, source:PATH, [@REFERENCE] or https://";
                 let is_inline = link_type == LinkType::Inline;
                 let form = if is_inline { target.to_owned() } else { format!("[{target}]") };
                 bail!("{form:?} is no link of the page; use {kinds}");
@@ -380,11 +374,14 @@ impl Converter<'_> {
 }
 
 fn opened(class: &str, href: &str, title: &str, id: Option<String>) -> Markup {
-    let whole = html! {
+    unclosed(&html! {
         a id=[id] class=[(!class.is_empty()).then_some(class)] href=(href)
             title=[(!title.is_empty()).then_some(title)] {}
-    };
-    PreEscaped(whole.into_string().replace("</a>", ""))
+    })
+}
+
+fn unclosed(link: &Markup) -> Markup {
+    PreEscaped(link.0.replace("</a>", ""))
 }
 
 /// The formula with any punctuation that follows it, which must not start a line.

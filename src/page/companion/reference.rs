@@ -34,8 +34,8 @@ pub enum Area {
 pub struct Reference {
     pub title: String,
     pub authors: String,
-    pub year: Option<u16>,
-    pub url: Option<String>,
+    pub year: u16,
+    pub url: String,
     /// Where it appeared, and what it is good for.
-    pub note: Option<String>,
+    pub note: String,
 }

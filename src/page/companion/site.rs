@@ -3,14 +3,14 @@
 use super::book::{self, Book};
 use super::chapter::Chapter;
 use super::fault::Fault;
-use super::formula::Formulas;
 use super::highlight::Highlighter;
 use super::library::{Entry, Library};
 use super::measured::Measured;
 use super::pictures::Picture;
 use super::reference::{GLOSSARY, REFERENCES, Reference, Term};
 use crate::page::gallery::Figure;
-use anyhow::Result;
+use anyhow::{Result, anyhow};
+use math_core::{LatexToMathML, MathCoreConfig};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The targets available to texts.
@@ -26,7 +26,8 @@ pub struct Site {
     /// The data of tables and charts.
     pub measured: Measured,
     pub highlighter: Highlighter,
-    pub formulas: Formulas,
+    /// Makes MathML, so that readers need neither scripts nor the network.
+    pub formulas: LatexToMathML,
 }
 
 /// The references that the texts have made so far.
@@ -58,7 +59,8 @@ impl Site {
             references: library.entries(REFERENCES)?,
             measured: Measured::read(library)?,
             highlighter: Highlighter::new()?,
-            formulas: Formulas::new()?,
+            formulas: LatexToMathML::new(MathCoreConfig::default())
+                .map_err(|error| anyhow!("cannot convert formulas: {error:?}"))?,
         })
     }
 

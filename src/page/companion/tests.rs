@@ -1,8 +1,6 @@
 //! Made-up texts as HTML, and errors in them.
 
-use super::back_matter;
 use super::chapter::Chapter;
-use super::directive::{GLOSSARY_MARK, REFERENCES_MARK};
 use super::fault::Fault;
 use super::library::{Entry, Library};
 use super::reference::{Area, Reference, Term};
@@ -20,12 +18,12 @@ fn site() -> Site {
         Entry { key: key.to_owned(), line, value }
     };
     site.terms = vec![term("lane", 1, Area::Parallelism), term("ray", 5, Area::Rendering)];
-    let reference = |key: &str, line, url: Option<&str>| {
-        let (title, authors) = (format!("On {key}"), format!("{key} and others"));
-        let value = Reference { title, authors, year: None, url: url.map(str::to_owned), note: None };
+    let reference = |key: &str, line| {
+        let (title, authors, note) = (format!("On {key}"), format!("{key} and others"), "Good.".to_owned());
+        let value = Reference { title, authors, year: 1984, url: format!("https://{key}.org"), note };
         Entry { key: key.to_owned(), line, value }
     };
-    site.references = vec![reference("first", 1, None), reference("second", 5, Some("https://second.org"))];
+    site.references = vec![reference("first", 1), reference("second", 5)];
     site
 }
 
@@ -91,7 +89,6 @@ fn headings_code_and_formulas_render() {
             "## A Title's `code`",
             "<h3 id=\"normals-a-titles-code\">A Title’s <code>code</code><a class=\"anchor\"",
         ),
-        ("#### Small", "<h5 id=\"normals-small\">Small<a"),
         (
             "## 6.1 Shading with Surface Normals",
             "</span> Shading with Surface Normals <a class=\"book\" href=\"https://",
@@ -129,7 +126,7 @@ fn directives_render() {
         "{cropped}"
     );
     let diagram = alone(&site, "{{diagram lanes}}");
-    assert!(diagram.contains("<div class=\"scroll\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
+    assert!(diagram.contains("aria-label=\"Diagram\"><svg") && diagram.contains("<figcaption>"), "{diagram}");
 }
 
 #[test]
@@ -153,22 +150,20 @@ fn symbols_have_colours_in_formulas_and_code() {
 }
 
 #[test]
-fn back_matter_appears_once() {
+fn back_matter_lists_terms_and_works() {
     let (site, mut uses) = (site(), Uses::default());
-    uses.terms.insert("ray".to_owned(), "Normals".to_owned());
-    let mut fill = |marks: &[&str]| back_matter::fill(&marks.concat(), &site, &mut uses);
-    let html = fill(&[GLOSSARY_MARK, REFERENCES_MARK]).unwrap();
+    let text = "[x](glossary:ray)\n\n{{glossary}}\n\n{{references}}";
+    let html = converted(&site, text, &mut uses).unwrap();
     for part in [
         "<dt id=\"term-ray\">RAY</dt><dd><span id=\"def-ray\">A <em>ray</em>.</span> <a class=\"back\" href=\"#use-ray\"",
-        "<li id=\"ref-second\">second and others. <cite><a href=\"https://second.org\">On second</a></cite>. </li>",
+        "<li id=\"ref-second\">second and others. <cite><a href=\"https://second.org\">On second</a></cite>, 1984. Good.</li>",
     ] {
         assert!(html.contains(part), "{part}: {html}");
     }
-    for (marks, message) in
-        [(&[GLOSSARY_MARK; 2][..], "{{glossary}} must"), (&[GLOSSARY_MARK], "{{references}} must")]
-    {
-        assert!(fill(marks).unwrap_err().message.starts_with(message), "{marks:?}");
-    }
+    let mut faulty = self::site();
+    faulty.terms[1].value.text = "[x](page:nowhere)".to_owned();
+    let fault = converted(&faulty, text, &mut Uses::default()).unwrap_err();
+    assert_eq!(fault.to_string(), "docs/companion/glossary.toml:5: the page has no chapter \"nowhere\"");
 }
 
 #[test]

@@ -70,14 +70,9 @@ pub fn page(stills: &Stills) -> String {
 
 fn shown(figure: &Figure, stills: &Stills) -> Markup {
     let stage = figure.stage();
-    let class = match figure.panels.len() {
-        1 => "panels",
-        2 => "panels two",
-        _ => "panels three",
-    };
     html! {
         figure.figure id={ "figure-" (figure.id) } {
-            div class=(class) {
+            div .panels .{ "of-" (figure.panels.len()) } {
                 @for panel in &figure.panels { (shown_panel(panel, figure.panels.len() > 1, stills)) }
             }
             figcaption {
@@ -92,9 +87,8 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
 /// `is_labelled` if the panel has neighbours.
 fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
     let stage = panel.stage();
-    let class = if is_about_pixels(stage) { "panel pixels" } else { "panel" };
     html! {
-        div class=(class) data-stage=(stage.id) {
+        div .panel .pixels[is_about_pixels(stage)] data-stage=(stage.id) {
             @match stills.of(stage) {
                 Some(still) => {
                     a href=(still.file) {

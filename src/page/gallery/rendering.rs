@@ -9,8 +9,8 @@ use crate::cli::terminal::{Display, print};
 use crate::film::key;
 use crate::job::output::write_small_png;
 use crate::job::recipe::Recipe;
+use crate::progressive::Phase;
 use crate::progressive::describe::{counted, describe};
-use crate::progressive::{Phase, Status};
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
@@ -62,11 +62,8 @@ impl Outcome {
     }
 }
 
-struct Task {
-    stage: &'static Stage,
-    recipe: Recipe,
-    fingerprint: String,
-}
+/// A still to render.
+type Task = (&'static Stage, Recipe);
 
 /// Interval of progress lines without a terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
@@ -88,7 +85,7 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
         .map_err(Failure::Input)?;
     let mut stills = Stills::read(directory);
     let tasks = tasks(order, &stills).map_err(Failure::Input)?;
-    for file in tasks.iter().map(|task| Still::file_name(task.stage)).chain([INDEX.to_owned()]) {
+    for file in tasks.iter().map(|(stage, _)| Still::file_name(stage)).chain([INDEX.to_owned()]) {
         check_writable(&directory.join(file)).map_err(Failure::input)?;
     }
     let kept = order.stages.len() - tasks.len();
@@ -96,8 +93,8 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
     if !tasks.is_empty() {
         let studio = Studio::open(order.backend, interrupt)?;
         let display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
-        let mut work = Work { order, interrupt, tasks: &tasks, studio, display };
-        let outcome = work.render_all(&mut stills, &mut rendered);
+        let mut work = Work { order, interrupt, studio, display };
+        let outcome = work.render_all(&tasks, &mut stills, &mut rendered);
         work.display.clear();
         outcome.map_err(|error| match rendered {
             0 => Failure::Run(error),
@@ -113,14 +110,11 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
 fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
     let mut tasks = Vec::new();
     for stage in order.stages {
-        let recipe = order.quality.recipe(stage);
-        let fingerprint = fingerprint(&recipe);
-        let full = still::fingerprint(&Quality::Full.recipe(stage));
-        if stills.is_fresh(stage, &[&fingerprint, &full]) {
-            continue;
+        let [recipe, full] = [order.quality, Quality::Full].map(|quality| quality.recipe(stage));
+        if !stills.is_fresh(stage, &[fingerprint(&recipe), fingerprint(&full)]) {
+            recipe.job()?.check_memory(1)?;
+            tasks.push((*stage, recipe));
         }
-        recipe.job()?.check_memory(1)?;
-        tasks.push(Task { stage, recipe, fingerprint });
     }
     Ok(tasks)
 }
@@ -128,16 +122,15 @@ fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
 struct Work<'a> {
     order: &'a Order<'a>,
     interrupt: &'a Interrupt,
-    tasks: &'a [Task],
     studio: Studio<'a>,
     display: Display,
 }
 
 impl Work<'_> {
     /// Counts the finished stills in `rendered`. A signal ends it early.
-    fn render_all(&mut self, stills: &mut Stills, rendered: &mut usize) -> Result<()> {
-        for (number, task) in self.tasks.iter().enumerate() {
-            let Some(still) = self.render(number, task)? else { break };
+    fn render_all(&mut self, tasks: &[Task], stills: &mut Stills, rendered: &mut usize) -> Result<()> {
+        while *rendered < tasks.len() && !self.interrupt.is_set() {
+            let Some(still) = self.render(tasks, *rendered)? else { break };
             let line = still.line();
             stills.set(still);
             stills.write()?;
@@ -149,62 +142,61 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Renders and writes a still; `None` after a signal.
-    fn render(&mut self, number: usize, task: &Task) -> Result<Option<Still>> {
-        let recipe = &task.recipe;
-        let plan = Studio::plan(recipe.samples_per_pixel);
-        let (display, tasks) = (&mut self.display, self.tasks);
-        let (status, film) = self.studio.render(recipe.job()?, plan, None, |event| match event {
-            Event::Warning(message) => display.say(&format!("warning: {message}")),
-            Event::Stopping => {}
-            Event::Status(_, status) => {
-                let (message, done) = progress(tasks, number, status);
-                display.update(done, || message);
-            }
-        });
+    /// Renders and writes the still of task `number`; `None` after a signal.
+    fn render(&mut self, tasks: &[Task], number: usize) -> Result<Option<Still>> {
+        let (stage, recipe) = &tasks[number];
+        let (settings, planned) = (&recipe.settings, recipe.samples_per_pixel);
+        let display = &mut self.display;
+        let (status, film) =
+            self.studio.render(recipe.job()?, Studio::plan(planned), None, |event| match event {
+                Event::Warning(message) => display.say(&format!("warning: {message}")),
+                Event::Stopping => {}
+                Event::Status(_, status) => {
+                    let done = status.samples_per_pixel;
+                    display.update(paths(&tasks[..number]) + done * pixels(recipe), || {
+                        let error = status
+                            .error
+                            .map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
+                        format!(
+                            "{} of {}, {}: {done} of {planned} spp{error}",
+                            number + 1,
+                            tasks.len(),
+                            stage.id
+                        )
+                    });
+                }
+            });
         if let Phase::Failed(reason) = &status.phase {
-            bail!("{}: {reason}", task.stage.id);
+            bail!("{}: {reason}", stage.id);
         }
-        let film = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel);
-        let Some(film) = film else { return Ok(None) };
+        let Some(film) = film.filter(|film| film.sample_count() >= planned) else { return Ok(None) };
 
-        let path = self.order.directory.join(Still::file_name(task.stage));
+        let path = self.order.directory.join(Still::file_name(stage));
         let _writing = self.interrupt.while_writing(path.display().to_string());
-        let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
+        let description = describe(recipe, Some(stage), &film, &status, Some(0.0));
         write_small_png(&path, &film, recipe.rules.transfer, &description)?;
         let error = film.error();
-        let settings = &recipe.settings;
         Ok(Some(Still {
-            stage: task.stage.id.to_owned(),
-            file: Still::file_name(task.stage),
+            stage: stage.id.to_owned(),
+            file: Still::file_name(stage),
             width: settings.width,
             height: settings.height,
             max_depth: settings.max_depth,
             sampler: settings.sampler.name().to_owned(),
             seed: settings.seed,
-            samples_per_pixel: recipe.samples_per_pixel,
+            samples_per_pixel: planned,
             trace_seconds: status.trace.as_secs_f64(),
             rmse_estimate: error.map(|error| error.rmse),
             rmse_deviation: error.map(|error| error.rmse_deviation),
             backend: description.get(key::BACKEND).unwrap_or_default().to_owned(),
-            fingerprint: task.fingerprint.clone(),
+            fingerprint: fingerprint(recipe),
             checksum: still::checksum(&path)?,
         }))
     }
 }
 
-/// The progress as text and in paths, while task `number` is rendered.
-fn progress(tasks: &[Task], number: usize, status: &Status) -> (String, u64) {
-    let Task { stage, recipe, .. } = &tasks[number];
-    let done = status.samples_per_pixel;
-    let error = status.error.map_or_else(String::new, |error| format!(", error {:.1e}", error.rmse));
-    let (count, planned) = (tasks.len(), recipe.samples_per_pixel);
-    let message = format!("{} of {count}, {}: {done} of {planned} spp{error}", number + 1, stage.id);
-    (message, paths(&tasks[..number]) + done * pixels(recipe))
-}
-
 fn paths(tasks: &[Task]) -> u64 {
-    tasks.iter().map(|task| task.recipe.samples_per_pixel * pixels(&task.recipe)).sum()
+    tasks.iter().map(|(_, recipe)| recipe.samples_per_pixel * pixels(recipe)).sum()
 }
 
 fn pixels(recipe: &Recipe) -> u64 {

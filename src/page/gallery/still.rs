@@ -118,12 +118,8 @@ impl Stills {
         let path = directory.join(INDEX);
         let mut stills = Stills { directory: directory.to_owned(), pictures: Vec::new() };
         if path.symlink_metadata().is_ok() {
-            match read_index(&path) {
-                Ok(pictures) => pictures.into_iter().for_each(|still| stills.set(still)),
-                Err(error) => {
-                    console::note(&format!("warning: {error:#}; every picture is rendered again"));
-                }
-            }
+            let warn = |error| console::note(&format!("warning: {error:#}; every picture is rendered again"));
+            read_index(&path).map_err(warn).into_iter().flatten().for_each(|still| stills.set(still));
         }
         stills
     }
@@ -154,9 +150,9 @@ impl Stills {
     }
 
     /// Whether the still of `stage` has one of these fingerprints and its file is as written.
-    pub(super) fn is_fresh(&self, stage: &Stage, fingerprints: &[&str]) -> bool {
+    pub(super) fn is_fresh(&self, stage: &Stage, fingerprints: &[String]) -> bool {
         self.of(stage).is_some_and(|still| {
-            fingerprints.contains(&still.fingerprint.as_str())
+            fingerprints.contains(&still.fingerprint)
                 && checksum(&self.directory.join(&still.file)).is_ok_and(|found| found == still.checksum)
         })
     }
