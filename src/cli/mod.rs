@@ -31,6 +31,7 @@ use crate::job::recipe::Recipe;
 use crate::system::failure::{EXIT_CODES, Failure};
 use crate::system::shell::Shell;
 use anyhow::Result;
+use clap::error::{ContextKind, ContextValue};
 use clap::parser::ValueSource;
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -147,7 +148,8 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
+    let matches =
+        command().try_get_matches_from(&arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
@@ -161,6 +163,17 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
             Request::Command(command)
         }
     })
+}
+
+/// Adds a tip if the value of a flag has a decimal comma.
+fn hinted(mut error: clap::Error) -> clap::Error {
+    let value = error.get(ContextKind::InvalidValue).map(ToString::to_string).unwrap_or_default();
+    let with_point = value.replacen(',', ".", 1);
+    if value.contains(',') && with_point.parse::<f64>().is_ok() && !error.to_string().contains("commas") {
+        let tip = format!("write a point: {with_point}");
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip.into()]));
+    }
+    error
 }
 
 impl Command {

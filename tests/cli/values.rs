@@ -11,8 +11,8 @@ fn without_batch_it_names_the_flag() {
 #[test]
 fn values_out_of_range_are_refused_with_value_and_limit() {
     let cases: [(&[&str], &[&str]); 19] = [
-        (&["--vfov", "20,5"], &["20,5", "a number, such as 20"]),
-        (&["--time-limit", "0,5"], &["0,5", "such as 60"]),
+        (&["--vfov", "20,5"], &["20,5", "write a point: 20.5"]),
+        (&["--time-limit", "0,5"], &["0,5", "write a point: 0.5"]),
         (&["--size", "0x10"], &["0x10", "16384"]),
         (&["--samples", "0"], &["0", "4294967296"]),
         (&["--samples", "-3"], &["-3"]),

@@ -58,9 +58,21 @@ pub fn parse(text: &str, name: &str) -> anyhow::Result<Recipe> {
     memory::check(|| format!("reading {name}"), bytes, remedy)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
         let place = error.span().unwrap_or_default().start;
-        error_at(text, name, place, &toml_message(error))
+        let mut reason = toml_message(error);
+        if has_decimal_comma(text, place) {
+            reason += "; write a point in a number, not a comma";
+        }
+        error_at(text, name, place, &reason)
     })?;
     recipe_of(raw, name).map_err(|refusal| error_at(text, name, refusal.place.start, &refusal.reason))
+}
+
+/// Whether the line at `place` has a comma between two digits and is no list.
+fn has_decimal_comma(text: &str, place: usize) -> bool {
+    let start = text.get(..place).and_then(|before| before.rfind('\n')).map_or(0, |end| end + 1);
+    let line = text[start..].lines().next().unwrap_or_default();
+    let is_comma = |three: &[u8]| matches!(three, [b'0'..=b'9', b',', b'0'..=b'9']);
+    !line.contains('[') && line.as_bytes().windows(3).any(is_comma)
 }
 
 /// Puts a TOML error on one line, with the key's path and without Rust's terms.
