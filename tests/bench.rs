@@ -138,19 +138,6 @@ fn specialised_and_general_kernels_agree() {
 }
 
 #[test]
-fn measures_everything_by_default() {
-    let directory = tempfile::tempdir().unwrap();
-    let report = features(directory.path(), &["--samples", "2"]);
-    let rows = report["features"][0]["rows"].as_array().unwrap();
-    // Every other built-in scene is a stage's picture.
-    let expected = Stage::ALL.iter().map(|stage| stage.id).chain(["field"]);
-    assert!(rows.iter().map(|row| row["name"].as_str().unwrap()).eq(expected));
-    for row in rows {
-        assert_eq!(row["same_bits"], true, "{row}");
-    }
-}
-
-#[test]
 fn bad_flags_fail_early() {
     let cases: [(&[&str], &str); 4] = [
         (&["--scene", "no-such"], "no-such"),

@@ -84,27 +84,6 @@ fn renders_only_outdated_stills() {
     assert_eq!(pictures(at).len(), 4);
 }
 
-#[test]
-fn full_still_satisfies_quick_order() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let only = ["--only", "sky,antialiased"];
-    let quick = [&["--quick"][..], &only].concat();
-    assert_eq!(rendered(at, &quick), ["sky", "antialiased"]);
-    assert_eq!(pictures(at)[0]["width"], 480);
-    // One sample more or less would change the figure, so its full picture is also the quick one.
-    assert_eq!(rendered(at, &only), ["sky"]);
-    let sky = &pictures(at)[0];
-    assert_eq!(
-        (&sky["width"], &sky["file"], &sky["samples_per_pixel"]),
-        (&800.into(), &"sky.png".into(), &1.into())
-    );
-    assert!(rendered(at, &quick).is_empty());
-    let path = at.join("g/antialiased.png");
-    assert_eq!(read_description(&path).unwrap().get("Stage"), Some("antialiased"));
-    assert_eq!(Saved::describe(&path).unwrap().recipe().unwrap().samples_per_pixel, 64);
-}
-
 #[cfg(unix)]
 #[test]
 fn ctrl_c_keeps_finished_pictures() {

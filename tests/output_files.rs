@@ -124,19 +124,6 @@ fn descriptions_are_read_back() {
 }
 
 #[test]
-fn a_picture_holds_a_long_recipe() {
-    let directory = tempfile::tempdir().unwrap();
-    let recipe = format!("{}\n", "x".repeat(63)).repeat(1 << 14);
-    let path = directory.path().join("a.png");
-    let mut description = Description::new(&recipe);
-    description.set(key::SAMPLES, 2);
-    write_image(&path, &film(), Transfer::Gamma2, &description).unwrap();
-    let read = read_description(&path).unwrap();
-    assert!(read.recipe() == recipe);
-    assert_eq!(read.get(key::SAMPLES), Some("2"));
-}
-
-#[test]
 fn foreign_pictures_have_no_description() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a");
@@ -256,28 +243,4 @@ mod unix {
             assert!(message.contains("full") && message.contains("free some space"), "{message}");
         }
     }
-}
-
-#[test]
-fn a_frame_is_a_whole_rgb_picture_of_its_size() {
-    let directory = tempfile::tempdir().unwrap();
-    let at = |name: &str| directory.path().join(name);
-    let message = |name: &str, size| check_frame(&at(name), size).unwrap_err().to_string();
-    write_image(&at("a.png"), &film(), Transfer::Gamma2, &description()).unwrap();
-    check_frame(&at("a.png"), [13, 7]).unwrap();
-    for [width, height] in [[7, 13], [12, 7], [13, 8]] {
-        let words = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
-        let message = message("a.png", [width, height]);
-        assert!(message.contains("a.png") && message.contains(&words), "{message}");
-    }
-    image::GrayImage::new(13, 7).save(at("grey.png")).unwrap();
-    image::RgbaImage::new(13, 7).save(at("rgba.png")).unwrap();
-    image::ImageBuffer::from_pixel(13, 7, image::Rgb([9_u16; 3])).save(at("deep.png")).unwrap();
-    for name in ["grey.png", "rgba.png", "deep.png"] {
-        assert!(message(name, [13, 7]).contains("not an 8-bit RGB picture of 13x7 pixels"), "{name}");
-    }
-    let whole = fs::read(at("a.png")).unwrap();
-    fs::write(at("short.png"), &whole[..whole.len() - 20]).unwrap();
-    assert!(message("short.png", [13, 7]).contains("short.png"));
-    assert!(message("missing.png", [13, 7]).contains("missing.png"));
 }

@@ -122,28 +122,3 @@ fn checkpoint_is_only_replaced_by_its_continuation() {
     render(directory.path(), &["--samples", "4", "--checkpoint", "k.exr"]);
     assert_eq!(film(at("k.exr")).sample_count(), 4);
 }
-
-#[test]
-fn parts_add_up_to_the_whole() {
-    let directory = temp();
-    let at = |name: &str| directory.path().join(name);
-    render(directory.path(), &["--samples", "24", "--out", "whole.exr"]);
-    for (range, name) in [("0..8", "a.exr"), ("8..13", "b.exr"), ("13..24", "c.exr")] {
-        render(directory.path(), &["--sample-range", range, "--out", name]);
-    }
-    let merge = run(directory.path(), &["merge", "c.exr", "a.exr", "b.exr", "--out", "all.exr"]);
-    assert!(merge.status.success(), "{}", text(&merge.stderr));
-    assert!(text(&merge.stdout).contains("0..24"), "{}", text(&merge.stdout));
-    assert_eq!(film(at("all.exr")), film(at("whole.exr")));
-
-    refused_in(
-        &directory,
-        &["merge", "a.exr", "whole.exr", "--out", "x.exr"],
-        &["a.exr", "whole.exr", "0..8"],
-    );
-    render(directory.path(), &["--sample-range", "24..32", "--seed", "9", "--out", "other.exr"]);
-    refused_in(&directory, &["merge", "a.exr", "other.exr", "--out", "x.exr"], &["other.exr", "seed is 0"]);
-    refused_in(&directory, &["merge", "a.exr", "b.exr", "--out", "x.gif"], &["x.gif", ".exr"]);
-    refused_in(&directory, &["merge", "--out", "x.exr"], &["FILM"]);
-    refused_in(&directory, &["merge", "a.exr", "none.exr", "--out", "x.exr"], &["none.exr"]);
-}

@@ -83,17 +83,3 @@ fn outside_text_cannot_control_a_terminal() {
         assert!(text(&output.stderr).starts_with("error"), "{output:?}");
     }
 }
-
-#[test]
-fn report_targets_are_unique_with_the_chosen_one_first() {
-    let targets = |flags: &[&str]| {
-        let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
-        let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {
-            panic!("{flags:?}")
-        };
-        options.targets()
-    };
-    assert_eq!(targets(&[]), [0.01, 0.001]);
-    assert_eq!(targets(&["--target", "0.02"]), [0.02, 0.01, 0.001]);
-    assert_eq!(targets(&["--target", "0.001"]), [0.001, 0.01]);
-}

@@ -73,13 +73,6 @@ fn few_pixels_meet_a_target_with_room_to_spare() {
     }
 }
 
-#[test]
-fn an_uncertainty_is_a_share_of_the_error() {
-    let estimate = ErrorEstimate { rmse: 0.1, rmse_deviation: 0.002, rel_mse: 0.0 };
-    assert_eq!(estimate.uncertainty(), "± 2.0 %");
-    assert!((estimate.pixels_in_effect() - 625.0).abs() < 1e-6, "{}", estimate.pixels_in_effect());
-}
-
 /// A film of two samples with noise only in its first `noisy` pixels.
 fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
     let mut film = Film::new(pixels, 1, 2);

@@ -176,34 +176,3 @@ fn case_34_camera_at_a_million() {
         }
     }
 }
-
-/// Rays from all over the lens meet where the ray from its middle is in focus.
-#[test]
-fn lens_rays_meet_in_focus_plane() {
-    let camera = Camera {
-        look_from: DVec3::new(3.0, 1.0, -2.0),
-        look_at: DVec3::new(0.5, 0.2, -1.0),
-        vfov_degrees: 40.0,
-        defocus_angle_degrees: 10.0,
-        focus_distance: Some(4.0),
-        ..Camera::BOOK
-    };
-    let l = Reference;
-    let table = CameraTable::new(&camera, 80, 45, DVec3::ZERO).map(Wide::splat);
-    let (basis, radius) = (camera.basis(), 4.0 * 5.0_f64.to_radians().tan());
-    let mut random = Random::new(9);
-    for _ in 0..1000 {
-        let corner =
-            screen(l, &table, l.constant(random.within(0.0, 80.0)), l.constant(random.within(0.0, 45.0)));
-        let jitter = [random.unit(), random.unit()].map(|u| l.constant(u));
-        let on_lens = [random.within(-0.7, 0.7), random.within(-0.7, 0.7)];
-        let middle = pinhole_ray(l, &table, corner, jitter);
-        let rays = lens_ray(l, &table, corner, jitter, on_lens.map(|u| l.constant(u)));
-        let [from, to] = [vector::<Reference>(rays.origin), vector::<Reference>(rays.direction)];
-        let expected = camera.look_from + radius * (on_lens[0] * basis.u + on_lens[1] * basis.v);
-        assert!((from - expected).length() < 1e-12, "from {from}, not {expected}");
-        // Both directions have length 1 along the view.
-        let in_focus = camera.look_from + 4.0 * vector::<Reference>(middle.direction);
-        assert!((from + 4.0 * to - in_focus).length() < 1e-12, "{on_lens:?}");
-    }
-}

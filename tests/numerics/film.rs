@@ -55,20 +55,6 @@ fn sums_of_a_bright_sky_do_not_overflow() {
     }
 }
 
-#[test]
-fn case_24_another_order() {
-    let scene = three_spheres(LeftSphere::HollowGlass);
-    let settings = RenderSettings { estimate_error: true, ..size(64, 36) };
-    let job = job(&scene, Camera::BOOK, settings);
-    let mut renderer = widest();
-    let at_once = render(&mut renderer, &job, 0..23);
-    let mut in_parts = job.new_film();
-    for range in [17..23, 0..1, 5..17, 3..5, 1..3] {
-        in_parts.merge(&render(&mut renderer, &job, range)).unwrap();
-    }
-    assert_eq!(in_parts, at_once);
-}
-
 /// A lone ball, or its sky, has a NaN colour: exactly the paths that see it are counted and left out.
 #[test]
 fn case_25_not_a_number() {

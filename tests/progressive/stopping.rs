@@ -418,24 +418,3 @@ fn paused_render_obeys_other_commands() {
     changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
     assert_eq!(progressive.finish(), None);
 }
-
-#[test]
-fn untimely_requests_change_nothing() {
-    let mut progressive = idle(usual);
-    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
-    assert_eq!(progressive.status(), Status::default());
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(8)));
-    assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
-    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
-    assert_eq!(progressive.take_film(), Some(expected(8)));
-    assert_eq!(
-        (progressive.take_film(), progressive.status().phase),
-        (None, Phase::Done(EndReason::Samples))
-    );
-
-    let failing = started_with(other_cpu(), Plan::samples(100), |choice| {
-        Box::new(Fake { fails_at: Some(8), ..Fake::new(choice.name()) })
-    });
-    assert!(matches!(failing.wait_until_over().phase, Phase::Failed(_)));
-    changes_nothing(&failing, &[PAUSE, RESUME, STOP]);
-}

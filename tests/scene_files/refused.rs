@@ -91,37 +91,6 @@ fn bad_materials_are_refused() {
 }
 
 #[test]
-fn bad_cameras_are_refused() {
-    let with = |line: &str| ONE_SPHERE.replace("[materials.ball]", &format!("{line}\n[materials.ball]"));
-    for (line, expected) in [
-        ("vup = [0, 0, 1]", "vup is [0, 0, 1], which is parallel to the view"),
-        ("vup = [0, 0, nan]", "vup.z is NaN"),
-        ("focus_distance = 0", "focus_distance is 0, but must be within"),
-        ("defocus_angle_degrees = 180", "below 179 degrees"),
-        ("defocus_angle_degrees = -1", "use 0 for a pinhole"),
-    ] {
-        let message = refusal(&with(line), 1);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
-    }
-    for (line, expected) in [("vup = [0, 0]", "three numbers"), ("roll = 3", "unknown key `roll`")] {
-        let message = refusal(&with(line), 5);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
-    }
-    let from = "look_from = [0, 0, 3]";
-    for (old, new, part) in [
-        (from, "look_from = [0, 0, 0]", "move one of them"),
-        (from, "look_from = [0, inf, 3]", "look_from.y is inf"),
-        (from, "look_from = [0, 1e30, 3]", "scale the scene"),
-        ("vfov_degrees = 40", "vfov_degrees = 180", "vfov_degrees is 180, but must be within 0.01 and 179"),
-        ("vfov_degrees = 40", "", "missing key `vfov_degrees`"),
-    ] {
-        refuse_with(old, new, 1, &[part]);
-    }
-    let message = refusal("", 1);
-    assert!(message.contains("missing key `camera`"), "{message}");
-}
-
-#[test]
 fn bad_settings_are_refused() {
     for (table, line, expected) in [
         ("render", "width = 0", "0 is not within 1 and 16384 in `render.width`"),

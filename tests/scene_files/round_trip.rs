@@ -36,27 +36,6 @@ fn the_example_scenes_are_valid() {
 }
 
 #[test]
-fn every_setting_is_read_back() {
-    let usual = RenderSettings::default();
-    let other = RenderSettings {
-        max_depth: 7,
-        sampler: SamplerKind::Independent,
-        seed: 5,
-        estimate_error: false,
-        ..usual
-    };
-    let text = "max_depth = 7\nsampler = \"independent\"\nseed = 5\nestimate_error = false\n";
-    let recipe = parse(&format!("{CAMERA}[render]\n{text}"), "x").expect("valid");
-    assert_eq!(recipe.settings, other);
-    assert_round_trip(&recipe);
-}
-
-#[test]
-fn a_hundred_thousand_spheres_are_read_back() {
-    assert_round_trip(&Recipe::builtin("field:100000").expect("a field"));
-}
-
-#[test]
 fn a_picture_names_a_large_field_and_restores_it() {
     let field = Recipe::builtin("field:20000").expect("a field");
     let text = to_picture_toml(&field);
