@@ -12,7 +12,6 @@ use weekender::denoise::{self, Denoised};
 use weekender::film::{Film, checkpoint, key};
 use weekender::job::output::read_description;
 use weekender::job::recipe::Recipe;
-use weekender::measure::stress;
 use weekender::{CpuOptions, CpuRenderer, Renderer};
 
 /// Renders samples of a picture with the CPU.

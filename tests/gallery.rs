@@ -11,8 +11,6 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::job::output::read_description;
-use weekender::job::saved::Saved;
 use weekender::page::gallery::Figure;
 use weekender::stages::Stage;
 

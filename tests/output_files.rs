@@ -10,9 +10,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 use weekender::film::{Film, checkpoint, fixed_point};
-use weekender::job::output::{
-    Description, OutputError, OutputFormat, check_frame, key, read_description, write_image,
-};
+use weekender::job::output::{Description, OutputError, OutputFormat, key, read_description, write_image};
 use weekender::stages::Transfer;
 use weekender::system::files::{check_writable, replace_file};
 

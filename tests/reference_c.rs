@@ -6,7 +6,6 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::job::output::{Encoding, read_picture};
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::measure::baseline::{Baseline, FLAGS, SOURCE};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use weekender::job::recipe::Recipe;
-use weekender::stages::{DielectricLaws, Means, Rules, Shading, Stage, SurfaceRule, Transfer};
+use weekender::stages::{Means, Shading, Stage, SurfaceRule, Transfer};
 
 fn stage(id: &str) -> &'static Stage {
     Stage::find(id).unwrap_or_else(|error| panic!("{error}"))

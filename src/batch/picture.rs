@@ -135,7 +135,7 @@ fn outcome(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::tests::{batch, options};
+    use crate::batch::tests::batch;
     use crate::film::checkpoint;
     use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;

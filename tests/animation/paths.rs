@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use std::f64::consts::TAU;
-use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 use weekender::scene::animation::{CameraPath, FrameNames, Keyframe, Turn};
 

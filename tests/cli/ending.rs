@@ -1,9 +1,8 @@
 //! What ends a render.
 
-use super::common::{PATIENCE, film, names, render, run, temp, text, wait, weekender};
+use super::common::{PATIENCE, render, temp};
 use serde_json::Value;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 #[test]
 fn time_limit_and_noise_target_end_a_render() {

@@ -1,7 +1,6 @@
 //! Flags and values that are refused.
 
 use super::common::{refused, run, temp, text};
-use weekender::cli::{Request, parse};
 
 #[test]
 fn without_batch_it_names_the_flag() {

@@ -1,7 +1,7 @@
 //! The error estimate.
 
 use super::common::{add, noisy_film};
-use weekender::film::{ErrorEstimate, Film, PixelSum, ROUNDING_LIMIT, fixed_point};
+use weekender::film::{Film, PixelSum, ROUNDING_LIMIT, fixed_point};
 
 #[test]
 fn the_error_is_that_of_the_mean() {

@@ -6,7 +6,7 @@ use crate::common::*;
 use glam::{DMat3, DVec3};
 use weekender::kernel::CameraTable;
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
-use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, Wide};
+use weekender::render_cpu::lanes::{Lanes, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, Scene, SceneError, Sky};
 

@@ -10,7 +10,7 @@ use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::trace;
 use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
-use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
+use weekender::scene::builtin::empty;
 use weekender::scene::{Camera, Sky};
 
 /// Traces a prepared scene without validating it, in one tile of at most 256 pixels a side.

@@ -4,7 +4,6 @@ use crate::common::*;
 use crate::stiff::*;
 use glam::DVec3;
 use weekender::job::render::RenderSettings;
-use weekender::prepared::PreparedScene;
 use weekender::scene::{Camera, Scene, Sky};
 
 /// Details near the eye are resolved, even with a small ball near the far side of the same planet.

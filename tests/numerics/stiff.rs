@@ -7,7 +7,7 @@ use weekender::film::Film;
 use weekender::job::render::{RenderJob, RenderSettings};
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
-use weekender::scene::builtin::{LeftSphere, field, three_spheres};
+use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, Material, Scene, Sky};
 
 pub type Ball = (DVec3, f64, Material);

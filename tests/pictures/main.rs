@@ -8,7 +8,6 @@ use weekender::film::{CheckpointError, checkpoint};
 use weekender::job::output::{Encoding, Values, decode_picture, read_picture};
 use weekender::job::saved::{self, OpenError};
 use weekender::pictures::Picture;
-use weekender::pictures::check::Mine;
 use weekender::pictures::compare::{Comparison, compare_sides};
 use weekender::stages::Transfer;
 

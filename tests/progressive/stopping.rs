@@ -2,7 +2,7 @@
 
 use super::common::{
     CPU, FAILING, Fake, PATIENCE, expected, idle, job, other_cpu, scripted, settled, started, started_with,
-    stopped, usual, wait_for, wait_until,
+    stopped, wait_for, wait_until,
 };
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};

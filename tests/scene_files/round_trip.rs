@@ -5,7 +5,6 @@ use std::path::Path;
 use std::sync::Arc;
 use weekender::job::recipe::Recipe;
 use weekender::job::recipe::file::{load, parse, to_picture_toml};
-use weekender::job::render::{RenderSettings, SamplerKind};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
 
