@@ -38,8 +38,8 @@ fn bad_spheres_are_refused() {
     let center = "center = [0, 0, 0]";
     refuse_with(center, "center = [0, nan, 0]", 8, &["spheres[0].center.y is NaN"]);
     for (old, new, line, parts) in [
-        ("radius = 1", "radious = 1", 10, &["unknown key `radious`", "`radius`"]),
-        ("radius = 1", "radius = 1e400", 10, &["overflow"][..]),
+        ("radius = 1", "radious = 1", 10, &["unknown key `radious`", "`radius`"][..]),
+        ("radius = 1", "radius = 1e400", 10, &["overflow"]),
         ("radius = 1", "radius = 1\nradius = 2", 11, &["duplicate key"]),
         (center, "center = [0, 0]", 9, &["three numbers", "found 2", "spheres.center"]),
         (center, "", 8, &["missing key `center`"]),
@@ -78,6 +78,15 @@ fn bad_materials_are_refused() {
     ] {
         refuse_with(material, &new, 8, parts);
     }
+}
+
+#[test]
+fn bad_cameras_are_refused() {
+    let vfov = "vfov_degrees = 40";
+    refuse_with(vfov, "vfov_degrees = 180", 1, &["vfov_degrees is 180, but must be within 0.01 and 179"]);
+    refuse_with(vfov, "", 1, &["missing key `vfov_degrees`"]);
+    refuse_with(vfov, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0, 0, 1], which is parallel"]);
+    refuse_with(vfov, "vfov_degrees = 40\nroll = 3", 5, &["unknown key `roll`"]);
 }
 
 #[test]
