@@ -5,7 +5,6 @@
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use weekender::stages::Stage;
 
 fn bench(directory: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -135,19 +134,6 @@ fn specialised_and_general_kernels_agree() {
     assert!(left_out.contains("lens"), "{left_out}");
     let (kernel, left_out) = kernel_parts(&rows[1]);
     assert!(kernel.contains("lens") && !left_out.contains("lens"), "{kernel}; {left_out}");
-}
-
-#[test]
-fn measures_everything_by_default() {
-    let directory = tempfile::tempdir().unwrap();
-    let report = features(directory.path(), &["--samples", "2"]);
-    let rows = report["features"][0]["rows"].as_array().unwrap();
-    // Every other built-in scene is a stage's picture.
-    let expected = Stage::ALL.iter().map(|stage| stage.id).chain(["field"]);
-    assert!(rows.iter().map(|row| row["name"].as_str().unwrap()).eq(expected));
-    for row in rows {
-        assert_eq!(row["same_bits"], true, "{row}");
-    }
 }
 
 #[test]

@@ -154,44 +154,6 @@ fn non_finite_in_one_picture_differs() {
 }
 
 #[test]
-fn worst_block_has_column_and_row() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    for (name, by) in [("a.png", 0), ("b.png", 20)] {
-        let picture = image::RgbImage::from_fn(64, 24, |x, y| {
-            let is_changed = (40..48).contains(&x) && (8..16).contains(&y);
-            image::Rgb([if is_changed { 100 + by + by / 10 * ((x + y) % 3) as u8 } else { 100 }; 3])
-        });
-        picture.save(at.join(name)).unwrap();
-    }
-    let (code, text, errors) = compare(&["a.png", "b.png"], at);
-    assert!(code == 1 && text.contains("worst at    40,8 ("), "{text}{errors}");
-    let (_, found) = json(&["a.png", "b.png"], at);
-    let worst = &found["worst_blocks"][0];
-    assert_eq!(
-        [&worst["x"], &worst["y"]],
-        [&serde_json::json!([40, 48]), &serde_json::json!([8, 16])],
-        "{found}"
-    );
-}
-
-#[test]
-fn backends_agree_on_the_same_samples() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    for scene in ["three-spheres", "book"] {
-        let flags = ["--scene", scene, "--samples", "16", "--size", "96x54"];
-        render(at, "cpu.exr", &flags);
-        let exact = ["--batch", "--device", "reference", "--progress", "off", "--out", "exact.exr"];
-        assert_eq!(weekender(&[&exact, &flags[..]].concat(), at).0, 0);
-        let (code, text, _) = compare(&["cpu.exr", "exact.exr"], at);
-        assert_eq!(code, 0, "{text}");
-        let (_, found) = json(&["cpu.exr", "exact.exr"], at);
-        assert!(found["times_noise"].as_f64().unwrap() < 0.2, "{found}");
-    }
-}
-
-#[test]
 fn incomparable_pictures_exit_with_2() {
     let at = TempDir::new().unwrap();
     let at = at.path();

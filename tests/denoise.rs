@@ -12,7 +12,6 @@ use weekender::denoise::{self, Denoised};
 use weekender::film::{Film, checkpoint, key};
 use weekender::job::output::read_description;
 use weekender::job::recipe::Recipe;
-use weekender::measure::stress;
 use weekender::{CpuOptions, CpuRenderer, Renderer};
 
 /// Renders samples of a picture with the CPU.
@@ -100,37 +99,6 @@ fn gains_and_estimates_of_large_pictures() {
             println!("{scene:14} {samples:5} {gain:6.2} {ratio:5.2} +- {deviation:.2} {milliseconds:4.0} ms");
         }
     }
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn estimates_of_many_pictures() {
-    let size = [400, 225];
-    let (mut within_all, mut all) = (0, 0);
-    let scenes =
-        ["three-spheres", "book", "close-up", "metals"].map(|name| (name, Recipe::find(name).unwrap()));
-    let stage = weekender::stages::Stage::find("lambertian-gamma").unwrap();
-    let cases = stress::shown_cases().iter().take(2);
-    let cases = cases.map(|case| (case.id.as_str(), case.recipe_in(stress::Form::Plain)));
-    for (name, recipe) in scenes.into_iter().chain([(stage.id, stage.recipe())]).chain(cases) {
-        let reference = render(&sized(recipe.clone(), size, 1000), 4096);
-        for samples in [4, 16, 64, 256] {
-            let films = (100..124).map(|seed| render(&sized(recipe.clone(), size, seed), samples));
-            let outcomes: Vec<Outcome> = films.map(|film| Outcome::of(&film, &reference)).collect();
-            let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / outcomes.len() as f64;
-            let worst = outcomes.iter().map(|outcome| outcome.gain).fold(f64::INFINITY, f64::min);
-            let within = outcomes.iter().filter(|outcome| outcome.is_within()).count();
-            (within_all, all) = (within_all + within, all + outcomes.len());
-            println!(
-                "{name:16} {samples:4}  gain {:5.2} (worst {worst:.2})  estimate / true {:.3}, deviation {:.3}  within {within}",
-                mean(|outcome| outcome.gain),
-                mean(|outcome| outcome.ratio),
-                mean(|outcome| outcome.deviation)
-            );
-        }
-    }
-    println!("{within_all} of {all} within two standard deviations");
-    assert!(within_all * 100 >= all * 93);
 }
 
 #[test]

@@ -7,19 +7,12 @@ use gpu_common::{gpu, job_of, jobs};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderJob, Renderer, SamplerKind, Stats};
 use weekender::pictures::diff::{Pair, PathComparison};
-use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa, PathRecord, record_path};
+use weekender::render_cpu::{Isa, PathRecord, record_path};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::SurfaceRule;
-
-fn small(scene: &str, width: u32, height: u32) -> RenderJob {
-    let mut recipe = Recipe::find(scene).unwrap();
-    (recipe.settings.width, recipe.settings.height) = (width, height);
-    recipe.job().unwrap()
-}
 
 fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: std::ops::Range<u64>) -> (Film, Stats) {
     let mut film = job.new_film();
@@ -34,41 +27,6 @@ fn pixels(job: &RenderJob) -> impl Iterator<Item = [u32; 2]> + use<> {
 
 fn compare(job: &RenderJob, paths: [&PathRecord; 2], tolerance: f64) -> PathComparison {
     Pair { job, names: ["first", "second"], paths, tolerance }.compare()
-}
-
-#[test]
-fn records_sum_to_film() {
-    let job = small("three-spheres", 16, 9);
-    let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
-    let (film, stats) = rendered(&mut renderer, &job, 0..13);
-    let best = Isa::available().last().copied();
-    let mut rays = 0;
-    for (number, pixel) in pixels(&job).enumerate() {
-        let mut sum = [0.0; 3];
-        for sample in 0..13 {
-            let record = record_path(&job, pixel, sample, best);
-            rays += record.rays.len() as u64;
-            sum = [0, 1, 2].map(|channel| sum[channel] + record.radiance[channel]);
-        }
-        assert_eq!(sum, film.pixel_sum(number).radiance(), "{pixel:?}");
-    }
-    assert_eq!(rays, stats.rays);
-}
-
-#[test]
-fn cpu_matches_reference_on_most_paths() {
-    let job = small("three-spheres", 32, 18);
-    let best = Isa::available().last().copied();
-    let mut parted = 0;
-    for pixel in pixels(&job) {
-        let (single, double) = (record_path(&job, pixel, 3, best), record_path(&job, pixel, 3, None));
-        let comparison = compare(&job, [&single, &double], 1e-3);
-        assert!(comparison.parting.is_none() || comparison.first.is_some());
-        parted += usize::from(comparison.first.is_some());
-    }
-    assert!(parted < 12, "{parted} of 576 differ");
-    let sky = compare(&job, [&record_path(&job, [0, 0], 3, best), &record_path(&job, [0, 0], 3, None)], 1e-4);
-    assert_eq!(sky.first, None);
 }
 
 #[test]
@@ -171,15 +129,6 @@ fn cpu_matches_reference_within_tolerance() {
 }
 
 #[test]
-fn every_stage_has_a_path() {
-    for id in ["ppm-gradient", "sky", "normals-world", "metal-fuzzy", "defocus"] {
-        let arguments = ["--stage", id, "--sides", "cpu,portable", "--pixel", "60,30", "--size", "120x67"];
-        let (code, text, errors) = diff(&arguments);
-        assert!(code <= 1 && text.contains("verdict"), "{id}: {errors}");
-    }
-}
-
-#[test]
 fn json_has_both_paths() {
     let (code, json, text) = diff(&["--sides", "cpu,reference", "--pixel", "5,6", "--json", "-"]);
     assert_eq!(code, 0);
@@ -194,18 +143,14 @@ fn json_has_both_paths() {
 
 #[test]
 fn incomparable_sides_are_refused() {
-    let cases: [(&[&str], &[&str]); 9] = [
+    let cases: [(&[&str], &[&str]); 5] = [
         (&[], &["--pixel"]),
         (&["--pixel", "800,0", "--sides", "cpu,reference"], &["800,0", "799,449"]),
-        (&["--pixel", "1"], &["a column and a row"]),
         (&["--pixel", "1,1", "--sides", "cpu"], &["portable, reference, gpu"]),
-        (&["--pixel", "1,1", "--find"], &["--find"]),
         (
             &["--pixel", "1,1", "--sides", "cpu,reference", "--adapter", "x"],
             &["--adapter", "the side gpu in --sides"],
         ),
-        (&["--pixel", "1,1", "--adapter", "no such adapter"], &["the side gpu", "--sides cpu,reference"]),
-        (&["--pixel", "1,1", "--stage", "all"], &["all", "--list"]),
         (&["--pixel", "1,1", "--sides", "cpu,reference", "--json", "nowhere/a.json"], &["nowhere/a.json"]),
     ];
     for (arguments, parts) in cases {

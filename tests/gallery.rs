@@ -11,8 +11,6 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
-use weekender::job::output::read_description;
-use weekender::job::saved::Saved;
 use weekender::page::gallery::Figure;
 use weekender::stages::Stage;
 
@@ -82,27 +80,6 @@ fn renders_only_outdated_stills() {
     let output = run(at, &[&["--out", "g"], &SMALL[..]].concat());
     assert!(text(&output.stderr).contains("gallery.json"), "{}", text(&output.stderr));
     assert_eq!(pictures(at).len(), 4);
-}
-
-#[test]
-fn full_still_satisfies_quick_order() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let only = ["--only", "sky,antialiased"];
-    let quick = [&["--quick"][..], &only].concat();
-    assert_eq!(rendered(at, &quick), ["sky", "antialiased"]);
-    assert_eq!(pictures(at)[0]["width"], 480);
-    // One sample more or less would change the figure, so its full picture is also the quick one.
-    assert_eq!(rendered(at, &only), ["sky"]);
-    let sky = &pictures(at)[0];
-    assert_eq!(
-        (&sky["width"], &sky["file"], &sky["samples_per_pixel"]),
-        (&800.into(), &"sky.png".into(), &1.into())
-    );
-    assert!(rendered(at, &quick).is_empty());
-    let path = at.join("g/antialiased.png");
-    assert_eq!(read_description(&path).unwrap().get("Stage"), Some("antialiased"));
-    assert_eq!(Saved::describe(&path).unwrap().recipe().unwrap().samples_per_pixel, 64);
 }
 
 #[cfg(unix)]

@@ -84,39 +84,6 @@ fn a_log_file_has_passes_and_checkpoints_and_replaces_no_picture() {
 }
 
 #[test]
-fn a_filter_that_is_wrong_empties_no_log() {
-    let directory = tempfile::tempdir().unwrap();
-    let log = directory.path().join("run.log");
-    fs::write(&log, "an older log").unwrap();
-    let mut command = program(directory.path(), &["--list", "--log", "run.log"]);
-    let output = command.env("RUST_LOG", "weekender=loud").output().unwrap();
-    assert!(output.status.code() == Some(2) && said(&output)[1].contains("weekender=loud"), "{output:?}");
-    assert_eq!(fs::read_to_string(&log).unwrap(), "an older log");
-}
-
-#[test]
-fn every_subcommand_can_write_a_log() {
-    let directory = tempfile::tempdir().unwrap();
-    let flags = ["stress", "--filter", "no-such-scene", "--log", "run.log"];
-    let output = program(directory.path(), &flags).output().unwrap();
-    assert!(
-        fs::read_to_string(directory.path().join("run.log")).unwrap().contains("INFO  weekender: weekender "),
-        "{output:?}"
-    );
-}
-
-#[test]
-fn the_version_names_the_build() {
-    let directory = tempfile::tempdir().unwrap();
-    for flag in ["--version", "-V"] {
-        let output = program(directory.path(), &[flag]).output().unwrap();
-        let [text, _] = said(&output);
-        let start = concat!("weekender ", env!("CARGO_PKG_VERSION"), " (");
-        assert!(output.status.success() && text.starts_with(start) && text.ends_with(")\n"), "{text}");
-    }
-}
-
-#[test]
 #[cfg(not(feature = "window"))]
 fn a_build_without_a_window_says_what_to_do() {
     let directory = tempfile::tempdir().unwrap();

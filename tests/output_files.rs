@@ -120,19 +120,6 @@ fn descriptions_are_read_back() {
 }
 
 #[test]
-fn a_picture_holds_a_long_recipe() {
-    let directory = tempfile::tempdir().unwrap();
-    let recipe = format!("{}\n", "x".repeat(63)).repeat(1 << 14);
-    let path = directory.path().join("a.png");
-    let mut description = Description::new(&recipe);
-    description.set(key::SAMPLES, 2);
-    write_image(&path, &film(), Transfer::Gamma2, &description).unwrap();
-    let read = read_description(&path).unwrap();
-    assert!(read.recipe() == recipe);
-    assert_eq!(read.get(key::SAMPLES), Some("2"));
-}
-
-#[test]
 fn foreign_pictures_have_no_description() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a");

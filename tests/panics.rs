@@ -54,20 +54,6 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
 }
 
 #[test]
-fn a_panic_of_the_tracer_is_a_warning_in_an_animation() {
-    let directory = tempfile::tempdir().unwrap();
-    let flags = ["--batch", "--device", "cpu", "--size", "24x14", "--samples", "4", "--turntable=2"];
-    let files = ["--simulate-panic", "0", "--out", "frames", "--json", "frames.json"];
-    let output = weekender(directory.path(), &[&flags[..], &files].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.contains("warning: ") && said.contains("panicked"), "{said}");
-    let json = fs::read_to_string(directory.path().join("frames.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let first = report["warnings"][0].as_str().unwrap_or_default();
-    assert!(first.contains("panicked") && report["frames_done"] == 2, "{report}");
-}
-
-#[test]
 fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
     let directory = tempfile::tempdir().unwrap();
     let flags = ["--batch", "--device", "cpu", "--size", "48x27", "--samples", "4294967296"];

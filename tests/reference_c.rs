@@ -6,7 +6,6 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::job::output::{Encoding, read_picture};
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::measure::baseline::{Baseline, FLAGS, SOURCE};
@@ -130,26 +129,6 @@ fn fuzzy_metals_are_the_same_picture() {
 fn run(baseline: &Baseline, arguments: &[&Path]) -> Output {
     let numbers = ["16", "9", "2", "50", "7"];
     Command::new(baseline.program()).args(numbers).args(arguments).output().unwrap()
-}
-
-#[test]
-fn without_a_scene_file_it_renders_the_three_spheres() {
-    let mut baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
-    let mut recipe = Recipe::find("three-spheres").unwrap();
-    (recipe.settings.width, recipe.settings.height, recipe.settings.max_depth) = (16, 9, 50);
-    recipe.settings.seed = 7;
-    let mut film = Film::new(16, 9, 1);
-    baseline.accumulate(&recipe.job().unwrap(), 0..2, &mut film, &AtomicBool::new(false)).unwrap();
-    let directory = tempfile::tempdir().unwrap();
-    let out = directory.path().join("built-in.pfm");
-    assert!(run(&baseline, &[Path::new("--out"), &out]).status.success());
-    // The camera's up vector and the sky are written in full; its focus distance is the book's.
-    for (pixel, mean) in
-        read_picture(&out, None).unwrap().linear(Encoding::Srgb).pixels.into_iter().enumerate()
-    {
-        let found = film.mean(pixel);
-        assert!((0..3).all(|channel| (found[channel] - mean[channel]).abs() < 1e-7), "{found:?} {mean:?}");
-    }
 }
 
 #[test]

@@ -82,66 +82,6 @@ fn report_has_files_and_plausible_figures() {
 }
 
 #[test]
-fn baseline_has_own_curve() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let (code, _, errors) =
-        report(&[&SMALL[..], &["--backends", "cpu,c89", "--samplers", "independent"]].concat(), at);
-    assert_eq!(code, 0, "{errors}");
-    let found = data(at);
-    let (runs, _) = runs(&found);
-    // Independent samples of the same picture have the same error on every backend: compares all runs at 32 samples.
-    let mean = |backend: &str| {
-        let of = runs.iter().filter(|run| run["backend"] == backend);
-        let errors: Vec<f64> = of.map(|run| run["points"][5]["mse"].as_f64().unwrap()).collect();
-        assert_eq!(errors.len(), 4, "{backend}");
-        errors.iter().sum::<f64>() / 4.0
-    };
-    let ratio = mean("c89") / mean("cpu");
-    assert!((0.85..1.18).contains(&ratio), "{ratio}");
-    assert!(found["calibration"].as_array().unwrap().iter().all(|row| row["backend"] == "cpu"));
-    let table = fs::read_to_string(at.join("found/report.md")).unwrap();
-    assert!(table.contains("times c89") && table.contains("| c89 | independent |"), "{table}");
-    // Without a compiler there is no baseline, which is an error if it was asked for.
-    let failing = Command::new(env!("CARGO_BIN_EXE_weekender"))
-        .args(["report", "--out", "other", "--backends", "c89"])
-        .env("CC", "no-such-compiler")
-        .current_dir(at)
-        .output()
-        .unwrap();
-    let message = String::from_utf8(failing.stderr).unwrap();
-    assert_eq!(failing.status.code(), Some(2), "{message}");
-    assert!(message.contains("no-such-compiler") && message.contains("CC"), "{message}");
-}
-
-#[test]
-fn estimates_are_compared_with_errors() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let seeds = ["--seeds", "12", "--reference-samples", "512", "--backends", "cpu"];
-    let (code, _, errors) = report(&[&SMALL[..6], &SMALL[8..], &seeds[..]].concat(), at);
-    assert_eq!(code, 0, "{errors}");
-    let found = data(at);
-    assert_eq!(found["settings"]["reference_samples"], 512);
-    let rows = found["calibration"].as_array().unwrap();
-    let what: Vec<_> =
-        rows.iter().map(|row| (row["sampler"].as_str().unwrap(), row["samples"].as_u64().unwrap())).collect();
-    assert_eq!(what, [("independent", 16), ("independent", 32), ("sobol", 16), ("sobol", 32)]);
-    for row in rows {
-        let of = |key: &str| row[key].as_f64().unwrap();
-        assert_eq!(of("seeds"), 12.0);
-        assert!((of("predicted_rmse") / of("actual_rmse") - of("ratio")).abs() < 1e-9, "{row}");
-        // The deviation is itself uncertain, hence 4 deviations, but at least a hundredth.
-        assert!(
-            (of("ratio") - 1.0).abs() < 4.0 * of("deviation").max(0.01) && of("deviation") < 0.05,
-            "{row}"
-        );
-    }
-    let table = fs::read_to_string(at.join("found/report.md")).unwrap();
-    assert!(table.contains("4 of 4 ratios are within 1 ± 0.05"), "{table}");
-}
-
-#[test]
 fn bad_requests_fail_before_rendering() {
     let at = TempDir::new().unwrap();
     let at = at.path();

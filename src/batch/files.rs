@@ -269,32 +269,6 @@ mod tests {
     }
 
     #[test]
-    fn rescued_part_film_can_be_moved_into_place() {
-        let directory = tempfile::tempdir().unwrap();
-        let film = directory.path().join("missing/part-0.exr");
-        let render = options(&["--out", film.to_str().unwrap()]);
-        let (_, written, failures) = write_two_samples(&RenderOptions { checkpoint: Some(film), ..render });
-        std::fs::remove_file(&written.files[0]).unwrap();
-        assert!(failures.contains("part-0.exr can be written, move the film there"), "{failures}");
-    }
-
-    #[test]
-    fn film_of_another_run_is_locked() {
-        let directory = tempfile::tempdir().unwrap();
-        let at = |name: &str| directory.path().join(name).to_str().unwrap().to_owned();
-        let run = |flags: &[&str]| Files::lock(&options(flags));
-        let first = run(&["--checkpoint", &at("g.exr"), "--out", &at("a.png")]).unwrap();
-        for flags in
-            [["--checkpoint", &at("g.exr"), "--out", &at("b.png")].as_slice(), &["--out", &at("g.exr")]]
-        {
-            let error = run(flags).err().unwrap().to_string();
-            assert!(error.contains("g.exr is locked"), "{error}");
-        }
-        drop(first);
-        assert!(run(&["--out", &at("g.exr")]).is_ok());
-    }
-
-    #[test]
     fn continued_film_is_never_replaced_by_a_shorter_one() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] =

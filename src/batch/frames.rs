@@ -240,23 +240,3 @@ fn so_far(
     let left = if rendered == 0 { String::new() } else { left };
     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_left_covers_the_remaining_frames() {
-        let progress = |took| so_far(3, 4, [2, 6], took);
-        assert_eq!(progress((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
-        assert_eq!(progress((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
-    }
-
-    #[test]
-    fn run_breaks_off_only_with_finished_frames() {
-        assert!(matches!(broken_off(anyhow!("no space"), 7, 0), Failure::Run(_)));
-        let Failure::BrokeOff(error) = broken_off(anyhow!("no space"), 7, 1) else { panic!() };
-        let expected = "frame 7 failed; 1 frame before it stay, and the same command continues: no space";
-        assert_eq!(format!("{error:#}"), expected);
-    }
-}

@@ -135,7 +135,7 @@ fn outcome(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::tests::{batch, options};
+    use crate::batch::tests::batch;
     use crate::film::checkpoint;
     use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
     use std::ops::Range;
@@ -188,31 +188,5 @@ mod tests {
         );
         assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
         assert!(out.exists());
-    }
-
-    #[test]
-    fn failure_names_reason_and_place_of_samples() {
-        let options = options(&["--checkpoint", "k.exr"]);
-        let mut film = options.job.new_film();
-        film.record(0..6, 0).unwrap();
-        let phase = Phase::Failed("it broke".to_owned());
-        let failed = Status { phase, ..Status::default() };
-        let ended = |status: &Status, film: Option<&Film>, failures: &[&str]| {
-            let failures = failures.iter().map(|words| (*words).to_owned()).collect();
-            let written =
-                Written { files: vec!["a.png".into(), "k.exr".into()], failures, ..Written::default() };
-            match outcome(&options, status, film, &written, Some(4)) {
-                Ok(()) => "success".to_owned(),
-                Err(Failure::BrokeOff(error)) => format!("broke off: {error}"),
-                Err(error) => format!("{error}"),
-            }
-        };
-        let held = "broke off: it broke; the 6 samples per pixel rendered before are in a.png, k.exr";
-        assert_eq!(ended(&failed, Some(&film), &[]), held);
-        let kept = "broke off: it broke; 4 samples per pixel are in k.exr";
-        assert_eq!(ended(&failed, Some(&options.job.new_film()), &[]), kept);
-        assert_eq!(ended(&failed, Some(&film), &["no space"]), "error: it broke; no space");
-        assert_eq!(ended(&Status::default(), Some(&film), &["no space"]), "error: no space");
-        assert_eq!(ended(&Status::default(), Some(&film), &[]), "success");
     }
 }

@@ -97,11 +97,4 @@ mod tests {
         (plan.stop.noise, status.elapsed) = (None, Duration::from_secs(61));
         assert_eq!(seconds_left(&plan, &status), Some(0.0));
     }
-
-    #[test]
-    fn the_bar_shows_the_share_of_the_time() {
-        let step = |seconds, left| step(Duration::from_secs(seconds), left);
-        assert_eq!([step(10, None), step(10, Some(30.0)), step(30, Some(10.0))], [0, 250, 750]);
-        assert_eq!([step(0, Some(0.0)), step(7, Some(0.0))], [0, 1000]);
-    }
 }

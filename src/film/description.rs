@@ -99,17 +99,6 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn resetting_a_key_keeps_its_place() {
-        let mut description = Description::new("");
-        description.set(key::SAMPLES, 1);
-        description.set(key::SEED, 7);
-        description.set(key::SAMPLES, 2);
-        assert_eq!(description.entries().collect::<Vec<_>>(), [("Samples", "2"), ("Seed", "7")]);
-        assert_eq!(description.get(key::SEED), Some("7"));
-        assert_eq!(description.get(key::SCENE), None);
-    }
-
-    #[test]
     fn unstorable_entries_are_changed_or_ignored() {
         let mut description = Description::new("a\r\nb\rc\n");
         description.set("", "x");

@@ -70,14 +70,6 @@ mod tests {
     }
 
     #[test]
-    fn a_dot_spreads_over_its_neighbours() {
-        let smooth = dot(3, 3, 4, 1600, 1).smoothed();
-        assert_eq!(red(&smooth), [100, 200, 100, 200, 400, 200, 100, 200, 100]);
-        assert_eq!(smooth.halves()[0][4].0, [400, 0, 200]);
-        assert_eq!(smooth.sample_count(), 1);
-    }
-
-    #[test]
     fn no_light_is_lost_at_the_edges() {
         for (width, height, at) in [(5, 4, 0), (5, 4, 19), (5, 4, 7), (1, 1, 0), (1, 6, 5), (6, 1, 0)] {
             let smooth = dot(width, height, at, 256_000, 2).smoothed();

@@ -337,17 +337,6 @@ mod tests {
     }
 
     #[test]
-    fn left_out_lists_disabled_features() {
-        let features = Features { lens: false, cavity: false, ..Features::default() };
-        assert_eq!(
-            features.left_out(),
-            ["lens", "cavity", "specks", "steep glass", "hierarchy", "stage rules"]
-        );
-        let with_rule = Features { hierarchy: true, surface: SurfaceRule::Book, ..Features::default() };
-        assert_eq!(with_rule.left_out(), ["specks", "steep glass"]);
-    }
-
-    #[test]
     fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
         let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };

@@ -111,29 +111,6 @@ mod tests {
     const SCALES: [HeatScale; 3] = [HeatScale::ERROR, HeatScale::RAYS, HeatScale::OCCUPANCY];
 
     #[test]
-    fn known_values_have_known_colours() {
-        // A third of the way up is the third of seven colours, halfway the fourth.
-        for (scale, third, middle) in [
-            (HeatScale::ERROR, 10_f64.powf(-8.0 / 3.0), 1e-2),
-            (HeatScale::RAYS, 32_f64.cbrt(), 32_f64.sqrt()),
-            (HeatScale::OCCUPANCY, 1.0 / 3.0, 0.5),
-        ] {
-            assert_eq!(scale.colour(third), [101, 21, 110], "{}", scale.title);
-            assert_eq!(scale.colour(middle), [159, 42, 99], "{}", scale.title);
-            assert_eq!([scale.colour(-1.0), scale.colour(1e9)], [[0, 0, 4], [252, 255, 164]]);
-        }
-        assert_eq!(colour_at(0.625), [199, 65, 74], "three quarters from the fourth to the fifth");
-    }
-
-    #[test]
-    fn range_in_stops_has_marks() {
-        let scale = HeatScale::luminance([-8.0, 4.0]);
-        let names: Vec<_> = scale.marks().into_iter().map(|(_, name)| name).collect();
-        assert_eq!(names, ["0.0039", "0.031", "0.25", "2", "16"]);
-        assert_eq!(scale.colour(0.25), [159, 42, 99], "the middle");
-    }
-
-    #[test]
     fn marks_are_evenly_spaced_from_end_to_end() {
         for scale in SCALES.into_iter().chain([HeatScale::luminance([-3.0, 2.0])]) {
             let marks = scale.marks();

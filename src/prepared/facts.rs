@@ -345,35 +345,6 @@ mod tests {
         assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.1 * unit)), Some([10.0, 10.0]));
     }
 
-    #[test]
-    fn neighbouring_cells_are_found() {
-        for (number, next) in [
-            (5.0, Some(4.0)),
-            (5.019, Some(4.0)),
-            (5.021, None),
-            (5.5, None),
-            (5.979, None),
-            (5.981, Some(6.0)),
-            (-1.01, Some(-1.0)),
-            (-1.99, Some(-3.0)),
-        ] {
-            let own = f64::floor(number);
-            assert_eq!(cells_near(number), [Some(own), next], "{number}");
-        }
-        let count = |x: f64, y: f64, z: f64, radius: f64| {
-            let sphere = Sphere { center: DVec3::new(x, y, z), radius, material: 0 };
-            marks_beyond_borders(&sphere).len()
-        };
-        assert_eq!(count(0.5, 0.5, 0.5, 1.0), 0);
-        assert_eq!(count(0.01, 0.5, 0.5, 1.0), 1);
-        assert_eq!(count(0.01, 0.99, 0.5, 1.0), 3);
-        assert_eq!(count(0.01, 0.99, 5.0, 1.0), 7);
-        // The size is near a border, too: log2(radius) + 0.37 is 0.99.
-        let radius = 0.62_f64.exp2();
-        assert_eq!(count(0.5, 0.5, 0.5, radius), 1);
-        assert_eq!(count(0.5, 0.5, 0.01, radius), 1 + 2);
-    }
-
     /// Shells around one place, and coated balls that overlap.
     #[test]
     fn layers_in_a_crowd_are_found() {

@@ -177,17 +177,4 @@ mod tests {
         }
         assert!(within(GLASS, FINISHED) && within(OPAQUE, OPAQUE) && !within(FINISHED, GLASS));
     }
-
-    #[test]
-    fn a_level_has_kernels_for_its_lanes_only() {
-        for isa in Isa::available() {
-            let lanes: Vec<usize> = (0..=32).filter(|lanes| kernel(isa, *lanes, GENERAL).is_some()).collect();
-            let expected: &[usize] = match isa {
-                Isa::Portable => &[1],
-                Isa::Sse42 | Isa::Neon => &[1, 4, 8],
-                Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
-            };
-            assert_eq!(lanes, expected, "{isa}");
-        }
-    }
 }

@@ -56,20 +56,3 @@ pub enum CpuError {
 fn list<T: std::fmt::Display>(items: &[T]) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_a_machine_cannot_do_is_told_with_what_it_can() {
-        let isa = CpuError::Isa { isa: Isa::Neon, available: vec![Isa::Portable, Isa::Avx2] };
-        assert_eq!(isa.to_string(), "this processor has no neon; it has portable, avx2");
-        let lanes = CpuError::Lanes { lanes: 3, isa: Isa::Sse42, available: vec![1, 4, 8] };
-        assert_eq!(lanes.to_string(), "level sse4.2 has no 3 lanes; choose one of 1, 4, 8");
-        for (threads, words) in [(1, "1 thread:"), (2, "2 threads:")] {
-            let told = CpuError::Threads { threads, reason: "no room".to_owned() }.to_string();
-            assert!(told.starts_with(&format!("cannot start {words} no room; choose fewer")), "{told}");
-        }
-    }
-}

@@ -181,23 +181,6 @@ mod tests {
     }
 
     #[test]
-    fn a_hierarchy_that_was_begun_before_the_camera_moved_serves() {
-        let job = field(21_000);
-        let mut renderer = renderer(2);
-        renderer.rebuild.patience = 0;
-        pass(&mut renderer, &job, &mut job.new_film(), 0);
-        let first = nodes(&renderer);
-        let mut moved = *job.camera();
-        moved.look_from += DVec3::new(0.5, 0.25, -1.0);
-        let moved = job.seen_by(moved, *job.settings()).expect("valid");
-        wait(&renderer.rebuild);
-        let mut film = moved.new_film();
-        PASSES.for_each(|index| pass(&mut renderer, &moved, &mut film, index));
-        assert_ne!(nodes(&renderer), first);
-        assert!(film == expected(&moved));
-    }
-
-    #[test]
     fn a_hierarchy_of_another_scene_is_dropped() {
         let (job, other) = (field(21_000), field(22_000));
         let mut renderer = renderer(2);

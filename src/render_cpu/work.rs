@@ -312,13 +312,6 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_pixels_can_be_loaded_up_to_the_last() {
-        let order = RefillOrder::new(5, 3);
-        assert_eq!(order.row(0)[..5], [0, 1, 2, 3, 1 << 16]);
-        assert_eq!(order.row(14)[..2], [4 | 2 << 16, 0]);
-    }
-
-    #[test]
     fn lanes_wait_where_blocks_are_short() {
         let settings = RenderSettings { estimate_error: true, ..RenderSettings::default() };
         let order = RefillOrder::new(1, 1);
@@ -329,13 +322,5 @@ mod tests {
         // Half of the samples belong to each half of the film.
         assert_eq!([0..2, 0..4, 0..8, 8..16, 0..16, 0..32, 0..256].map(pause), [0, 1, 1, 1, 1, 0, 0]);
         assert_eq!(pause(0..0), 0);
-    }
-
-    #[test]
-    fn lowest_bits() {
-        assert_eq!(lowest(0b1011_0100, 2), 0b1_0100);
-        assert_eq!(lowest(0b1011_0100, 4), 0b1011_0100);
-        assert_eq!(lowest(0b1011_0100, 9), 0b1011_0100);
-        assert_eq!(lowest(0b1011_0100, 0), 0);
     }
 }

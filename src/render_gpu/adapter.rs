@@ -212,16 +212,6 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn software_is_known_by_its_name() {
-        for name in
-            ["llvmpipe (LLVM 20.1.2, 256 bits)", "SwiftShader Device", "Microsoft Basic Render Driver"]
-        {
-            assert!(names_software(name), "{name}");
-        }
-        assert!(!names_software("NVIDIA H100 PCIe/PCIe/SSE2"));
-    }
-
-    #[test]
     fn only_software_counts_the_turns_of_all_threads_in_step() {
         // Registers of the processor hold at least 8 threads, and no more than 64 are known.
         for (subgroup_size, expected) in [(0, 8), (4, 8), (8, 8), (16, 16), (64, 64), (128, 64)] {
@@ -230,26 +220,5 @@ pub(super) mod tests {
             let gpu = AdapterInfo { subgroup_size, ..adapter("discrete GPU", "Vulkan", false, None) };
             assert_eq!((gpu.threads_in_step(), gpu.busy_threads()), (1, u64::MAX));
         }
-    }
-
-    #[test]
-    fn an_adapter_is_fit_if_it_is_a_gpu_that_lacks_nothing() {
-        let lacks = Some("no compute shaders");
-        for (is_software, lacks, is_fit) in
-            [(false, None, true), (true, None, false), (false, lacks, false), (true, lacks, false)]
-        {
-            assert_eq!(
-                adapter("other", "GL", is_software, lacks).is_fit(),
-                is_fit,
-                "{is_software} {lacks:?}"
-            );
-        }
-    }
-
-    #[test]
-    fn software_is_called_so_even_if_its_driver_says_otherwise() {
-        let told = |is_software| adapter("other", "GL", is_software, None).to_string();
-        assert_eq!(told(true), "an adapter (software, GL, driver 1)");
-        assert_eq!(told(false), "an adapter (other, GL, driver 1)");
     }
 }

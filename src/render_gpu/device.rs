@@ -304,19 +304,3 @@ impl Gpu {
             .poll(wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(LOOK) })
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_first_failure_of_a_device_is_the_one_that_is_told() {
-        let faults = Faults::default();
-        assert_eq!(faults.check(), Ok(()));
-        faults.note("out of memory".to_owned());
-        faults.note("the device was lost".to_owned());
-        for _ in 0..2 {
-            assert_eq!(faults.check(), Err("out of memory".to_owned()));
-        }
-    }
-}

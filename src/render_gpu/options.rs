@@ -184,28 +184,4 @@ mod tests {
         let named = GpuOptions::of_adapter(Some("llvmpipe"));
         assert_eq!((named.adapter.as_deref(), named.allow_software), (Some("llvmpipe"), true));
     }
-
-    #[test]
-    fn who_finds_no_gpu_is_told_what_there_is() {
-        let available = vec!["one (software)".to_owned(), "two (software)".to_owned()];
-        let told = |error: GpuError| error.to_string();
-        assert_eq!(
-            told(GpuError::NoMatch { wanted: "three".to_owned(), available: available.clone() }),
-            "no adapter matches \"three\"; available adapters: one (software); two (software)"
-        );
-        assert_eq!(
-            told(GpuError::Software { available }),
-            "there is no GPU, only software adapters: one (software); two (software); choose one by name, or render \
-             on the CPU, which is faster"
-        );
-        let lacks = "only 4 storage buffers per shader, but needs 8".to_owned();
-        assert_eq!(
-            told(GpuError::Lacks { adapter: "one".to_owned(), lacks }),
-            "one has only 4 storage buffers per shader, but needs 8; choose another adapter, or render on the CPU"
-        );
-        assert_eq!(
-            told(GpuError::Device { adapter: "one".to_owned(), reason: "it is busy".to_owned() }),
-            "one could not be opened: it is busy; choose another adapter, or render on the CPU"
-        );
-    }
 }

@@ -119,17 +119,4 @@ mod tests {
         put(&mut words, first_aside(4), GpuAside::default());
         assert_eq!(is_aside(&words, 4, &mut rays), Some(false));
     }
-
-    #[test]
-    fn a_record_has_no_more_rays_than_a_path_and_names_no_sphere_that_is_unknown() {
-        let mut words = words_for([0, 0], 2);
-        put(&mut words, 0, GpuRecordHead { ray_count: 9, ..GpuRecordHead::default() });
-        for number in 0..2 {
-            let ray = GpuRecordedRay { sphere: number as u32, distance: 1.0, ..GpuRecordedRay::default() };
-            put(&mut words, first_of_ray(number), ray);
-        }
-        let path = from_words(&words, 2, &[30], DVec3::ZERO);
-        let spheres: Vec<_> = path.rays.iter().map(|ray| ray.hit.map(|hit| hit.sphere)).collect();
-        assert_eq!(spheres, [Some(30), Some(usize::MAX)]);
-    }
 }

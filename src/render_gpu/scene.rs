@@ -170,32 +170,6 @@ mod tests {
     }
 
     #[test]
-    fn buffers_are_in_the_order_of_their_bindings() {
-        for name in ["three-spheres", "field:500"] {
-            let job = Recipe::find(name).unwrap().job().unwrap();
-            let prepared = PreparedScene::<f32>::new(&job);
-            let data = SceneData::new(&job, &prepared).unwrap();
-            let buffers = data.buffers(&prepared);
-            let bytes = buffers.each_ref().map(|(label, bytes)| (*label, bytes.len()));
-            let spheres = prepared.opaque.len() + prepared.two_root.len();
-            assert_eq!(
-                bytes,
-                [
-                    ("job", size_of::<GpuJob>()),
-                    ("spheres", 16 * spheres),
-                    // At least one, because the shader's type requires it.
-                    ("anchored spheres", size_of::<AnchoredSphere<f32>>() * prepared.anchored.len().max(1)),
-                    ("records", 4 * RECORD_COLUMNS * prepared.records.len()),
-                    ("nodes", 16 * data.nodes.len()),
-                ],
-                "{name}"
-            );
-            let has_nodes = prepared.hierarchy.is_some();
-            assert_eq!((data.node_count > 0, data.nodes.len() > 1), (has_nodes, has_nodes), "{name}");
-        }
-    }
-
-    #[test]
     fn a_ray_tests_all_spheres_that_are_in_no_hierarchy() {
         let turns = |name: &str, surface: SurfaceRule| {
             let mut recipe = Recipe::find(name).unwrap();
@@ -233,18 +207,5 @@ mod tests {
                 assert_eq!(center, job.scene().spheres[*index as usize].center);
             }
         }
-    }
-
-    #[test]
-    fn a_host_is_told_what_its_kernel_needs() {
-        let job = Recipe::find("field:60").unwrap().job().unwrap();
-        let prepared = PreparedScene::<f32>::new(&job);
-        let exported = Exported::new(&job).unwrap();
-        assert!(exported.features.hierarchy, "{:?}", exported.features);
-        assert_eq!(exported.turns_over_lists, prepared.anchored.len() as u64);
-        assert_eq!(exported.block_limit, prepared.block_limit);
-        let mut indices = exported.scene_index;
-        indices.sort_unstable();
-        assert!(indices.into_iter().eq(0..job.scene().spheres.len() as u32));
     }
 }

@@ -204,34 +204,6 @@ mod tests {
         assert_eq!(budget.paths(), before / 16);
     }
 
-    #[test]
-    fn a_budget_learns_from_each_dispatch() {
-        // The target is 50 ms, and the budget before is 4096 paths.
-        for (paths, milliseconds, expected) in [
-            (4096, 50, 4096),
-            (4096, 25, 8192),
-            (4096, 5, 16_384),
-            (4096, 0, 16_384),
-            (4096, 80, 2560),
-            (4096, 100, 2048),
-            (4096, 101, 2048),
-            (4096, 1000, 2048),
-            (3000, 1000, 1500),
-            (8192, 1000, 2048),
-            (8192, 50, 8192),
-            // A dispatch of less than half of the budget lowers it only if it was too slow.
-            (2048, 50, 2048),
-            (2047, 50, 4096),
-            (1000, 10, 5000),
-            (100, 1000, 64),
-        ] {
-            let mut budget = Budget::new(Duration::from_millis(50));
-            assert_eq!(budget.paths(), 4096);
-            budget.learn(paths, Duration::from_millis(milliseconds));
-            assert_eq!(budget.paths(), expected, "{paths} paths in {milliseconds} ms");
-        }
-    }
-
     /// Dispatches of a device that needs `overhead` seconds for each, and `per_path` for each path.
     fn dispatches(budget: &mut Budget, count: usize, overhead: f64, per_path: f64) -> Vec<f64> {
         let one = |_| {

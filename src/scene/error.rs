@@ -129,21 +129,3 @@ pub(super) fn colour(what: impl Fn() -> String, value: DVec3, limit: f64) -> Res
 fn components(v: DVec3) -> [(char, f64); 3] {
     [('x', v.x), ('y', v.y), ('z', v.z)]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn positions_are_limited_on_both_sides_of_zero() {
-        let check = |value: DVec3| position(|| "center".to_owned(), value);
-        for sign in [-1.0, 1.0] {
-            for (name, axis) in [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)] {
-                assert_eq!(check(sign * LENGTH_LIMIT * axis), Ok(()));
-                let refused = check(sign * 1.5e18 * axis).unwrap_err().to_string();
-                assert!(refused.starts_with(&format!("center.{name} is ")), "{refused}");
-                assert!(refused.contains("within -1e18 and 1e18"), "{refused}");
-            }
-        }
-    }
-}

@@ -149,17 +149,6 @@ mod tests {
     }
 
     #[test]
-    fn materials_gain_no_energy() {
-        for albedo in [DVec3::new(0.0, 1.1, 0.0), DVec3::new(0.0, 0.0, -0.1)] {
-            assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
-            assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));
-        }
-        Material::Lambertian { albedo: DVec3::ONE }
-            .validate(format_args!("materials.m"))
-            .expect("white is fine");
-    }
-
-    #[test]
     fn fuzz_above_one_is_kept_and_acts_as_one() {
         let fuzzy = Material::Metal { albedo: DVec3::ONE, fuzz: 5.0 };
         fuzzy.validate(format_args!("materials.m")).expect("as in the book");
@@ -168,23 +157,5 @@ mod tests {
         let refused = refusal(Material::Metal { albedo: DVec3::ONE, fuzz: -0.5 });
         assert!(refused.starts_with("materials.m.fuzz is -0.5, but must be 0 or more"), "{refused}");
         assert!(refusal(Material::Metal { albedo: DVec3::ONE, fuzz: f64::NAN }).contains("fuzz is NaN"));
-    }
-
-    #[test]
-    fn limits_of_materials_are_allowed() {
-        for refraction_index in [1e-9, 1e9] {
-            Material::Dielectric { refraction_index }
-                .validate(format_args!("materials.m"))
-                .expect("at the limit");
-        }
-        for refraction_index in [0.9e-9, 1.1e9] {
-            assert!(refusal(Material::Dielectric { refraction_index }).contains("within 1e-9 and 1e9"));
-        }
-        for albedo in [DVec3::ZERO, DVec3::ONE] {
-            Material::Metal { albedo, fuzz: 0.0 }
-                .validate(format_args!("materials.m"))
-                .expect("at the limit");
-        }
-        assert!(refusal(Material::Metal { albedo: DVec3::splat(1.01), fuzz: 0.0 }).contains("albedo"));
     }
 }

@@ -135,17 +135,3 @@ pub struct UnknownStage {
     pub id: String,
     pub near: Vec<&'static str>,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn book_widths() {
-        for stage in Stage::ALL {
-            let expected = if stage.chapter() == "14" { 1200 } else { 400 };
-            assert_eq!(stage.book_width(), expected, "{}", stage.id);
-        }
-        assert_eq!(Stage::find("book").map(Stage::chapter), Ok("14"));
-    }
-}

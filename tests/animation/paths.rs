@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 use std::f64::consts::TAU;
-use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 use weekender::scene::animation::{CameraPath, FrameNames, Keyframe, Turn};
 
@@ -140,27 +139,6 @@ fn lens_and_view_never_leave_the_range_of_two_keyframes() {
     }
 }
 
-#[test]
-fn a_straight_even_path_stays_straight_and_even() {
-    let at = |frame: u32| Keyframe {
-        frame,
-        camera: Camera {
-            look_from: DVec3::new(f64::from(frame), 1.0, 9.0),
-            focus_distance: None,
-            ..camera()
-        },
-    };
-    for keyframes in [vec![at(0), at(8)], vec![at(0), at(5), at(6), at(8)]] {
-        let path = keyframed(keyframes);
-        for frame in 0..=8 {
-            let now = path.camera(frame);
-            assert!(now.look_from.distance(at(frame).camera.look_from) < 1e-12, "{now:?}");
-            assert_eq!((now.look_at, now.focus_distance), (camera().look_at, None));
-            assert!((now.vfov_degrees - 30.0).abs() < 1e-12);
-        }
-    }
-}
-
 /// The slope at a keyframe is that of the parabola through it and its neighbours, however uneven the steps are.
 #[test]
 fn a_parabola_stays_one_between_inner_keyframes() {
@@ -176,19 +154,6 @@ fn a_parabola_stays_one_between_inner_keyframes() {
 }
 
 #[test]
-fn a_camera_stands_still_between_equal_keyframes() {
-    let at = |frame, x: f64| Keyframe {
-        frame,
-        camera: Camera { look_from: DVec3::new(x, x * x, 9.0), ..camera() },
-    };
-    let path = keyframed(vec![at(0, 0.0), at(10, 2.0), at(20, 2.0), at(30, 5.0)]);
-    for frame in 10..=20 {
-        assert_eq!(path.camera(frame).look_from, at(0, 2.0).camera.look_from, "{frame}");
-    }
-    assert_ne!(path.camera(21).look_from, path.camera(20).look_from);
-}
-
-#[test]
 fn names_have_at_least_the_digits_of_the_pattern() {
     let names = FrameNames::of_pattern("shots/turn-##.png".as_ref()).unwrap();
     let shown = [0, 7, 123].map(|frame| names.path(frame).display().to_string());
@@ -196,72 +161,5 @@ fn names_have_at_least_the_digits_of_the_pattern() {
     assert_eq!(FrameNames::in_directory("a".as_ref()).path(42), std::path::Path::new("a/frame-0042.png"));
     for pattern in ["turn.png", "turn-#-#.png", "#/turn.png"] {
         assert_eq!(FrameNames::of_pattern(pattern.as_ref()), None, "{pattern}");
-    }
-}
-
-#[test]
-fn frames_go_to_the_directory_that_out_names() {
-    for (out, frame) in [
-        ("a/b", "a/b/frame-0003.png"),
-        ("/no/such/place", "/no/such/place/frame-0003.png"),
-        ("a/b/turn-#.png", "a/b/turn-3.png"),
-    ] {
-        let words = ["weekender", "--batch", "--size", "24x14", "--turntable=4", "--out", out];
-        let Request::Frames(options) = cli::parse(words.into_iter().map(Into::into)).unwrap() else {
-            unreachable!("no frames: {out}")
-        };
-        assert_eq!(options.names.path(3).to_str(), Some(frame), "{out}");
-    }
-}
-
-/// A frame with the camera at `x`, focused at `e^focus`.
-fn at_and_focused(frame: u32, x: f64, focus: f64) -> Keyframe {
-    let look_from = DVec3::new(x, 2.0, 9.0);
-    Keyframe { frame, camera: Camera { look_from, focus_distance: Some(focus.exp()), ..camera() } }
-}
-
-/// Between 0, 1 and 0 a path without curvature at its ends is `1.5 t - 0.5 t^3`, there and back.
-#[test]
-fn path_has_no_curvature_at_its_ends() {
-    let keyframes = [(0, 0.0), (8, 1.0), (16, 0.0)].map(|(frame, x)| at_and_focused(frame, x, 0.0));
-    let path = keyframed(keyframes.to_vec());
-    for frame in 0..=8 {
-        let t = f64::from(frame) / 8.0;
-        let expected = 1.5 * t - 0.5 * t * t * t;
-        for found in [path.camera(frame), path.camera(16 - frame)] {
-            assert!((found.look_from.x - expected).abs() < 1e-12, "{frame}: {}", found.look_from.x);
-        }
-    }
-}
-
-/// With the slopes 1 and 1/6 over 2 and 6 frames, that at the keyframe is `3 (2 + 6) / ((2 + 12) / 1 + (4 + 6) 6)`.
-#[test]
-fn focus_slope_weights_the_shorter_side_more() {
-    let keyframes = [(0, 0.0), (2, 2.0), (8, 3.0)].map(|(frame, focus)| at_and_focused(frame, 0.0, focus));
-    let path = keyframed(keyframes.to_vec());
-    let slope = 24.0 / 74.0;
-    // Halfway, the slopes at both ends count with an eighth of the length.
-    for (frame, expected) in
-        [(1, 1.0 + 2.0 / 8.0 * (1.0 - slope)), (5, 2.5 + 6.0 / 8.0 * (slope - 1.0 / 6.0))]
-    {
-        let focus = path.camera(frame).focus_distance.unwrap().ln();
-        assert!((focus - expected).abs() < 1e-12, "{frame}: {focus}, expected {expected}");
-    }
-}
-
-#[test]
-fn a_lens_opens_evenly_and_its_focus_moves_evenly_to_the_eye() {
-    let keyframes = [(0, 0.0, 2.0), (4, 10.0, 32.0)].map(|(frame, defocus_angle_degrees, distance)| {
-        let camera = Camera { defocus_angle_degrees, focus_distance: Some(distance), ..camera() };
-        Keyframe { frame, camera }
-    });
-    let path = keyframed(keyframes.to_vec());
-    let radius = |degrees: f64| (degrees.to_radians() / 2.0).tan();
-    for frame in 0..=4 {
-        let now = path.camera(frame);
-        let opened = radius(now.defocus_angle_degrees) / radius(10.0);
-        assert!((opened - f64::from(frame) / 4.0).abs() < 1e-12, "{frame}: {opened}");
-        let distance = now.focus_distance.unwrap();
-        assert!((distance.log2() - f64::from(frame + 1)).abs() < 1e-12, "{frame}: {distance}");
     }
 }

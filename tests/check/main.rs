@@ -183,24 +183,6 @@ fn damage_is_repaired_and_reported() {
     }
 }
 
-#[test]
-fn multiple_damages_are_repaired() {
-    let file = "hello\nP3\n2 1\n255\nScanlines: 2\n1 2.5 nan\nDone.\n\n300 -1 1e3 8 9";
-    let mine = Mine::decode(file.as_bytes()).unwrap();
-    let titles: Vec<&str> = mine.damages.iter().map(|damage| damage.title.as_str()).collect();
-    assert_eq!(
-        titles,
-        [
-            "there is other text before the header",
-            "2 lines of the file are messages, not numbers",
-            "3 values are not whole numbers",
-            "there are 8 numbers, but 2 x 1 pixels need 6",
-            "4 numbers are below 0 or above 255",
-        ]
-    );
-    assert_eq!(mine.bytes, [[1, 2, 0], [255, 0, 255]]);
-}
-
 fn check(at: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_weekender"))
         .current_dir(at)

@@ -61,12 +61,6 @@ fn seconds_add_up_over_runs() {
     let json: Value = serde_json::from_slice(&std::fs::read(at("more.json")).unwrap()).unwrap();
     let of_run = json["trace_seconds"].as_f64().unwrap();
     assert!(of_run > 1e-5 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
-    // If the time of the first run is not known, neither is the sum.
-    let mut silent = weekender::film::Description::new(kept.description.recipe());
-    silent.set(key::SAMPLES, 4);
-    checkpoint::save(&at("film.exr"), &kept.film, &silent).unwrap();
-    render(directory.path(), &[&resume[..], &["--out", "unknown.exr"]].concat());
-    assert_eq!(seconds("unknown.exr"), None);
 }
 
 #[test]
@@ -121,29 +115,4 @@ fn checkpoint_is_only_replaced_by_its_continuation() {
     std::fs::write(at("k.exr"), "").unwrap();
     render(directory.path(), &["--samples", "4", "--checkpoint", "k.exr"]);
     assert_eq!(film(at("k.exr")).sample_count(), 4);
-}
-
-#[test]
-fn parts_add_up_to_the_whole() {
-    let directory = temp();
-    let at = |name: &str| directory.path().join(name);
-    render(directory.path(), &["--samples", "24", "--out", "whole.exr"]);
-    for (range, name) in [("0..8", "a.exr"), ("8..13", "b.exr"), ("13..24", "c.exr")] {
-        render(directory.path(), &["--sample-range", range, "--out", name]);
-    }
-    let merge = run(directory.path(), &["merge", "c.exr", "a.exr", "b.exr", "--out", "all.exr"]);
-    assert!(merge.status.success(), "{}", text(&merge.stderr));
-    assert!(text(&merge.stdout).contains("0..24"), "{}", text(&merge.stdout));
-    assert_eq!(film(at("all.exr")), film(at("whole.exr")));
-
-    refused_in(
-        &directory,
-        &["merge", "a.exr", "whole.exr", "--out", "x.exr"],
-        &["a.exr", "whole.exr", "0..8"],
-    );
-    render(directory.path(), &["--sample-range", "24..32", "--seed", "9", "--out", "other.exr"]);
-    refused_in(&directory, &["merge", "a.exr", "other.exr", "--out", "x.exr"], &["other.exr", "seed is 0"]);
-    refused_in(&directory, &["merge", "a.exr", "b.exr", "--out", "x.gif"], &["x.gif", ".exr"]);
-    refused_in(&directory, &["merge", "--out", "x.exr"], &["FILM"]);
-    refused_in(&directory, &["merge", "a.exr", "none.exr", "--out", "x.exr"], &["none.exr"]);
 }

@@ -50,12 +50,6 @@ fn list_names_scenes_stages_and_devices() {
 }
 
 #[test]
-fn progress_can_be_forced_without_a_terminal() {
-    let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
-    assert!(text(&output.stderr).contains("writing"), "{}", text(&output.stderr));
-}
-
-#[test]
 fn an_output_is_no_input_and_no_other_output() {
     let directory = temp();
     let path = |name: &str| directory.path().join(name);

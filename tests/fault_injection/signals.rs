@@ -83,21 +83,6 @@ fn signals_at_any_moment_leave_a_resumable_film() {
 }
 
 #[test]
-fn kill_loses_only_samples_since_the_last_write() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
-    let path = at.join("g.exr");
-    until("the film is not written", || path.exists());
-    let first = film(&path).sample_count();
-    until("the film does not grow", || film(&path).sample_count() > first);
-    signal(&child, "KILL");
-    wait(&mut child);
-    assert!(!at.join("g.png").exists());
-    continues_to_the_same_bits(at, "g.exr");
-}
-
-#[test]
 fn signals_wait_for_file_writes_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -1,7 +1,7 @@
 //! The error estimate.
 
 use super::common::{add, noisy_film};
-use weekender::film::{ErrorEstimate, Film, PixelSum, ROUNDING_LIMIT, fixed_point};
+use weekender::film::{Film, PixelSum, ROUNDING_LIMIT, fixed_point};
 
 #[test]
 fn the_error_is_that_of_the_mean() {
@@ -71,13 +71,6 @@ fn few_pixels_meet_a_target_with_room_to_spare() {
         assert!(!meets(0.99 * error.rmse) && meets(1.01 * (error.rmse + room)), "{noisy}");
         assert_eq!(meets(error.rmse + 0.9 * room), meets_its_error, "{noisy}");
     }
-}
-
-#[test]
-fn an_uncertainty_is_a_share_of_the_error() {
-    let estimate = ErrorEstimate { rmse: 0.1, rmse_deviation: 0.002, rel_mse: 0.0 };
-    assert_eq!(estimate.uncertainty(), "± 2.0 %");
-    assert!((estimate.pixels_in_effect() - 625.0).abs() < 1e-6, "{}", estimate.pixels_in_effect());
 }
 
 /// A film of two samples with noise only in its first `noisy` pixels.

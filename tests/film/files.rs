@@ -190,16 +190,6 @@ fn damage_is_located() {
 }
 
 #[test]
-fn foreign_channels_are_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("x.exr");
-    checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
-    spoil(&path, b"rest.R.lo", 8, b'p');
-    let message = load_error(&path).to_string();
-    assert!(message.contains("rest.R.lp"), "{message}");
-}
-
-#[test]
 fn head_has_everything_but_the_sums() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");

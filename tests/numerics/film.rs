@@ -10,7 +10,7 @@ use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::trace;
 use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
-use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
+use weekender::scene::builtin::empty;
 use weekender::scene::{Camera, Sky};
 
 /// Traces a prepared scene without validating it, in one tile of at most 256 pixels a side.
@@ -53,20 +53,6 @@ fn sums_of_a_bright_sky_do_not_overflow() {
         let film = render(&mut widest(), &job(&scene, camera, size(2, 2)), 0..1024);
         assert!(film.mean(0).iter().all(|x| (99.9..=100.0).contains(x)), "{bottom}: {:?}", film.mean(0));
     }
-}
-
-#[test]
-fn case_24_another_order() {
-    let scene = three_spheres(LeftSphere::HollowGlass);
-    let settings = RenderSettings { estimate_error: true, ..size(64, 36) };
-    let job = job(&scene, Camera::BOOK, settings);
-    let mut renderer = widest();
-    let at_once = render(&mut renderer, &job, 0..23);
-    let mut in_parts = job.new_film();
-    for range in [17..23, 0..1, 5..17, 3..5, 1..3] {
-        in_parts.merge(&render(&mut renderer, &job, range)).unwrap();
-    }
-    assert_eq!(in_parts, at_once);
 }
 
 /// A lone ball, or its sky, has a NaN colour: exactly the paths that see it are counted and left out.

@@ -153,42 +153,21 @@ fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 
     hits
 }
 
-#[test]
-fn hierarchy_and_list_agree() {
-    let mut hits = 0;
-    for (seed, count, spread, radii) in [
-        (1, 1, 1.0, [0.1, 1.0]),
-        (2, 2, 1.0, [0.1, 1.0]),
-        (3, 30, 1.0, [0.1, 0.5]),
-        (4, 300, 10.0, [0.01, 1.0]),
-        (5, 300, 100.0, [1e-4, 100.0]),
-        (6, 300, 1e-3, [1e-8, 1e-3]),
-        (7, 300, 1e6, [1e-2, 1e5]),
-        (8, 300, 1e3, [1e-4, 1e-3]),
-        (9, 100, 1e12, [1e6, 1e12]),
-        (10, 300, 1e-9, [1e-12, 1e-9]),
-    ] {
-        hits += same_hits(Scalar::<false>, seed, count, spread, radii, 4000);
-        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 4000);
-        hits += same_hits(Reference, seed, count, spread, radii, 4000);
-    }
-    println!("hierarchy: {hits} hits of {} rays", 10 * 3 * 4000);
-    assert!(hits > 40_000, "{hits}");
-}
-
 /// A hundred scenes of various sizes, at scales from `1e-12` to `1e12`.
 #[test]
 fn hierarchy_matches_list_on_hundred_scenes() {
     let mut random = Random::new(11);
     let (mut hits, mut rays) = (0, 0);
     for seed in 100..200 {
-        let count = random.log_within(1.0, 400.0) as usize;
+        let count = random.log_within(1.0, 300.0) as usize;
         let spread = random.log_within(1e-9, 1e12);
         let largest = spread * random.log_within(1e-4, 1.0);
         let radii = [largest * random.log_within(1e-6, 1.0), largest];
-        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 300);
+        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 200);
+        hits += same_hits(Scalar::<false>, seed, count, spread, radii, 100);
+        hits += same_hits(Reference, seed, count, spread, radii, 100);
         hits += packets_agree(seed, count, spread, radii, 300);
-        rays += 600;
+        rays += 700;
     }
     println!("a hundred scenes: {hits} hits of {rays} rays");
     assert!(hits > rays / 4, "{hits}");

@@ -22,17 +22,6 @@ fn is_there(tool: &str) -> bool {
     found
 }
 
-#[test]
-fn commands_have_the_flags_of_the_plan() {
-    let at = TempDir::new().unwrap();
-    let lines = plan(at.path(), "p q", &["--samples", "8", "--parts", "2", "--every", "2m"]);
-    let words = shlex::split(lines.lines().nth(1).unwrap()).unwrap();
-    assert_eq!(
-        words[1..],
-        ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=2m"]
-    );
-}
-
 #[cfg(unix)]
 #[test]
 fn make_renders_and_merges() {

@@ -139,23 +139,6 @@ fn old_backend_continues_if_another_is_unavailable() {
 }
 
 #[test]
-fn panicked_pending_backend_can_be_retried() {
-    let mut is_first = true;
-    let progressive = started_with(CPU, Plan::endless(), move |choice| {
-        assert!(*choice == CPU || !std::mem::take(&mut is_first), "no such backend");
-        Box::new(Fake::new(choice.name()))
-    });
-    wait_for(&progressive, 2);
-    progressive.switch_backend(FAILING);
-    wait_until(&progressive, |status| !status.messages.is_empty());
-    let messages = progressive.status().messages;
-    assert_eq!(messages, ["reference failed: its preparation ended by a panic; the cpu continues"]);
-    progressive.switch_backend(FAILING);
-    wait_until(&progressive, |status| status.contributions.len() == 2);
-    stopped(progressive);
-}
-
-#[test]
 fn spoilt_film_is_restarted() {
     let progressive = started_with(CPU, Plan::samples(100), |choice| match *choice == CPU {
         true => spoiling("cpu", || ()),

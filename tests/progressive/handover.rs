@@ -182,26 +182,6 @@ fn given_renderer_is_used_and_kept() {
 }
 
 #[test]
-fn a_watch_sees_the_render_and_ends_with_it() {
-    let mut progressive = idle(usual);
-    let mut looks = 0;
-    let status =
-        progressive.watch(RenderRequest::new(job(2), CPU, Plan::endless()), |progressive, status| {
-            looks += 1;
-            if status.samples_per_pixel >= 2 {
-                progressive.stop();
-            }
-        });
-    assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
-    assert!(looks >= 2 && status.samples_per_pixel >= 2, "{status:?}");
-    // A render whose film is taken away is over, too.
-    let status = progressive.watch(RenderRequest::new(job(2), CPU, Plan::endless()), |progressive, _| {
-        progressive.take_film();
-    });
-    assert_eq!((status.phase, status.run), (Phase::Idle, 2));
-}
-
-#[test]
 fn film_is_shown_on_request_and_again_only_in_another_view() {
     let mut progressive = started(CPU, Plan::samples(64));
     progressive.wait_until_over();

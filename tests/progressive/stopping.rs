@@ -2,7 +2,7 @@
 
 use super::common::{
     CPU, FAILING, Fake, PATIENCE, expected, idle, job, other_cpu, scripted, settled, started, started_with,
-    stopped, usual, wait_for, wait_until,
+    stopped, wait_for, wait_until,
 };
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -417,25 +417,4 @@ fn paused_render_obeys_other_commands() {
     assert_eq!(settled(&progressive).phase, Phase::Idle);
     changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
     assert_eq!(progressive.finish(), None);
-}
-
-#[test]
-fn untimely_requests_change_nothing() {
-    let mut progressive = idle(usual);
-    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
-    assert_eq!(progressive.status(), Status::default());
-    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(8)));
-    assert_eq!(progressive.wait_until_over().phase, Phase::Done(EndReason::Samples));
-    changes_nothing(&progressive, &[PAUSE, RESUME, STOP]);
-    assert_eq!(progressive.take_film(), Some(expected(8)));
-    assert_eq!(
-        (progressive.take_film(), progressive.status().phase),
-        (None, Phase::Done(EndReason::Samples))
-    );
-
-    let failing = started_with(other_cpu(), Plan::samples(100), |choice| {
-        Box::new(Fake { fails_at: Some(8), ..Fake::new(choice.name()) })
-    });
-    assert!(matches!(failing.wait_until_over().phase, Phase::Failed(_)));
-    changes_nothing(&failing, &[PAUSE, RESUME, STOP]);
 }

@@ -43,31 +43,3 @@ fn materials_are_named_or_inline() {
     let taken = text.replace("materials.ball", "materials.sphere-0");
     assert_round_trip(&parse(&taken, "taken").expect("valid"));
 }
-
-#[test]
-fn inline_material_names_are_unique() {
-    let inline =
-        ONE_SPHERE.replace("material = \"ball\"", "material = { kind = \"metal\", albedo = [1, 0.5, 0] }");
-    let named = "[materials]\n\"sphere-0\" = { kind = \"dielectric\", refraction_index = 1.5 }\n\"sphere-0*\" = { kind = \"dielectric\", refraction_index = 2 }\n[materials.ball]";
-    let recipe = parse(&inline.replace("[materials.ball]", named), "inline").expect("valid");
-    let names: Vec<&str> = recipe.scene.materials.iter().map(|named| named.name.as_str()).collect();
-    assert_eq!(names, ["sphere-0", "sphere-0*", "ball", "sphere-0**"]);
-    assert_eq!(recipe.scene.spheres[0].material, 3);
-}
-
-#[test]
-fn materials_keep_their_order() {
-    let text = format!(
-        "{CAMERA}[materials.zinc]\nkind = \"metal\"\nalbedo = [1, 1, 1]\n\
-         [materials]\n\"a b\" = {{ kind = \"dielectric\", refraction_index = 1.5 }}\n"
-    );
-    let recipe = parse(&text, "order").expect("valid");
-    let names: Vec<_> = recipe.scene.materials.iter().map(|named| named.name.as_str()).collect();
-    assert_eq!(names, ["zinc", "a b"]);
-}
-
-/// Case 31: an up vector that is almost along the view is not an error.
-#[test]
-fn up_may_lie_almost_along_the_view() {
-    parse(&format!("{CAMERA}vup = [0, 1e-6, 1]\n"), "up").expect("valid");
-}

@@ -28,24 +28,19 @@ fn refuse_with(old: &str, new: &str, line: usize, parts: &[&str]) {
 fn bad_spheres_are_refused() {
     for (radius, parts) in [
         ("0", &["spheres[0].radius is 0", "within 1e-18 and 1e18"][..]),
-        ("-0.5", &["spheres[0].radius is -0.5", "hollow glass"]),
         ("nan", &["spheres[0].radius is NaN", "finite"]),
         ("inf", &["spheres[0].radius is inf", "finite"]),
         ("1e300", &["spheres[0].radius is 1e300, but", "1e18", "give the sphere"]),
-        ("1e-300", &["spheres[0].radius is 1e-300, but"]),
     ] {
         refuse_with("radius = 1", &format!("radius = {radius}"), 8, parts);
     }
     let center = "center = [0, 0, 0]";
     refuse_with(center, "center = [0, nan, 0]", 8, &["spheres[0].center.y is NaN"]);
     for (old, new, line, parts) in [
-        ("radius = 1", "radius = \"big\"", 10, &["expected a number", "spheres.radius"][..]),
-        ("radius = 1", "radious = 1", 10, &["unknown key `radious`", "`radius`"]),
+        ("radius = 1", "radious = 1", 10, &["unknown key `radious`", "`radius`"][..]),
         ("radius = 1", "radius = 1e400", 10, &["overflow"]),
         ("radius = 1", "radius = 1\nradius = 2", 11, &["duplicate key"]),
         (center, "center = [0, 0]", 9, &["three numbers", "found 2", "spheres.center"]),
-        (center, "center = [0, 0, 0, 0]", 9, &["three numbers", "found 4"]),
-        (center, "center = 0", 9, &["invalid type"]),
         (center, "", 8, &["missing key `center`"]),
     ] {
         refuse_with(old, new, line, parts);
@@ -61,13 +56,10 @@ fn bad_materials_are_refused() {
             "albedo = [0.5, 1.5, 0.5]",
             &["materials.ball.albedo is [0.5, 1.5, 0.5]", "within 0 and 1"][..],
         ),
-        (albedo, "albedo = [0.5, 0.5, inf]", &["materials.ball.albedo.z is inf"]),
         (albedo, "albedo = [0.5, 0.5]", &["invalid length 2", "materials.ball"]),
-        (albedo, "albedo = [0.5, 0.5, 0.5, 0.5]", &["invalid length 4", "materials.ball"]),
         (albedo, "", &["missing key `albedo`", "materials.ball"]),
         (albedo, "albedo = [0, 0, 0]\nfuzz = 0.1", &["unknown key `fuzz`", "materials.ball"]),
         (kind, "kind = \"metal\"\nfuzz = -0.1", &["materials.ball.fuzz is -0.1", "0 or more"]),
-        (kind, "", &["missing key `kind`", "materials.ball"]),
     ] {
         refuse_with(old, new, 5, parts);
     }
@@ -81,8 +73,6 @@ fn bad_materials_are_refused() {
     for (new, parts) in [
         ("material = \"bell\"".to_owned(), &["\"bell\"", "add [materials.bell]"][..]),
         ("material = 3".to_owned(), &["spheres[0].material is 3", "a material's name or a table"]),
-        (table("kind = \"metal\""), &["spheres[0].material: missing key `albedo`"]),
-        (table("kind = \"metal\", albedo = [1, 1, 1], fuz = 1"), &["spheres[0].material: unknown key `fuz`"]),
         (table("kind = \"metal\", albedo = [1, 2, 1]"), &["spheres[0].material.albedo is [1, 2, 1]"]),
     ] {
         refuse_with(material, &new, 8, parts);
@@ -91,55 +81,24 @@ fn bad_materials_are_refused() {
 
 #[test]
 fn bad_cameras_are_refused() {
-    let with = |line: &str| ONE_SPHERE.replace("[materials.ball]", &format!("{line}\n[materials.ball]"));
-    for (line, expected) in [
-        ("vup = [0, 0, 1]", "vup is [0, 0, 1], which is parallel to the view"),
-        ("vup = [0, 0, nan]", "vup.z is NaN"),
-        ("focus_distance = 0", "focus_distance is 0, but must be within"),
-        ("defocus_angle_degrees = 180", "below 179 degrees"),
-        ("defocus_angle_degrees = -1", "use 0 for a pinhole"),
-    ] {
-        let message = refusal(&with(line), 1);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
-    }
-    for (line, expected) in [("vup = [0, 0]", "three numbers"), ("roll = 3", "unknown key `roll`")] {
-        let message = refusal(&with(line), 5);
-        assert!(message.contains(expected), "{expected:?} is not in {message:?}");
-    }
-    let from = "look_from = [0, 0, 3]";
-    for (old, new, part) in [
-        (from, "look_from = [0, 0, 0]", "move one of them"),
-        (from, "look_from = [0, inf, 3]", "look_from.y is inf"),
-        (from, "look_from = [0, 1e30, 3]", "scale the scene"),
-        ("vfov_degrees = 40", "vfov_degrees = 180", "vfov_degrees is 180, but must be within 0.01 and 179"),
-        ("vfov_degrees = 40", "", "missing key `vfov_degrees`"),
-    ] {
-        refuse_with(old, new, 1, &[part]);
-    }
-    let message = refusal("", 1);
-    assert!(message.contains("missing key `camera`"), "{message}");
+    let vfov = "vfov_degrees = 40";
+    refuse_with(vfov, "vfov_degrees = 180", 1, &["vfov_degrees is 180, but must be within 0.01 and 179"]);
+    refuse_with(vfov, "", 1, &["missing key `vfov_degrees`"]);
+    refuse_with(vfov, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0, 0, 1], which is parallel"]);
+    refuse_with(vfov, "vfov_degrees = 40\nroll = 3", 5, &["unknown key `roll`"]);
 }
 
 #[test]
 fn bad_settings_are_refused() {
     for (table, line, expected) in [
         ("render", "width = 0", "0 is not within 1 and 16384 in `render.width`"),
-        ("render", "height = 100000", "100000 is not within 1 and 16384"),
         ("render", "width = -5", "-5 is not within"),
-        ("render", "width = 99999999999", "99999999999 is not within"),
         ("render", "width = 40.5", "expected a whole number in `render.width`"),
-        ("render", "width = \"8\"", "expected a whole number in `render.width`"),
         ("render", "max_depth = 99999999999999999999", "expected a whole number in `render.max_depth`"),
         ("render", "samples_per_pixel = 0", "0 is not within 1 and 4294967296 in `render.samples_per_pixel`"),
-        ("render", "samples_per_pixel = 4294967297", "4294967297 is not within"),
-        ("render", "max_depth = 10001", "10001 is not within 1 and 10000"),
         ("render", "seed = -1", "-1 is not within 0 and 4294967295"),
         ("render", "sampler = \"random\"", "`sobol`"),
-        ("render", "samples = 3", "unknown key `samples`"),
         ("render", "estimate_error = 1", "expected a boolean"),
-        ("sky", "middle = [0, 0, 0]", "unknown key `middle`"),
-        ("sky", "top = [0, 0, 1, 1]", "three numbers"),
-        ("rules", "surface = \"smooth\"", "`exact`"),
         ("rules", "gravity = true", "unknown key `gravity`"),
     ] {
         let message = refusal(&format!("{CAMERA}[{table}]\n{line}\n"), 6);

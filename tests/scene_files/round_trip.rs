@@ -5,7 +5,6 @@ use std::path::Path;
 use std::sync::Arc;
 use weekender::job::recipe::Recipe;
 use weekender::job::recipe::file::{load, parse, to_picture_toml};
-use weekender::job::render::{RenderSettings, SamplerKind};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
 
@@ -33,27 +32,6 @@ fn the_example_scenes_are_valid() {
         count += 1;
     }
     assert!(count >= 10);
-}
-
-#[test]
-fn every_setting_is_read_back() {
-    let usual = RenderSettings::default();
-    let other = RenderSettings {
-        max_depth: 7,
-        sampler: SamplerKind::Independent,
-        seed: 5,
-        estimate_error: false,
-        ..usual
-    };
-    let text = "max_depth = 7\nsampler = \"independent\"\nseed = 5\nestimate_error = false\n";
-    let recipe = parse(&format!("{CAMERA}[render]\n{text}"), "x").expect("valid");
-    assert_eq!(recipe.settings, other);
-    assert_round_trip(&recipe);
-}
-
-#[test]
-fn a_hundred_thousand_spheres_are_read_back() {
-    assert_round_trip(&Recipe::builtin("field:100000").expect("a field"));
 }
 
 #[test]

@@ -129,19 +129,4 @@ mod tests {
         assert_eq!(labels([1e5, 1e6]), ["1e5", "2e5", "5e5", "1e6"]);
         assert_eq!(labels([1.0, 1e12]).len(), 7, "every second power");
     }
-
-    #[test]
-    fn axis_adds_margin_without_limits() {
-        for (limits, values, expected) in [
-            (None, &[1e3, 10.0, -5.0, f64::NAN][..], [1.0 - 0.08, 3.0 + 0.08]),
-            (None, &[10.0, 10.0], [0.5, 1.5]),
-            (None, &[0.0], [0.0, 1.0]),
-            (Some([10.0, 1e4]), &[], [1.0, 4.0]),
-        ] {
-            let ruler = Axis { limits, ..Axis::new("") }.ruler(values.iter().copied());
-            let [start, end] = expected;
-            let is_so = (ruler.range.start - start).abs() < 1e-9 && (ruler.range.end - end).abs() < 1e-9;
-            assert!(is_so, "{values:?}: {:?}", ruler.range);
-        }
-    }
 }

@@ -38,36 +38,3 @@ pub fn page_svg(figure: &Figure, label: &str) -> Result<String> {
 fn quoted(RGBColor(r, g, b): RGBColor) -> String {
     format!("\"#{r:02X}{g:02X}{b:02X}\"")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::super::{Axis, LineChart, Look, Point, Series};
-    use super::*;
-
-    #[test]
-    fn no_colour_is_left() {
-        let points: Vec<Point> =
-            [1.0, 2.0].iter().map(|x| Point { x: *x, y: *x, spread: Some([0.5 * x, 2.0 * x]) }).collect();
-        let series = |name: &str, look| Series { name: name.to_owned(), points: points.clone(), look };
-        let chart = LineChart {
-            title: "t".to_owned(),
-            x: Axis::new("x"),
-            y: Axis::new("y"),
-            series: vec![series("a", Look::Measured), series("b", Look::Guide)],
-        };
-        let figure = Figure {
-            title: "Title".to_owned(),
-            about: "about".to_owned(),
-            size: [400, 300],
-            columns: 1,
-            panels: vec![chart],
-        };
-        let svg = page_svg(&figure, "A chart").unwrap();
-        assert!(
-            svg.starts_with("<svg viewBox=\"0 0 400 300\" role=\"img\" aria-label=\"A chart\">"),
-            "{svg}"
-        );
-        assert!(svg.contains("var(--series-1)") && svg.contains("currentColor"), "{svg}");
-        assert!(!svg.contains("\"#"), "{svg}");
-    }
-}

@@ -55,16 +55,3 @@ pub fn book() -> Scene {
     }
     scene
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_book_has_485_spheres() {
-        let scene = book();
-        assert_eq!(scene.spheres.len(), 485);
-        let small: Vec<_> = scene.spheres.iter().filter(|sphere| sphere.radius == 0.2).collect();
-        assert_eq!(small.len(), 481);
-    }
-}

@@ -137,17 +137,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn field_has_count_and_few_materials() {
-        for count in [1, 2, 3, 17, 1000, 100_000] {
-            let (scene, camera) = field(count);
-            assert_eq!(scene.spheres.len() as u64, count + 1);
-            assert_eq!(scene.materials.len(), 64);
-            scene.validate().expect("valid");
-            camera.validate().expect("valid");
-        }
-    }
-
-    #[test]
     fn field_spheres_touch_only_ground() {
         let (scene, _) = field(900);
         let (ground, small) = scene.spheres.split_first().expect("a ground");

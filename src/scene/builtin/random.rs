@@ -35,21 +35,3 @@ fn mix(mut x: u64) -> u64 {
 pub(super) fn to_four_decimals(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn draws_are_uniform_and_indexed() {
-        let first = |index| Draws::new(1, index).unit();
-        let numbers: Vec<f64> = (0..10_000).map(first).collect();
-        let mean = numbers.iter().sum::<f64>() / 1e4;
-        // Four standard errors of a uniform mean: 4 / sqrt(12 * 1e4).
-        assert!((mean - 0.5).abs() < 0.0116, "{mean}");
-        assert!(numbers.iter().all(|x| (0.0..1.0).contains(x)));
-        assert_eq!(first(7).to_bits(), first(7).to_bits());
-        assert_ne!(first(7), first(8));
-        assert_ne!(Draws::new(1, 7).unit(), Draws::new(2, 7).unit());
-    }
-}
