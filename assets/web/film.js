@@ -112,7 +112,7 @@ class Film {
     this.receipt = this.buffer("receipt", records.DispatchCounters.stride, MAP_READ | COPY_DST);
     this.picture = this.buffer("picture", 4 * width * height, STORAGE | COPY_SRC);
     this.shown = this.buffer("shown", 4 * width * height, MAP_READ | COPY_DST);
-    const sums = this.buffer("film", records.PixelSum.stride * width * height, STORAGE);
+    const sums = this.buffer("film", constants.pixel_size * width * height, STORAGE);
     const aside = this.buffer("aside", constants.aside_size * threads, STORAGE);
     const scene = inputs.map((bytes, i) => {
       const buffer = this.buffer("scene", bytes.length, (i === 0 ? UNIFORM : STORAGE) | COPY_DST);

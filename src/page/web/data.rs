@@ -1,6 +1,7 @@
 //! The data of a page's stages.
 
 use super::sliders::sliders;
+use crate::film::PixelSum;
 use crate::job::render::{RenderJob, RenderSettings};
 use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
 use crate::render_gpu::shader_source::{EntryPoint, shared};
@@ -27,6 +28,7 @@ pub(super) fn live_data<'a>(stages: impl IntoIterator<Item = &'a Stage>) -> Resu
         "constants": {
             "workgroup_size": WORKGROUP_SIZE,
             "aside_size": size_of::<GpuAside>(),
+            "pixel_size": size_of::<PixelSum>(),
             "turn_limit": TURN_LIMIT,
         },
         "records": records::layouts().into_iter().map(record).collect::<Map<_, _>>(),
