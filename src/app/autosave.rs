@@ -219,16 +219,20 @@ impl Autosave {
 
     fn save_last(&self, film: &Film, description: &Description, name: &str) {
         let words = format!("the picture's {} per pixel were saved", counted(film.sample_count(), "sample"));
-        let is_saved = |place: &Place| write(&place.film(), film, description).is_ok();
-        if self.place.as_ref().is_some_and(is_saved) {
+        let continued = |path: &Path| format!("continue with --resume {}", path.display());
+        if let Some(place) = &self.place
+            && write(&place.film(), film, description).is_ok()
+        {
             if std::thread::panicking() {
-                console::note(&format!("{words}; the next window offers them"));
+                console::note(&format!(
+                    "{words}; the next window offers them, or {}",
+                    continued(&place.film())
+                ));
             }
             return;
         }
-        let continued = |path: PathBuf| format!("{words}; continue with --resume {}", path.display());
-        let outcome = saved::rescue(&[], name, film, description).map(continued);
-        console::note(&outcome.unwrap_or_else(|lost| lost));
+        let outcome = saved::rescue(&[], name, film, description);
+        console::note(&outcome.map_or_else(|lost| lost, |path| format!("{words}; {}", continued(&path))));
     }
 }
 
