@@ -208,6 +208,17 @@ mod tests {
     }
 
     #[test]
+    fn a_half_larger_than_both_together_is_damage() {
+        let unit = Film::fixed_point(16);
+        let (mean, rest) = mean_and_rest(1000, unit);
+        for (first, matches) in [(0, true), (1000, true), (1001, false), (u64::MAX, false)] {
+            let mut row = Row::new(1);
+            row.pixels[0] = Stored { means: [mean.to_bits(); 3], rests: [rest; 3], first: [first; 3] };
+            assert_eq!(row.append_sums(unit, &mut [vec![], vec![]]), matches, "{first}");
+        }
+    }
+
+    #[test]
     fn the_rest_of_usual_sums_is_short() {
         let (samples, radiance) = (65_536_u64, 0.7371);
         let sum = (radiance * samples as f64 * 16_777_216.0) as u64 + 1;
