@@ -25,8 +25,7 @@ case_of() { # case_of NAME COMMAND...
 
 [ -z "${UNIT_TESTS:-}" ] || unit_tests emulated "$UNIT_TESTS"
 cd "$work" || exit 1
-case_of version emulated "$arm" --version --verbose
-grep instructions out
+case_of version emulated "$arm" --version
 for picture in three-spheres book field:3000 metals close-up touching-spheres \
     "$scenes/hollow-glass.toml" "$scenes/stress/planet-coast.toml"; do
     film=(--batch --device cpu --scene "$picture" --size 160x90 --samples 16)

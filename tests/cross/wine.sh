@@ -69,7 +69,7 @@ small=(--size 32x18 --device cpu)
 tiny=("${small[@]}" --samples 4)
 endless=(--size 160x90 --samples 4294967296 --device cpu --progress on)
 
-case_of 'version' 0 x86_64-pc-windows-gnu --version --verbose
+case_of 'version' 0 x86_64-pc-windows-gnu --version
 for picture in three-spheres book field:3000 metals close-up touching-spheres \
     "$scenes/hollow-glass.toml" "$scenes/stress/planet-coast.toml"; do
     name=$(basename "${picture/:/-}" .toml)
