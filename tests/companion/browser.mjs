@@ -30,12 +30,6 @@ for (const width of [400, 800, 1280, 1920]) {
 }
 await page.setViewportSize({ width: 1280, height: 900 });
 
-// Diagrams start when the reader comes near.
-for (const figure of await page.locator("figure:is(.diagram, .timeline)").all()) {
-  await figure.scrollIntoViewIfNeeded();
-  await page.waitForTimeout(100);
-}
-
 // Chapters that come near get their height, and the page moves until then.
 const placed = async (element) => {
   await element.scrollIntoViewIfNeeded();
@@ -46,6 +40,12 @@ const placed = async (element) => {
     if (box.y === before?.y) return box;
   }
 };
+
+// Diagrams start when the reader comes near.
+for (const figure of await page.locator("figure:is(.diagram, .timeline)").all()) {
+  await placed(figure);
+}
+await page.locator("figure:has(.reading)").nth(10).waitFor({ state: "attached" });
 
 // Each handle is dragged and moved by keys, each slider is set: the reading must change.
 for (const figure of await page.locator("figure:has(.reading)").all()) {
