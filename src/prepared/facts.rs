@@ -104,7 +104,6 @@ impl Facts {
     }
 
     /// Compares spheres of similar size and place: within a cell, and across a border if one is close to it.
-    /// close to the border.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
         let mut cells: Vec<(u64, u32)> =
             spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
@@ -116,13 +115,12 @@ impl Facts {
                 members[place + 1..].iter().take(next).for_each(|b| self.note_layer(spheres, *a, *b));
             }
         }
-        let occupied = Occupied::by(&cells);
         let beyond_borders: Vec<[u32; 2]> = spheres
             .par_iter()
             .enumerate()
             .flat_map_iter(|(index, sphere)| {
                 let index = index as u32;
-                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
+                let marks = marks_beyond_borders(sphere).into_iter();
                 let others = marks.flat_map(|mark| members_of(&cells, mark).take(CELL_LIMIT));
                 // Coordinates far larger than the radius give the next cell the same number.
                 others.filter(move |other| *other != index).map(move |other| [index, other])
@@ -198,32 +196,6 @@ fn worst(all: &[Unresolved]) -> Option<Unresolved> {
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     let first = cells.partition_point(|cell| cell.0 < mark);
     cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
-}
-
-/// Rules out most empty cells without a search: one bit for all marks with the same low bits.
-struct Occupied {
-    bits: Vec<u64>,
-}
-
-impl Occupied {
-    fn by(cells: &[(u64, u32)]) -> Self {
-        // Sixteen bits per sphere: one in sixteen empty cells passes the filter.
-        let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
-        for (mark, _) in cells {
-            let (word, bit) = occupied.place(*mark);
-            occupied.bits[word] |= bit;
-        }
-        occupied
-    }
-
-    fn place(&self, mark: u64) -> (usize, u64) {
-        ((mark >> 6) as usize & (self.bits.len() - 1), 1 << (mark & 63))
-    }
-
-    fn may_hold(&self, mark: u64) -> bool {
-        let (word, bit) = self.place(mark);
-        self.bits[word] & bit != 0
-    }
 }
 
 /// How far outside a cell, in cells, a sphere may be and still form a layer with one inside.

@@ -145,32 +145,17 @@ impl<R: Real> PreparedScene<R> {
         prepared
     }
 
-    /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings.
-    pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
-        PreparedScene::followed_or_built(old, job, &AtomicBool::new(false))
-    }
-
-    /// Like [`PreparedScene::renewed`], but returns `None` soon after `cancel` is set.
-    pub fn renewed_unless(
-        cancel: &AtomicBool,
-        old: Option<(Self, RenderJob)>,
-        job: &RenderJob,
-    ) -> Option<Self> {
+    /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings. Returns `None` soon
+    /// after `cancel` is set.
+    pub fn renewed(cancel: &AtomicBool, old: Option<(Self, RenderJob)>, job: &RenderJob) -> Option<Self> {
         let is_cancelled = || cancel.load(Ordering::Relaxed);
         if is_cancelled() {
             return None;
         }
-        let prepared = PreparedScene::followed_or_built(old, job, cancel);
+        let followed = old.and_then(|(mut old, before)| old.follow(&before, job).then_some(old));
+        let prepared = followed
+            .unwrap_or_else(|| Self::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel));
         (!is_cancelled()).then_some(prepared)
-    }
-
-    fn followed_or_built(old: Option<(Self, RenderJob)>, job: &RenderJob, cancel: &AtomicBool) -> Self {
-        if let Some((mut prepared, before)) = old
-            && prepared.follow(&before, job)
-        {
-            return prepared;
-        }
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel)
     }
 
     /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can

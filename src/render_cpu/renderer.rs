@@ -139,7 +139,7 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
                 let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
                 self.messages = prepared.warnings().to_vec();
                 self.rebuild.note_prepared(&prepared);
@@ -156,7 +156,7 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
                 let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
                 Prepared::Double(Box::new(BroadcastScene::new(prepared)), kernels::reference_kernel())
             }

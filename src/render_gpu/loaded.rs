@@ -110,7 +110,7 @@ impl GpuRenderer {
         job: &RenderJob,
         cancel: &AtomicBool,
     ) -> Result<SceneOnDevice, RenderError> {
-        let made = PreparedScene::<f32>::renewed_unless(cancel, None, job);
+        let made = PreparedScene::<f32>::renewed(cancel, None, job);
         let prepared = made.ok_or(RenderError::Cancelled)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
         let begin = Instant::now();

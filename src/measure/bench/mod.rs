@@ -145,12 +145,8 @@ impl Bench<'_> {
     fn kernels(&self) -> Vec<(Kind, Candidate)> {
         let mut found = Vec::new();
         for isa in &self.levels {
-            let general = CpuOptions {
-                isa: Some(*isa),
-                threads: Some(1),
-                general: true,
-                ..CpuOptions::default()
-            };
+            let general =
+                CpuOptions { isa: Some(*isa), threads: Some(1), general: true, ..CpuOptions::default() };
             let name = format!("{isa}, general kernel");
             found.push((Kind::General, Candidate::backend(name, BackendChoice::Cpu(general))));
             found.push((Kind::Packets, cpu(*isa, isa.native_lanes(), 1)));
