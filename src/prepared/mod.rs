@@ -62,7 +62,7 @@ pub struct PreparedScene<R> {
     pub origin: DVec3,
     groups: Groups,
     facts: Arc<Facts>,
-    warnings: Vec<String>,
+    warning: Option<String>,
 }
 
 impl<R: Real> PreparedScene<R> {
@@ -139,7 +139,7 @@ impl<R: Real> PreparedScene<R> {
             origin: groups.origin,
             groups: Groups::default(),
             facts,
-            warnings: Vec::new(),
+            warning: None,
         };
         prepared.see(job, groups);
         prepared
@@ -191,11 +191,8 @@ impl<R: Real> PreparedScene<R> {
             // A ray without a hit reads row 0 and ignores it.
             self.records.push(RecordColumns::default());
         }
-        self.warnings = if job.rules().surface == SurfaceRule::Exact {
-            self.facts.warnings(job, groups.origin)
-        } else {
-            Vec::new()
-        };
+        let is_exact = job.rules().surface == SurfaceRule::Exact;
+        self.warning = self.facts.warning(job, groups.origin).filter(|_| is_exact);
         self.groups = groups;
         self.features = Features::of(job, &self.sorted());
         #[cfg(test)]
@@ -212,9 +209,9 @@ impl<R: Real> PreparedScene<R> {
         }
     }
 
-    /// Warnings about what single precision cannot represent, with numbers and remedies.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// A warning about what single precision cannot represent, with numbers and a remedy.
+    pub fn warning(&self) -> Option<&String> {
+        self.warning.as_ref()
     }
 
     /// Memory that grows with the number of spheres.
