@@ -105,12 +105,13 @@ impl Facts {
                 members[place + 1..].iter().take(next).for_each(|b| self.note_layer(spheres, *a, *b));
             }
         }
+        let occupied = Occupied::by(&cells);
         let beyond_borders: Vec<[u32; 2]> = spheres
             .par_iter()
             .enumerate()
             .flat_map_iter(|(index, sphere)| {
                 let index = index as u32;
-                let marks = marks_beyond_borders(sphere).into_iter();
+                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
                 let others = marks.flat_map(|mark| members_of(&cells, mark).take(CELL_LIMIT));
                 // Coordinates far larger than the radius give the next cell the same number.
                 others.filter(move |other| *other != index).map(move |other| [index, other])
@@ -180,6 +181,32 @@ fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unreso
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     let first = cells.partition_point(|cell| cell.0 < mark);
     cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
+}
+
+/// Rules out most empty cells without a search: one bit for all marks with the same low bits.
+struct Occupied {
+    bits: Vec<u64>,
+}
+
+impl Occupied {
+    fn by(cells: &[(u64, u32)]) -> Self {
+        // Sixteen bits per sphere: one in sixteen empty cells passes the filter.
+        let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
+        for (mark, _) in cells {
+            let (word, bit) = occupied.place(*mark);
+            occupied.bits[word] |= bit;
+        }
+        occupied
+    }
+
+    fn place(&self, mark: u64) -> (usize, u64) {
+        ((mark >> 6) as usize & (self.bits.len() - 1), 1 << (mark & 63))
+    }
+
+    fn may_hold(&self, mark: u64) -> bool {
+        let (word, bit) = self.place(mark);
+        self.bits[word] & bit != 0
+    }
 }
 
 /// How far outside a cell, in cells, a sphere may be and still form a layer with one inside.
