@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn ratio_uses_baseline_of_same_scene() {
+    fn ratio_uses_the_row_compared_with() {
         let run =
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();
@@ -186,12 +186,12 @@ mod tests {
             SceneFigures::new("metals", &job, rows).rows.iter().map(|row| row.ratio_to_baseline).collect()
         };
         let first = vec![
-            row(Kind::Packets, vec![run(80), run(60), run(90)]),
             row(Kind::Baseline, vec![run(20), run(10), run(90)]),
+            row(Kind::Packets, vec![run(80), run(60), run(90)]),
             row(Kind::Gpu, Vec::new()),
         ];
-        assert_eq!(ratios(first), [Some(4.0), Some(1.0), None]);
-        let without = vec![row(Kind::Packets, vec![run(80)]), row(Kind::Baseline, Vec::new())];
+        assert_eq!(ratios(first), [Some(1.0), Some(4.0), None]);
+        let without = vec![row(Kind::Baseline, Vec::new()), row(Kind::Packets, vec![run(80)])];
         assert_eq!(ratios(without), [None, None]);
     }
 

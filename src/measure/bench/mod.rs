@@ -176,12 +176,13 @@ impl Bench<'_> {
     ) -> Vec<Row> {
         let mut rows: Vec<Row> =
             candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
+        let mut most = samples;
         'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
                     self.progress.at(&format!("{scene}: {}", row.name));
                     let outcome = match turn {
-                        0 => self.warm_up(candidate, job, samples, row),
+                        0 => self.warm_up(candidate, job, most, row),
                         _ => self.run(candidate, job, row),
                     };
                     match outcome {
@@ -190,6 +191,9 @@ impl Bench<'_> {
                         Err(Stop::Failed(reason)) => row.skipped = Some(reason),
                     }
                 }
+                // A scene's own kernel takes as many samples as the general one.
+                let is_general = row.kind == Kind::General && row.skipped.is_none();
+                most = if is_general { row.samples_per_pixel } else { samples };
                 self.progress.finished(1.0);
             }
         }
