@@ -132,6 +132,7 @@ impl ValueEnum for Encoding {
             Encoding::Book(Transfer::Linear) => "linear",
             Encoding::Book(_) => "gamma2",
             Encoding::Srgb => "srgb",
+            Encoding::Gamma(_) => return None,
         }))
     }
 }

@@ -64,9 +64,9 @@ struct Raw {
     #[arg(long = "log", id = "log", value_name = "FILE.log", value_parser = values::file_ending(".log"), global = true)]
     _log: Option<PathBuf>,
     #[command(flatten)]
-    render: render::RenderFlags,
+    _render: render::RenderFlags,
     #[command(subcommand)]
-    command: Option<Command>,
+    _command: Option<Command>,
 }
 
 /// A subcommand with its options.
@@ -153,16 +153,15 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
-    let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-    let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
-    let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
-    Ok(match raw.command {
-        None => render::request(raw.render, &line).map_err(Failure::Input)?,
-        Some(mut command) => {
-            command.complete(&line);
-            Request::Command(command)
-        }
-    })
+    let line = |matches| Line { program: program(arguments.first()), command: recorded(&arguments), matches };
+    // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
+    let Some((_, own)) = matches.subcommand() else {
+        let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+        return render::request(flags, &line(&matches)).map_err(Failure::Input);
+    };
+    let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+    command.complete(&line(own));
+    Ok(Request::Command(command))
 }
 
 /// Adds a tip if the value of a flag has a decimal comma.

@@ -20,7 +20,7 @@ const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"
 #[derive(Debug, Args)]
 pub struct PlanOptions {
     /// Parts, 1 to 100000, each with some samples of the whole picture
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=100_000_u64, 10))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=100_000))]
     parts: u64,
     /// The directory of the plan, of its parts and of the merged film; it is created if necessary
     #[arg(long, value_name = "DIR")]

@@ -7,9 +7,7 @@ mod png;
 mod ppm;
 mod read;
 
-pub use read::{
-    Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
-};
+pub use read::{Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 

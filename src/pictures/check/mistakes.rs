@@ -2,8 +2,9 @@
 //! render it.
 
 use super::bytes::{is_same_seed, is_times_255, is_truncated};
-use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
+use super::hypothesis::{Change, Hypothesis, Making, Mistake};
 use super::tracer::Random;
+use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::{Material, Scene};
@@ -39,19 +40,19 @@ mistakes! {
         });
     "no-gamma", "9.5", "gamma is missing",
         "take the square root of each channel in write_color, after dividing by the samples",
-        has_gamma, Change::Written(|written| written.curve = Curve::Gamma(1.0));
+        has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(1.0));
     "gamma-early", "9.5", "gamma is applied, though this section does not have it yet",
         "nothing is wrong if you have read on; section 9.5 adds the square root",
         |recipe| recipe.rules.transfer == Transfer::Linear,
-        Change::Written(|written| written.curve = Curve::Gamma(2.0));
+        Change::Written(|written| written.curve = Encoding::Gamma(2.0));
     "gamma-twice", "9.5", "gamma is applied twice",
         "take the square root once: either in write_color or in your picture library, which may write sRGB from \
          linear values",
-        has_gamma, Change::Written(|written| written.curve = Curve::Gamma(4.0));
+        has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(4.0));
     "gamma-2.2", "9.5", "the curve is gamma 2.2, not the square root",
-        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Curve::Gamma(2.2));
+        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(2.2));
     "gamma-srgb", "9.5", "the curve is that of sRGB, not the square root",
-        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Curve::Srgb);
+        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Encoding::Srgb);
     "wraps-to-0", "8.2", "the brightest values become 0",
         "clamp before the conversion: int(256 * clamp(x, 0, 0.999)); 256 does not fit into a byte, where it becomes 0",
         always, Change::Written(|written| written.wraps = true);

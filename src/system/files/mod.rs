@@ -8,12 +8,11 @@ mod paths;
 mod read;
 mod replace;
 
-pub use identity::FileIdentity;
+pub use identity::identity;
 pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
 pub use paths::{
-    NAME_LIMIT, STANDARD, ShownPath, cache_directory, free_name, home_directory, make_directory,
-    pictures_directory, state_directory,
+    STANDARD, ShownPath, cache_directory, home_directory, make_directory, pictures_directory, state_directory,
 };
 pub use read::{InputError, open, read};
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};

@@ -34,15 +34,6 @@ pub fn make_directory(directory: &Path) -> Result<()> {
     created.with_context(context)
 }
 
-/// How many names are tried.
-pub const NAME_LIMIT: u32 = 1000;
-
-/// The first of the paths `name(1)`, `name(2)`, ... that is free; even a dangling link takes a name. `None` if all
-/// [`NAME_LIMIT`] are taken.
-pub fn free_name(name: impl Fn(u32) -> PathBuf) -> Option<PathBuf> {
-    (1..=NAME_LIMIT).map(name).find(|path| path.symlink_metadata().is_err())
-}
-
 /// For state and for what can be recreated: the variable that names the system's directory, and where in the home
 /// directory that is unless the variable says otherwise.
 const USUAL: [(&str, &str); 2] = if cfg!(windows) {
@@ -103,22 +94,6 @@ mod tests {
         use std::os::unix::ffi::OsStrExt;
         let path = PathBuf::from(OsStr::from_bytes(b"d\xff/a\n.png"));
         assert_eq!(path.shown(), "d\u{fffd}/a\\n.png");
-    }
-
-    #[test]
-    fn the_first_free_name_is_taken() {
-        let directory = tempfile::tempdir().unwrap();
-        let name = |number: u32| directory.path().join(number.to_string());
-        std::fs::write(name(1), "").unwrap();
-        std::fs::create_dir(name(2)).unwrap();
-        std::fs::write(name(4), "").unwrap();
-        assert_eq!(free_name(name), Some(name(3)));
-        assert_eq!(free_name(|_| name(1)), None);
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink("missing", name(3)).unwrap();
-            assert_eq!(free_name(name), Some(name(5)));
-        }
     }
 
     #[test]
