@@ -271,11 +271,11 @@ fn render(
         out != Path::new(STANDARD) || files.json.as_ref() != Some(&out),
         "--out - and --json - would both write to standard output; write one of them to a file"
     );
-    if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
-        bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
-    }
-    if files.denoise && !job.settings().estimate_error {
-        bail!("--denoise needs --estimate-error on: the filter compares the film's two halves");
+    let comparing = [("--noise-target", flags.stop.noise_target.is_some()), ("--denoise", files.denoise)];
+    if let Some((flag, _)) = comparing.into_iter().find(|(_, is_given)| *is_given)
+        && !job.settings().estimate_error
+    {
+        bail!("{flag} needs --estimate-error on: it compares the film's two halves");
     }
     Ok(RenderOptions {
         plan: plan(flags, &chosen.recipe),

@@ -141,7 +141,7 @@ fn files_that_cannot_be_read_are_refused() {
     assert!(message(folder.path()).contains("is a directory"), "{}", message(folder.path()));
     let huge = folder.path().join("huge.toml");
     std::fs::File::create(&huge).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
-    assert!(message(&huge).contains("has 1099.5 GB, but a scene file of more than"), "{}", message(&huge));
+    assert!(message(&huge).contains("has 1.10 TB, but a scene file of more than"), "{}", message(&huge));
 
     let binary = folder.path().join("binary.toml");
     let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();

@@ -101,39 +101,34 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     }
     check_memory(width, height, 0)?;
     let data = &data[..needed];
-    let values: Vec<u16> = match bytes_per_value {
-        1 => data.iter().copied().map(u16::from).collect(),
-        _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect(),
+    let values: Vec<i64> = match bytes_per_value {
+        1 => data.iter().copied().map(i64::from).collect(),
+        _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair).into()).collect(),
     };
     let format = if kind == b'6' { "P6" } else { "P5" };
-    Ok(Found::Picture(integers([width, height], format, most, channels, values, notes, damages)))
+    Ok(Found::Picture(integers([width, height], format, most, channels, &values, notes, damages)))
 }
 
-/// The picture of values that may exceed the largest one.
+/// The picture of values that may be outside of their range.
 fn integers(
     [width, height]: [u32; 2],
     format: &'static str,
     most: u16,
     channels: usize,
-    values: Vec<u16>,
+    values: &[i64],
     notes: Vec<String>,
     damages: &mut Vec<Damage>,
 ) -> ReadPicture {
-    outside(values.iter().filter(|value| **value > most).count(), most, damages);
-    let rgb = values
-        .chunks_exact(channels)
-        .map(|pixel| [0, 1, 2].map(|channel: usize| pixel[channel.min(channels - 1)].min(most)))
-        .collect();
-    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
-}
-
-fn outside(count: usize, most: u16, damages: &mut Vec<Damage>) {
-    if count > 0 {
+    let outside = values.iter().filter(|value| !(0..=most.into()).contains(*value)).count();
+    if outside > 0 {
         damages.push(Damage::new(
-            format!("{count} numbers are below 0 or above {most}"),
+            format!("{outside} numbers are below 0 or above {most}"),
             "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative ones often were NaN",
         ));
     }
+    let value = |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
+    let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
+    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
 }
 
 /// Reads numbers written as text, leaving out what does not belong.
@@ -215,10 +210,8 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
         ));
     }
     check_memory(width, height, 0)?;
-    values.truncate(needed);
-    outside(values.iter().filter(|value| !(0..=most.into()).contains(*value)).count(), most, damages);
-    let values = values.iter().map(|value| (*value).clamp(0, most.into()) as u16).collect();
     let format = if kind == b'3' { "P3" } else { "P2" };
+    let values = &values[..needed];
     Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
 }
 

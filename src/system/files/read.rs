@@ -117,7 +117,7 @@ mod tests {
         fs::write(&path, [7; 10]).unwrap();
         assert_eq!(read(&path, "a list", 10).unwrap(), [7; 10]);
         let message = read(&path, "a list", 9).unwrap_err().to_string();
-        assert!(message.contains("has 10 bytes, but a list of more than 9 bytes is not read"), "{message}");
+        assert!(message.contains("has 10 B, but a list of more than 9 B is not read"), "{message}");
         assert!(read(&directory.path().join("x"), "a list", 1).is_err());
     }
 

@@ -1,8 +1,7 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
-use super::identity::resolved;
 use super::leftovers;
-use super::paths::{STANDARD, ShownPath};
+use super::paths::{STANDARD, ShownPath, resolved};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
