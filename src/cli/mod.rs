@@ -24,7 +24,6 @@ pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::ReportOptions;
-pub use sources::DEFAULT_SCENE;
 pub use values::{DrawWith, ProgressChoice};
 
 use crate::job::recipe::Recipe;

@@ -15,7 +15,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// The scene that is rendered if none is named.
-pub const DEFAULT_SCENE: &str = "three-spheres";
+const DEFAULT_SCENE: &str = "three-spheres";
 
 /// What is rendered.
 #[derive(Debug, Default, PartialEq, Args)]
