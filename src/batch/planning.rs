@@ -1,6 +1,6 @@
 //! `weekender plan`: writes a plan and makes the commands for its parts.
 
-use crate::cli::PlanOptions;
+use crate::cli::{PlanOptions, program};
 use crate::film::Film;
 use crate::job::plan::{Commands, Format, Plan, scripts};
 use crate::progressive::describe::counted;
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     let (recipe, job, manifest) = options.divided().map_err(Failure::Input)?;
     make_directory(&options.out).map_err(Failure::Input)?;
-    let program = options.program.as_deref().unwrap_or("weekender");
+    let program = &options.program.clone().unwrap_or_else(program);
     let scripts = scripts(options.format, &manifest, program);
     let plan = Plan::write(&options.out, &recipe, &job, manifest, &scripts).map_err(Failure::Input)?;
     console::note(&about(&plan));

@@ -22,9 +22,6 @@ pub struct MergeOptions {
     /// what is missing
     #[arg(long, conflicts_with = "out")]
     pub check: bool,
-    /// How commands call this program.
-    #[arg(skip)]
-    pub program: String,
 }
 
 /// Options of `weekender info`.

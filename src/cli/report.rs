@@ -60,9 +60,6 @@ pub struct ReportOptions {
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
-    /// The command as typed, with file names instead of paths.
-    #[arg(skip)]
-    pub command: String,
 }
 
 /// Name of the C program among the backends of a report.
