@@ -63,17 +63,18 @@ enum Found {
 }
 
 fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
-    let kind = file[1];
     let mut words = Words { file, at: 2 };
-    match kind {
-        b'2' | b'3' => return text(file, kind, damages),
-        b'F' | b'f' => return floats(words, if kind == b'F' { 3 } else { 1 }).map(Found::Picture),
-        _ => {}
-    }
+    let (format, channels) = match file[1] {
+        b'2' => return text(file, "P2", 1, damages),
+        b'3' => return text(file, "P3", 3, damages),
+        b'f' => return floats(words, 1).map(Found::Picture),
+        b'F' => return floats(words, 3).map(Found::Picture),
+        b'5' => ("P5", 1),
+        _ => ("P6", 3),
+    };
     let size = [words.number("width")?, words.number("height")?];
     let most = words.number("largest value")?;
     let ((width, height, count), most) = (checked(size)?, checked_most(most)?);
-    let channels = if kind == b'6' { 3 } else { 1 };
     let bytes_per_value = if most > 255 { 2 } else { 1 };
     let needed = count * channels * bytes_per_value;
     let mut data = Cow::Borrowed(words.payload(needed));
@@ -105,7 +106,6 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
         1 => data.iter().copied().map(i64::from).collect(),
         _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair).into()).collect(),
     };
-    let format = if kind == b'6' { "P6" } else { "P5" };
     Ok(Found::Picture(integers([width, height], format, most, channels, &values, notes, damages)))
 }
 
@@ -132,7 +132,7 @@ fn integers(
 }
 
 /// Reads numbers written as text, leaving out what does not belong.
-fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
+fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Damage>) -> Result<Found> {
     let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
     for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         if at > 0 && is_header(line) {
@@ -155,13 +155,11 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
         ));
     }
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
-    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
+    let head: Vec<u64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
     let [width, height, most] = *head.as_slice() else {
         bail!("its header is not complete; {HEADER}");
     };
-    let size = [width, height].map(|side| u64::try_from(side).unwrap_or(0));
-    let ((width, height, count), most) = (checked(size)?, checked_most(most.try_into().unwrap_or(0))?);
-    let channels = if kind == b'3' { 3 } else { 1 };
+    let ((width, height, count), most) = (checked([width, height])?, checked_most(most)?);
     let needed = count * channels;
     let words = || words().skip(3);
     let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
@@ -210,7 +208,6 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
         ));
     }
     check_memory(width, height, 0)?;
-    let format = if kind == b'3' { "P3" } else { "P2" };
     let values = &values[..needed];
     Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
 }
@@ -345,14 +342,12 @@ fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
 
 /// Whether a picture of one of these formats begins here.
 fn is_header(bytes: &[u8]) -> bool {
-    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', next, ..] if next.is_ascii_whitespace() || *next == b'#')
+    let is_end = |next: &u8| next.is_ascii_whitespace() || *next == b'#';
+    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', rest @ ..] if rest.first().is_none_or(is_end))
 }
 
 /// Where the picture begins: at once, or at a line after some text.
 fn header(file: &[u8]) -> Option<usize> {
-    if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
-        return Some(0);
-    }
     let mut at = 0;
     for line in file.split_inclusive(|byte| *byte == b'\n') {
         if is_header(line) {

@@ -7,10 +7,8 @@ use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::scene::Material;
 use anyhow::Result;
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Deviations by which a right picture's sum of squares may exceed noise. Noise alone stays below 4; the rest allows
@@ -40,7 +38,6 @@ pub enum Change {
     Written(fn(&mut Written)),
     /// Changes the recipe of the program's own tracer.
     Recipe(fn(&mut Recipe)),
-    Materials(fn(&mut Material)),
     /// Changes a step of the plain tracer.
     Steps(fn(&mut Steps)),
     /// Any of several variants.
@@ -90,10 +87,6 @@ impl Change {
                 return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
             }
             Change::Recipe(change) => change(&mut changed),
-            Change::Materials(change) => {
-                let materials = &mut Arc::make_mut(&mut changed.scene).materials;
-                materials.iter_mut().for_each(|named| change(&mut named.material));
-            }
         }
         vec![Hypothesis { making: Making::Fast(Box::new(changed)), ..picture }]
     }

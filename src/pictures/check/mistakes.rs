@@ -129,11 +129,11 @@ mistakes! {
         });
     "fuzz-missing", "10.6", "fuzz has no effect",
         "add fuzz * random_unit_vector() to the reflected direction, and store fuzz in the constructor",
-        has_fuzz, Change::Materials(|material| {
+        has_fuzz, Change::Recipe(|recipe| materials(recipe, |material| {
             if let Material::Metal { fuzz, .. } = material {
                 *fuzz = 0.0;
             }
-        });
+        }));
     "fuzz-unnormalised", "10.6", "fuzz is added to a reflected direction of another length than 1",
         "normalise first: reflected = unit_vector(reflected) + (fuzz * random_unit_vector())",
         has_fuzz, Change::Steps(|steps| steps.before_fuzz = |direction| direction);
@@ -142,14 +142,14 @@ mistakes! {
         has_glass, Change::Steps(|steps| steps.before_glass = |direction| direction);
     "index-inverted", "11.2", "the refraction index is inverted",
         "write ri = rec.front_face ? (1.0 / refraction_index) : refraction_index",
-        has_glass, Change::Materials(invert);
+        has_glass, Change::Recipe(|recipe| materials(recipe, invert));
     "glass-black", "11.2", "glass is black",
         "set attenuation = color(1.0, 1.0, 1.0) in dielectric::scatter, and return true",
-        has_glass, Change::Materials(|material| {
+        has_glass, Change::Recipe(|recipe| materials(recipe, |material| {
             if let Material::Dielectric { .. } = material {
                 *material = Material::Lambertian { albedo: DVec3::ZERO };
             }
-        });
+        }));
     "glass-swapped", "11.3", "glass reflects where it should refract, and refracts where it should reflect",
         "if (cannot_refract || reflectance(cos_theta, ri) > random_double()) reflect, else refract",
         |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
@@ -213,6 +213,10 @@ fn limited(recipe: &Recipe, limit: u32) -> Option<Hypothesis> {
     let making = Making::Fast(Box::new(Recipe { settings, ..recipe.clone() }));
     let note = Some(format!("it looks as with max_depth = {limit}"));
     (limit < recipe.settings.max_depth).then(|| Hypothesis { making, note, ..Hypothesis::right(recipe) })
+}
+
+fn materials(recipe: &mut Recipe, change: fn(&mut Material)) {
+    Arc::make_mut(&mut recipe.scene).materials.iter_mut().for_each(|named| change(&mut named.material));
 }
 
 fn invert(material: &mut Material) {

@@ -201,13 +201,7 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
 }
 
 fn new_file_in(directory: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = leftovers::create_in(directory, &mut builder)?;
+    let file = leftovers::create_in(directory)?;
     if let Some(old) = old {
         file.as_file().set_permissions(old.permissions())?;
     }
