@@ -26,7 +26,7 @@ struct Shared {
 struct State {
     /// When the first signal arrived.
     since: Option<Instant>,
-    /// That of the latest signal.
+    /// The exit code of the signals that have arrived.
     exit_code: Option<u8>,
     /// Description of what is being written.
     writing: Option<String>,
@@ -119,7 +119,10 @@ impl Shared {
         let mut state = self.state();
         let first = *state.since.get_or_insert(now);
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
-        state.exit_code = Some(exit_code);
+        // Ctrl-C comes first: the person at the keyboard wants the end, whatever else asks for it.
+        state.exit_code = [INTERRUPTED, TERMINATED, HUNG_UP]
+            .into_iter()
+            .find(|code| *code == exit_code || Some(*code) == state.exit_code);
         match &state.writing {
             Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
             None if was_set && state.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
