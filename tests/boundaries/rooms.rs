@@ -4,7 +4,7 @@
 pub const ROOMS: &str = "\
 system:
 numbers:
-scene: system
+scene:
 stages: system scene
 film: system stages
 denoise: system film
@@ -35,7 +35,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("obvhs", &["prepared"]),
     ("libm", &["numbers", "scene"]),
     ("image", &["job", "pictures", "page", "app"]),
-    ("indicatif", &["cli", "measure"]),
+    ("indicatif", &["system", "cli", "measure"]),
     ("maud", &["page"]),
     ("plotters", &["numbers"]),
     ("clap", &["system", "job", "cli"]),
