@@ -42,7 +42,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
 
 #[test]
 fn fault_in_any_phase_completes_picture() {
-    // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
+    // A software adapter runs out of memory only when the program does: see tests/gpu/program.rs.
     for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
         let points = [
             (InjectionPoint::Prepare, 0),
