@@ -7,6 +7,7 @@ mod program_common;
 use program_common::{json_file, outcome, refused, weekender};
 use std::sync::atomic::AtomicBool;
 use weekender::backends::BackendChoice;
+use weekender::job::recipe::Recipe;
 use weekender::measure::Candidate;
 use weekender::measure::stress::{Case, Expected, Suite, cases};
 use weekender::render_cpu::{CpuOptions, Isa};
@@ -60,8 +61,8 @@ fn wrong<'a>(mut suite: Suite, cases: impl Iterator<Item = &'a Case>) -> Vec<Str
 #[test]
 fn small_cases_are_right_on_every_level() {
     let is_small = |case: &&Case| {
-        let settings = case.recipe.settings;
-        case.recipe.scene.spheres.len() <= 1000 && settings.width * settings.height <= 400
+        let Recipe { settings, scene, samples_per_pixel, .. } = &case.recipe;
+        scene.spheres.len() <= 1000 && settings.width * settings.height <= 400 && *samples_per_pixel <= 32
     };
     let wrong = wrong(suite(levels()), cases().iter().filter(is_small));
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -34,6 +34,6 @@ fn twins_have_same_functions_in_order() {
         let common: Vec<&String> = own.iter().filter(|name| twin.contains(name)).collect();
         let in_twin: Vec<&String> = twin.iter().filter(|name| own.contains(name)).collect();
         assert_eq!(common, in_twin, "{shader}");
-        assert!(2 * common.len() > own.len(), "{shader}: of {own:?} only {common:?} have a twin");
+        assert!(common.len() > 2, "{shader}: of {own:?} only {common:?} have a twin");
     }
 }

@@ -21,6 +21,8 @@ pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "RUST_LOG"] {
         command.env_remove(name);
     }
+    // Without it, graphics libraries complain on standard error.
+    command.env("XDG_RUNTIME_DIR", directory);
     command.current_dir(directory).args(arguments).stdin(Stdio::null());
     #[cfg(unix)]
     restore_signals();
