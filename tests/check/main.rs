@@ -13,7 +13,7 @@ use weekender::pictures::check::{Mine, judge};
 use weekender::stages::Stage;
 
 fn mine(stage: &'static str, mistake: &'static str, samples: u32, seed: u64) -> Mine {
-    let (width, height) = (200, 112);
+    let (width, height) = (160, 90);
     let bytes = Book::new(stage, mistake).render(width, height, samples, seed);
     Mine::of_bytes(bytes, [width, height])
 }
@@ -125,7 +125,7 @@ fn finding_sets_exit_code_files_and_json() {
     assert_eq!(json["is_right"], false);
     for name in ["mine.png", "ours.png", "difference.png"] {
         let read = Mine::read(&at.join("d").join(name)).unwrap();
-        assert_eq!((read.width, read.height), (200, 112), "{name}");
+        assert_eq!((read.width, read.height), (160, 90), "{name}");
     }
     // Our own picture in the same place is right.
     check(0, &[&["d/ours.png"], &stage[..]].concat());

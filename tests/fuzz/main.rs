@@ -215,11 +215,9 @@ fn seal(input: &mut [u8]) -> Option<()> {
     }
     sum.text(recipe);
     sum.text(comments);
-    if number("version")? > 3 {
-        sum.word(number("sample_version")?);
-        let bands = table.get("bands")?.as_array()?;
-        bands.iter().try_for_each(|band| band.as_str().map(|band| sum.text(band.as_bytes())))?;
-    }
+    sum.word(number("sample_version")?);
+    let bands = table.get("bands")?.as_array()?;
+    bands.iter().try_for_each(|band| band.as_str().map(|band| sum.text(band.as_bytes())))?;
     let place = start + head.find("head_checksum = \"")? + "head_checksum = \"".len();
     input.get_mut(place..place + 16)?.copy_from_slice(sum.finish().as_bytes());
     Some(())

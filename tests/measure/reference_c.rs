@@ -53,7 +53,7 @@ fn check(name: &str, job: &RenderJob, samples: u64) {
         assert!(stats.rays > stats.paths && !stats.trace.is_zero());
         film.halves()[0].clone()
     });
-    let range = SampleRanges::from_ranges([0..samples]).unwrap();
+    let range = SampleRanges::from_ranges(std::iter::once(0..samples)).unwrap();
     let theirs = Film::from_parts(WIDTH, HEIGHT, halves.to_vec(), range, 0).unwrap();
     let mut ours = job.new_film();
     CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(job, 0..samples, &mut ours, &go_on).unwrap();

@@ -21,6 +21,9 @@ pub const PATIENCE: Duration = Duration::from_secs(60);
 type Pass =
     Box<dyn FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send>;
 
+type Prepare = Box<dyn FnMut(&AtomicBool) -> Result<(), RenderError> + Send>;
+type OnPass = Box<dyn FnMut(&Range<u64>, u32) + Send>;
+
 /// Adds to each pixel a number that depends only on pixel and sample.
 pub struct Fake {
     pub name: &'static str,
@@ -35,7 +38,7 @@ pub struct Fake {
     /// Whether later passes last until they are stopped and are then given up.
     pub waits_for_stop: bool,
     pub value: Box<dyn Fn(usize, u64) -> PixelSum + Send>,
-    pub prepares: Option<Box<dyn FnMut(&AtomicBool) -> Result<(), RenderError> + Send>>,
+    pub prepares: Option<Prepare>,
     /// What a pass does instead.
     pub pass: Option<Pass>,
     /// Passes whose samples are held back until they are collected, as by a GPU.
@@ -44,7 +47,7 @@ pub struct Fake {
     /// Collections that succeed before one loses the samples.
     pub good_collections: u32,
     /// Called on every pass that is held back with the number of collections that will still succeed.
-    pub on_pass: Box<dyn FnMut(&Range<u64>, u32) + Send>,
+    pub on_pass: OnPass,
 }
 
 impl Fake {

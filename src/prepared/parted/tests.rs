@@ -96,22 +96,6 @@ fn split_minimises_area_times_spheres() {
 }
 
 #[test]
-fn halving_uses_widest_key() {
-    let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
-    let spheres: Vec<Sphere> =
-        (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();
-    let mut part: Vec<u32> = (0..7).collect();
-    let left = part_in_the_middle(&Bounded::all(&spheres, &DVec3::ZERO), &mut part);
-    part[..left].sort_unstable();
-    assert_eq!((left, &part[..left]), (3, &[4, 5, 6][..]));
-    // Equal keys keep the scene's order.
-    let mut part: Vec<u32> = (0..4).rev().collect();
-    let left = part_in_the_middle(&Bounded::all(&[ball(0.0, 1.0); 4], &DVec3::ZERO), &mut part);
-    part[..left].sort_unstable();
-    assert_eq!(part[..left], [0, 1]);
-}
-
-#[test]
 fn tree_holds_every_sphere_once() {
     let spheres: Vec<Sphere> = row(100).chain(shells(30)).collect();
     let bounded = Bounded::all(&spheres, &DVec3::ZERO);
