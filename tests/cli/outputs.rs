@@ -111,3 +111,15 @@ fn json_has_the_figures() {
     assert!(serde_json::from_str::<Value>(&out).unwrap()["rmse_estimate"].is_null());
     assert!(summary.contains("three-spheres"), "the summary makes way for the JSON");
 }
+
+/// Its loader takes time, and some of its libraries print messages of their own.
+#[test]
+fn only_what_may_need_a_gpu_looks_for_one() {
+    let directory = temp();
+    let picture = ["--batch", "--device", "cpu", "--size", "16x9", "--samples", "1", "--out", "a.png"];
+    for arguments in [&picture[..], &["info", "a.png"], &["compare", "a.png", "a.png"]] {
+        succeeds(directory.path(), &[arguments, &["--log", "run.log"]].concat());
+        let log = std::fs::read_to_string(directory.path().join("run.log")).unwrap();
+        assert!(!log.contains("found "), "{arguments:?}: {log}");
+    }
+}

@@ -62,20 +62,19 @@ fn baseline_is_skipped_without_compiler() {
 }
 
 #[test]
-fn specialised_and_general_kernels_agree() {
+fn features_compare_own_kernel_with_general_one() {
     let directory = tempfile::tempdir().unwrap();
     let flags = "bench --features --runs 2 --size 32x18 --run-limit 0.002 --json - --scene three-spheres --scene book";
     let report = json(directory.path(), &flags.split(' ').collect::<Vec<_>>());
-    let rows = report["features"][0]["rows"].as_array().unwrap();
-    assert_eq!(rows.iter().map(|row| &row["name"]).collect::<Vec<_>>(), ["three-spheres", "book"]);
-    for row in rows {
-        assert_eq!(row["same_bits"], true, "{row}");
-        for spread in ["own_paths_per_second", "general_paths_per_second", "gain"] {
-            check_spread(&row[spread]);
-        }
-    }
-    let has_lens = |row: &Value, key: &str| row[key].to_string().contains("lens");
-    assert!(has_lens(&rows[0], "left_out") && has_lens(&rows[1], "kernel"), "{report}");
+    let left_out = [0, 1].map(|scene| {
+        let rows = report["scenes"][scene]["rows"].as_array().unwrap();
+        assert_eq!([&rows[0]["kind"], &rows[1]["kind"]], ["general", "packets"]);
+        let median = |row: &Value| number(&row["paths_per_second"], "median");
+        let gain = median(&rows[1]) / median(&rows[0]);
+        assert!((number(&rows[1], "ratio_to_baseline") / gain - 1.0).abs() < 1e-9);
+        rows[1]["left_out"].to_string()
+    });
+    assert!(left_out[0].contains("lens") && !left_out[1].contains("lens"), "{left_out:?}");
 }
 
 #[test]

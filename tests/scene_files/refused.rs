@@ -56,7 +56,7 @@ fn bad_spheres_materials_and_cameras_are_refused() {
             MATERIAL,
             "material = { kind = \"metal\", albedo = [1, 2, 1] }",
             8,
-            &["spheres[0].material.albedo is [1, 2, 1]"],
+            &["spheres[0].material.albedo is [1.0, 2.0, 1.0]"],
         ),
         (
             MATERIAL,
@@ -64,9 +64,9 @@ fn bad_spheres_materials_and_cameras_are_refused() {
             8,
             &["spheres[0].material.refraction_index is 0"],
         ),
-        (VFOV, "vfov_degrees = 180", 1, &["vfov_degrees is 180, but must be within 0.01 and 179"]),
+        (VFOV, "vfov_degrees = 180", 1, &["vfov_degrees is 180.0, but must be within 0.01 and 179"]),
         (VFOV, "", 1, &["missing key `vfov_degrees`"]),
-        (VFOV, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0, 0, 1], which is parallel"]),
+        (VFOV, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0.0, 0.0, 1.0], which is parallel"]),
         (VFOV, "vfov_degrees = 40\nroll = 3", 5, &["unknown key `roll`"]),
         ("look_at = [0, 0, 0]", "look_at = [0, 0, 0", 4, &[]),
     ] {
@@ -94,7 +94,7 @@ fn bad_settings_are_refused() {
             "sky",
             "top = [0, 0, 101]",
             5,
-            "sky.top is [0, 0, 101], but each component must be within 0 and 100",
+            "sky.top is [0.0, 0.0, 101.0], but each component must be within 0 and 100",
         ),
         ("sky", "bottom = [nan, 0, 0]", 5, "sky.bottom.x is NaN"),
         ("lights", "", 5, "lights"),
@@ -113,7 +113,7 @@ fn files_that_cannot_be_read_are_refused() {
     assert!(message(folder.path()).contains("is a directory"), "{}", message(folder.path()));
     let huge = at("huge.toml");
     std::fs::File::create(&huge).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
-    assert!(message(&huge).contains("has 1099.5 GB, but a scene file of more than"), "{}", message(&huge));
+    assert!(message(&huge).contains("has 1.10 TB, but a scene file of more than"), "{}", message(&huge));
 
     let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (bytes, part) in
