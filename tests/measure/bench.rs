@@ -83,7 +83,7 @@ fn bad_flags_fail_early() {
     for (flags, part) in [
         (["--scene", "no-such"], "no-such"),
         (["--isa", "mmx"], "sse4.2"),
-        (["--runs", "0"], "from 1 to 1000"),
+        (["--runs", "0"], "1..=1000"),
         (["--json", "no/such/place.json"], "no/such"),
     ] {
         refused(directory.path(), &[&["bench"], &flags[..]].concat(), &[part]);
