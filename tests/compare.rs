@@ -1,28 +1,24 @@
 //! `weekender compare`: equal pictures, different pictures, and pictures that cannot be compared.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+mod program_common;
+
+use program_common::{outcome, succeeds, weekender};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-fn weekender(arguments: &[&str], directory: &Path) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    let Output { status, stdout, stderr } =
-        command.args(arguments).current_dir(directory).stdin(Stdio::null()).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (status.code().unwrap(), text(stdout), text(stderr))
-}
-
+/// Exit code, standard output and messages.
 fn compare(arguments: &[&str], directory: &Path) -> (i32, String, String) {
-    weekender(&[&["compare"], arguments].concat(), directory)
+    let output = weekender(directory, &[&["compare"], arguments].concat()).output().unwrap();
+    let (code, text, errors) = outcome(&output);
+    (code.unwrap(), text, errors)
 }
 
 fn render(directory: &Path, out: &str, flags: &[&str]) {
     let usual = ["--batch", "--device", "cpu", "--progress", "off", "--out", out];
     let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "160x90"] };
-    let (code, _, errors) = weekender(&[&usual[..], size, flags].concat(), directory);
-    assert_eq!(code, 0, "{errors}");
+    succeeds(directory, &[&usual[..], size, flags].concat());
 }
 
 fn json(arguments: &[&str], directory: &Path) -> (i32, serde_json::Value) {
@@ -46,8 +42,7 @@ fn noise_is_equal_but_larger_sphere_differs() {
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("0.00 x noise"), "{text}");
 
     // A ball with a radius larger by a hundredth.
-    let (code, _, errors) = weekender(&["--save-scene", "scene.toml", "--size", "160x90"], at);
-    assert_eq!(code, 0, "{errors}");
+    succeeds(at, &["--save-scene", "scene.toml", "--size", "160x90"]);
     let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
     let larger = scene.replacen("radius = 0.5", "radius = 0.505", 1);
     assert_ne!(scene, larger, "{scene}");
@@ -73,20 +68,6 @@ fn pictures_compare_with_films() {
     plain.save(at.join("plain.png")).unwrap();
     assert_eq!(compare(&["plain.png", "film.exr"], at).0, 0);
     assert_eq!(compare(&["plain.png", "film.exr", "--encoding", "linear"], at).0, 1);
-
-    let mut pfm = b"PF\n160 90\n-1.0\n".to_vec();
-    for row in (0..90).rev() {
-        for pixel in 0..160 {
-            let linear = plain.get_pixel(pixel, row).0.map(|byte| ((f32::from(byte) + 0.5) / 256.0).powi(2));
-            pfm.extend(linear.iter().flat_map(|x| x.to_le_bytes()));
-        }
-    }
-    fs::write(at.join("turned.pfm"), &pfm).unwrap();
-    let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
-    assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
-    // A float picture's quantisation is unknown, so only blocks in the smooth sky may show a difference.
-    let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
-    assert!(text.contains("floats") && text.contains("verdict"), "{text}");
 }
 
 #[test]
@@ -168,10 +149,6 @@ fn incomparable_pictures_exit_with_2() {
         (&["a.exr", "small.exr"], &["160x90", "80x45", "the same size"]),
     ];
     for (arguments, parts) in cases {
-        let (code, text, message) = compare(arguments, at);
-        assert_eq!((code, text.as_str()), (2, ""), "{arguments:?}: {message}");
-        for part in parts {
-            assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
-        }
+        program_common::refused(at, &[&["compare"], arguments].concat(), parts);
     }
 }

@@ -4,12 +4,12 @@
 
 mod program_common;
 
-use program_common::{text, weekender};
+use program_common::{ends, film, json_file, outcome, weekender};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use weekender::denoise::{self, Denoised};
-use weekender::film::{Film, checkpoint, key};
+use weekender::film::{Film, key};
 use weekender::job::output::read_description;
 use weekender::job::recipe::Recipe;
 use weekender::{CpuOptions, CpuRenderer, Renderer};
@@ -107,12 +107,9 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
     let at = |name: &str| directory.path().join(name);
     let run = |flags: &str| {
         let flags: Vec<&str> = flags.split(' ').collect();
-        let output = weekender(directory.path(), &[&["--batch", "--device", "cpu"], &flags[..]].concat());
-        let output = { output }.output().unwrap();
-        assert!(output.status.success(), "{flags:?}: {}", text(&output.stderr));
-        (text(&output.stdout), text(&output.stderr))
+        ends(directory.path(), 0, &[&["--batch", "--device", "cpu"], &flags[..]].concat())
     };
-    let film = |name: &str| checkpoint::load(&at(name)).unwrap().film;
+    let film = |name: &str| film(&at(name));
     run("--size 64x36 --samples 16 --out plain.png --checkpoint plain.exr");
     let (figures, _) = run("--size 64x36 --samples 16 --out quiet.png --checkpoint film.exr --denoise");
     assert!(figures.contains("denoised "), "{figures}");
@@ -120,14 +117,14 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
     let said = |name: &str| read_description(&at(name)).unwrap().get(key::DENOISED).map(str::to_owned);
     assert_eq!(said("plain.png"), None);
     assert!(said("quiet.png").unwrap().contains("RMSE"));
-    let info = weekender(directory.path(), &["info", "quiet.png"]).output().unwrap();
-    assert!(text(&info.stdout).contains("denoised"), "{}", text(&info.stdout));
+    assert!(ends(directory.path(), 0, &["info", "quiet.png"]).0.contains("denoised"));
     assert_ne!(std::fs::read(at("quiet.png")).unwrap(), std::fs::read(at("plain.png")).unwrap());
 
     // It is never taken for a picture whose only error is noise.
     let compare = |other: &str| {
-        let output = weekender(directory.path(), &["compare", "plain.exr", other]).output().unwrap();
-        text(&output.stdout) + &text(&output.stderr)
+        let (_, out, message) =
+            outcome(&weekender(directory.path(), &["compare", "plain.exr", other]).output().unwrap());
+        out + &message
     };
     assert!(compare("quiet.png").contains("denoised"), "{}", compare("quiet.png"));
     run("--size 64x36 --samples 16 --out layer.exr --denoise");
@@ -147,8 +144,7 @@ fn the_program_writes_denoised_pictures_and_leaves_the_film_alone() {
     // Denoised, the error is small enough with fewer samples.
     let samples = |flags: &str| {
         run(&format!("--size 240x135 --noise-target 0.003 --json figures.json --out a.png {flags}"));
-        let json: serde_json::Value =
-            serde_json::from_slice(&std::fs::read(at("figures.json")).unwrap()).unwrap();
+        let json = json_file(&at("figures.json"));
         (json["samples_per_pixel"].as_u64().unwrap(), json["denoised_rmse_estimate"].as_f64())
     };
     let ((raw, none), (denoised, error)) = (samples("--seed 1"), samples("--seed 1 --denoise"));

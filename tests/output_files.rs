@@ -4,7 +4,7 @@
 
 mod program_common;
 
-use image::{ImageFormat, ImageReader};
+use image::ImageFormat;
 use program_common::names;
 use std::fs;
 use std::io;
@@ -53,15 +53,12 @@ fn the_format_follows_the_extension() {
 #[test]
 fn eight_bit_pictures_are_read_back_by_another_reader() {
     let directory = tempfile::tempdir().unwrap();
-    for (name, format) in [("a.png", ImageFormat::Png), ("a.ppm", ImageFormat::Pnm)] {
+    for path in ["a.png", "a.ppm"].map(|name| directory.path().join(name)) {
         for transfer in [Transfer::Gamma2, Transfer::Linear, Transfer::LinearAboveGamma2] {
-            let path = directory.path().join(name);
             write_image(&path, &film(), transfer, &description()).unwrap();
-            let mut reader = ImageReader::open(&path).unwrap();
-            reader.set_format(format);
-            let image = reader.decode().unwrap();
+            let image = image::open(&path).unwrap().into_rgb8();
             assert_eq!((image.width(), image.height()), (13, 7));
-            assert_eq!(image.into_rgb8().into_raw(), film().to_rgb8(transfer), "{name} {transfer:?}");
+            assert_eq!(image.into_raw(), film().to_rgb8(transfer), "{path:?} {transfer:?}");
         }
     }
 }
@@ -90,31 +87,29 @@ fn an_exr_is_the_linear_picture_and_the_film() {
 #[test]
 fn descriptions_are_read_back() {
     let directory = tempfile::tempdir().unwrap();
-    let mut foreign = description();
-    foreign.set("Place", "東京 or Köln");
-    let mut latin = description();
-    latin.set("Place", "Köln");
-    let mut mixed = Description::new("# a recipe");
-    mixed.set("Place", "東京 or Köln");
-    let large_recipe: String =
-        (0..100_000).map(|i| format!("center = [{i}, {}, 0]\n", i * 7919 % 1013)).collect();
-    let large = Description::new(&large_recipe);
-    for (case, description) in
-        [description(), foreign, latin, mixed, large, Description::new("")].iter().enumerate()
+    let with_place = |mut description: Description, place: &str| {
+        description.set("Place", place);
+        description
+    };
+    let large: String = (0..100_000).map(|i| format!("center = [{i}, {}, 0]\n", i * 7919 % 1013)).collect();
+    for (case, description) in [
+        description(),
+        with_place(description(), "東京 or Köln"),
+        with_place(description(), "Köln"),
+        with_place(Description::new("# a recipe"), "東京 or Köln"),
+        Description::new(&large),
+        Description::new(""),
+    ]
+    .iter()
+    .enumerate()
     {
         for format in [OutputFormat::Png, OutputFormat::Exr] {
             let path = directory.path().join(format!("a{}", format.ending()));
             write_image(&path, &film(), Transfer::Gamma2, description).unwrap();
-            let read = read_description(&path).unwrap();
-            assert!(
-                read == *description,
-                "case {case}, {format:?}: {:?}",
-                read.entries().collect::<Vec<_>>()
-            );
             // The name of the file does not matter.
             let renamed = directory.path().join("renamed");
             fs::rename(&path, &renamed).unwrap();
-            assert!(read_description(&renamed).unwrap() == *description);
+            assert!(read_description(&renamed).unwrap() == *description, "case {case}, {format:?}");
         }
     }
 }

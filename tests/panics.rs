@@ -1,20 +1,26 @@
 //! A panic in the tracer: the picture is complete, with a warning. A panic of the program: the samples are kept,
 //! and a report says what happened.
-#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+mod program_common;
+
+use program_common::{film, json_file, outcome};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use weekender::film::checkpoint;
+use std::process::Command;
 use weekender::system::journal;
 
-/// Runs the program in `directory`, which is also the place for temporary files.
-fn weekender(directory: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.current_dir(directory).args(arguments).stdin(Stdio::null());
-    command.env("TMPDIR", directory).env("XDG_STATE_HOME", directory).env_remove("RUST_LOG");
-    command.output().unwrap()
+/// The program in `directory`, which is also the place for temporary files.
+fn weekender(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command =
+        program_common::weekender(directory, &[&["--batch", "--device", "cpu"], arguments].concat());
+    command.env("TMPDIR", directory).env("XDG_STATE_HOME", directory);
+    command
 }
+
+/// A run that crashes after 8 samples, and then writes its picture.
+const CRASH: [&str; 8] =
+    ["--size", "48x27", "--samples", "4294967296", "--simulate-crash", "8", "--out", "kept.png"];
 
 fn reports(directory: &Path) -> Vec<PathBuf> {
     let files = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path());
@@ -24,31 +30,25 @@ fn reports(directory: &Path) -> Vec<PathBuf> {
 #[test]
 fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
     let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
     for (tiles, level) in [("0", "auto"), ("7", "auto"), ("20", "auto"), ("20", "portable")] {
         // On two threads a pass has 12 tiles. There are two passes at least: 96 is no power of two.
-        let flags = ["--batch", "--device", "cpu", "--threads", "2", "--isa", level];
-        let flags = [&flags[..], &["--size", "100x70", "--samples", "96"]].concat();
+        let flags = ["--threads", "2", "--isa", level, "--size", "100x70", "--samples", "96"];
         let files = ["--simulate-panic", tiles, "--out", "broken.exr", "--json", "broken.json"];
-        let log = ["--log", "broken.log"];
-        let output = weekender(directory.path(), &[&flags[..], &files, &log].concat());
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{tiles}: {said}");
+        let arguments = [&flags[..], &files, &["--log", "broken.log"]].concat();
+        let (code, _, said) = outcome(&weekender(directory.path(), &arguments).output().unwrap());
+        assert_eq!(code, Some(0), "{tiles}: {said}");
         assert!(said.contains("panicked") && said.contains("continues the same picture"), "{tiles}: {said}");
         // The render goes on, so a line in the log is enough.
         assert!(reports(directory.path()).is_empty(), "{tiles}: {said}");
-        let log = fs::read_to_string(directory.path().join("broken.log")).unwrap();
+        let log = fs::read_to_string(at("broken.log")).unwrap();
         assert!(log.contains("ERROR") && log.contains("internal error in thread trace"), "{log}");
-        let film = checkpoint::load(&directory.path().join("broken.exr")).unwrap().film;
+        let film = film(&at("broken.exr"));
         assert_eq!((film.samples().to_string().as_str(), film.rejected()), ("0..96", 0), "{tiles}");
-        let json = std::fs::read_to_string(directory.path().join("broken.json")).unwrap();
-        let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let report = json_file(&at("broken.json"));
         assert_eq!(report["warnings"].as_array().unwrap().len(), 1, "{report}");
-        let added: u64 = report["backends"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|part| part["samples_per_pixel"].as_u64().unwrap())
-            .sum();
+        let parts = report["backends"].as_array().unwrap().iter();
+        let added: u64 = parts.map(|part| part["samples_per_pixel"].as_u64().unwrap()).sum();
         assert_eq!(added, 96, "{report}");
     }
 }
@@ -56,14 +56,13 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
 #[test]
 fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
     let directory = tempfile::tempdir().unwrap();
-    let flags = ["--batch", "--device", "cpu", "--size", "48x27", "--samples", "4294967296"];
-    let crash = ["--simulate-crash", "8", "--out", "kept.png", "--checkpoint", "kept.exr", "--seed", "77"];
-    let output = weekender(directory.path(), &[&flags[..], &crash].concat());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(3), "{said}");
+    let more = ["--checkpoint", "kept.exr", "--seed", "77"];
+    let mut command = weekender(directory.path(), &[&CRASH[..], &more].concat());
+    let (code, _, said) = outcome(&command.output().unwrap());
+    assert_eq!(code, Some(3), "{said}");
     assert!(said.contains("injected fault") && said.contains("kept.exr"), "{said}");
-    let film = checkpoint::load(&directory.path().join("kept.exr")).unwrap().film;
-    assert!(film.sample_count() >= 8 && directory.path().join("kept.png").exists());
+    assert!(film(&directory.path().join("kept.exr")).sample_count() >= 8);
+    assert!(directory.path().join("kept.png").exists());
 
     let reports = reports(directory.path());
     let [path] = reports.as_slice() else { panic!("{reports:?}: {said}") };
@@ -76,23 +75,14 @@ fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
     }
 }
 
-/// A run in `directory` that crashes after 8 samples, and then writes its picture to `out`.
-fn crash(directory: &Path, out: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.current_dir(directory).env("TMPDIR", directory).env("XDG_STATE_HOME", directory);
-    command.args(["--batch", "--device", "cpu", "--size", "48x27", "--samples", "4294967296"]);
-    command.args(["--simulate-crash", "8", "--out"]).arg(out).stdin(Stdio::null());
-    command
-}
-
 #[test]
 fn a_report_has_other_places_if_there_is_none_for_temporary_files() {
     let directory = tempfile::tempdir().unwrap();
-    let mut command = crash(directory.path(), Path::new("kept.png"));
-    let output = command.env("TMPDIR", "/dev/null").env("XDG_STATE_HOME", "/dev/null").output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
+    let mut command = weekender(directory.path(), &CRASH);
+    command.env("TMPDIR", "/dev/null").env("XDG_STATE_HOME", "/dev/null");
+    let (code, _, said) = outcome(&command.output().unwrap());
     // The current directory is left.
-    assert_eq!((output.status.code(), reports(directory.path()).len()), (Some(3), 1), "{said}");
+    assert_eq!((code, reports(directory.path()).len()), (Some(3), 1), "{said}");
     assert!(directory.path().join("kept.png").exists(), "{said}");
 }
 
@@ -107,11 +97,9 @@ fn a_panic_outside_of_a_render_leaves_a_report_too() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "a_panic_outside_of_a_render_leaves_a_report_too"]).env(CHILD, "1");
-    let output = command.current_dir(directory.path()).env("TMPDIR", directory.path()).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && said.contains("a report is in "), "{said}");
-    let reports = reports(directory.path());
-    let [path] = reports.as_slice() else { panic!("{reports:?}: {said}") };
-    let report = fs::read_to_string(path).unwrap();
+    command.current_dir(directory.path()).env("TMPDIR", directory.path());
+    let (code, _, said) = outcome(&command.output().unwrap());
+    assert!(code == Some(0) && said.contains("a report is in "), "{said}");
+    let report = fs::read_to_string(&reports(directory.path())[0]).unwrap();
     assert!(report.contains("weekender of a test") && report.contains("outside of a render"), "{report}");
 }

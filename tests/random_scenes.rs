@@ -136,16 +136,18 @@ fn recipe() -> impl Strategy<Value = Recipe> {
     })
 }
 
-/// The scene as it is, and with changes after which the picture must be the same; `None` if a change does not apply.
-fn changes(recipe: &Recipe) -> [(&'static str, Option<[Recipe; 2]>); 4] {
+/// The scene as it is, and with changes after which the picture must be the same; those that apply.
+fn changes(recipe: &Recipe) -> Vec<(&'static str, [Recipe; 2])> {
     let extent = recipe.camera.look_from.distance(recipe.camera.look_at);
     let with = |other: Recipe| Some([recipe.clone(), other]);
-    [
+    let changes = [
         ("40 distant spheres, and so a hierarchy", with(with_far_spheres(recipe, extent))),
         ("four times as large", with(moved(recipe, 4.0, DVec3::ZERO))),
         ("copies removed", without_copies(recipe).and_then(with)),
         ("moved", there_and_back(recipe, extent)),
-    ]
+    ];
+    let is_valid = |pair: &[Recipe; 2]| pair.iter().all(|one| one.job().is_ok());
+    changes.into_iter().filter_map(|(change, pair)| Some((change, pair.filter(is_valid)?))).collect()
 }
 
 fn without_copies(recipe: &Recipe) -> Option<Recipe> {
@@ -173,9 +175,6 @@ fn there_and_back(recipe: &Recipe, extent: f64) -> Option<[Recipe; 2]> {
     is_clear.then(|| [moved(&there, 1.0, -way), there])
 }
 
-/// Traces a recipe and what must be the same.
-type Trace<'a> = dyn Fn(&Recipe, &mut Checker) -> Result<[Traced; 2], String> + 'a;
-
 struct Checker {
     single: Vec<Candidate>,
     double: Candidate,
@@ -202,25 +201,12 @@ impl Checker {
         }
         for index in 0..self.single.len() {
             let name = self.single[index].name.clone();
-            let precise = |recipe: &Recipe, checker: &mut Checker| -> Result<[Traced; 2], String> {
-                let exact = traced(&mut checker.double, recipe)?;
-                Ok([traced(&mut checker.single[index], recipe)?, Traced { warnings: Vec::new(), ..exact }])
-            };
-            self.compare(recipe, &precise).map_err(|reason| format!("{name}, f32 and f64: {reason}"))?;
+            let itself = [recipe.clone(), recipe.clone()];
+            let precise = self.compare(index, true, &itself);
+            precise.map_err(|reason| format!("{name}, f32 and f64: {reason}"))?;
             for (change, pair) in changes(recipe) {
-                let Some([one, other]) = pair.filter(|pair| pair.iter().all(|one| one.job().is_ok())) else {
-                    continue;
-                };
-                let changed = |one: &Recipe, checker: &mut Checker| -> Result<[Traced; 2], String> {
-                    let other = Recipe {
-                        samples_per_pixel: one.samples_per_pixel,
-                        settings: one.settings,
-                        ..other.clone()
-                    };
-                    let tracer = &mut checker.single[index];
-                    Ok([traced(tracer, one)?, traced(tracer, &other)?])
-                };
-                self.compare(&one, &changed).map_err(|reason| format!("{name}, {change}: {reason}"))?;
+                let changed = self.compare(index, false, &pair);
+                changed.map_err(|reason| format!("{name}, {change}: {reason}"))?;
             }
             let film = traced(&mut self.single[index], recipe)?.film;
             let most = recipe.scene.sky.bottom.max(recipe.scene.sky.top).to_array();
@@ -234,17 +220,29 @@ impl Checker {
         Ok(())
     }
 
-    /// Two pictures must be the same, if not with few samples then with many and one of two seeds.
-    fn compare(&mut self, recipe: &Recipe, trace: &Trace<'_>) -> Result<(), String> {
-        if same(&trace(recipe, self)?, 0.5, 1e-4).is_ok() {
+    /// Two pictures must be the same, if not with few samples then with many and one of two seeds. The second is traced in
+    /// double precision if `is_precise`.
+    fn compare(&mut self, index: usize, is_precise: bool, pair: &[Recipe; 2]) -> Result<(), String> {
+        let mut trace = |factor: u64, more_seed: u32| -> Result<[Traced; 2], String> {
+            let [one, other] = pair.clone().map(|mut recipe| {
+                recipe.samples_per_pixel *= factor;
+                recipe.settings.seed = recipe.settings.seed.wrapping_add(more_seed);
+                recipe
+            });
+            let single = &mut self.single[index];
+            let one = traced(single, &one)?;
+            if is_precise {
+                let exact = traced(&mut self.double, &other)?;
+                return Ok([one, Traced { warnings: Vec::new(), ..exact }]);
+            }
+            Ok([one, traced(single, &other)?])
+        };
+        if same(&trace(1, 0)?, 0.5, 1e-4).is_ok() {
             return Ok(());
         }
-        let mut more = recipe.clone();
-        more.samples_per_pixel *= SECOND_LOOK;
         // Two independent pictures differ by 1.4 times their noise, which is only known to within a tenth.
-        let first = same(&trace(&more, self)?, 1.6, 3e-4);
-        more.settings.seed = more.settings.seed.wrapping_add(1);
-        first.or_else(|_| same(&trace(&more, self)?, 1.6, 3e-4))
+        let first = same(&trace(SECOND_LOOK, 0)?, 1.6, 3e-4);
+        first.or_else(|_| same(&trace(SECOND_LOOK, 1)?, 1.6, 3e-4))
     }
 }
 

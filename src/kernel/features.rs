@@ -314,29 +314,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_follow_from_features() {
-        let none = Features {
-            lambertian: false,
-            metal: false,
-            fuzz: false,
-            glass: false,
-            lens: false,
-            two_root: false,
-            anchored: false,
-            eye_on_surface: false,
-            cavity: false,
-            ..Features::default()
-        };
-        assert_eq!(none.parts(), parts::NONE);
-        assert_eq!(Features { metal: true, ..none }.parts(), parts::NONE);
-        assert_eq!(Features { antialiasing: false, ..none }.parts(), parts::RULES);
-        assert_eq!(Features { two_root: true, ..none }.parts(), parts::GLASS);
-        assert_eq!(Features { specks: true, lens: true, ..none }.parts(), parts::EXTREMES | parts::LENS);
-        assert_eq!(Features { surface: SurfaceRule::Book, ..none }.parts(), parts::RULES);
-        assert_eq!(Features { shading: Shading::Normals, hierarchy: true, ..none }.parts(), 8 | 16);
-    }
-
-    #[test]
     fn general_kernel_keeps_sample_features() {
         let own = Features { specks: true, surface: SurfaceRule::Book, ..Features::default() };
         let special = Features { lambertian: false, few_spheres: true, opaque_count: 3, aside: false, ..own };

@@ -103,21 +103,3 @@ pub fn colour_at(place: f64) -> [u8; 3] {
     let channel = |i: usize| COLOURS[from][i] * (1.0 - share) + COLOURS[from + 1][i] * share;
     [0, 1, 2].map(|i| channel(i).round() as u8)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SCALES: [HeatScale; 3] = [HeatScale::ERROR, HeatScale::RAYS, HeatScale::OCCUPANCY];
-
-    #[test]
-    fn marks_are_evenly_spaced_from_end_to_end() {
-        for scale in SCALES.into_iter().chain([HeatScale::luminance([-3.0, 2.0])]) {
-            let marks = scale.marks();
-            let last = marks.len() - 1;
-            for (index, (value, _)) in marks.iter().enumerate() {
-                assert!((scale.place(*value) - index as f64 / last as f64).abs() < 1e-12, "{value}");
-            }
-        }
-    }
-}

@@ -328,7 +328,7 @@ mod tests {
         assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.1 * unit)), Some([10.0, 10.0]));
     }
 
-    /// Shells around one place, and coated balls that overlap.
+    /// Shells around one place, and coated balls that overlap, in more cells than one may have.
     #[test]
     fn layers_in_a_crowd_are_found() {
         let random =

@@ -224,24 +224,4 @@ mod tests {
         order.sort_unstable();
         assert!(order.into_iter().eq(0..64), "each sphere is in it once");
     }
-
-    #[test]
-    fn layout_is_depth_first() {
-        let spheres = crate::scene::builtin::field(3000).0.spheres;
-        let hierarchy = Hierarchy::<f32>::build(&spheres, DVec3::ZERO, Effort::Quick);
-        let is_leaf = |node: &Node<f32>| node.count & COUNT_MASK > 0;
-        let (mut open, mut next_pair, mut next_sphere) = (vec![hierarchy.nodes[0].first], 1, 0);
-        while let Some(first) = open.pop() {
-            assert_eq!(first, next_pair, "children in the order of their visits");
-            next_pair += 2;
-            let pair = &hierarchy.nodes[first as usize..first as usize + 2];
-            open.extend(pair.iter().filter(|node| !is_leaf(node)).map(|node| node.first));
-        }
-        assert_eq!(next_pair as usize, hierarchy.nodes.len());
-        for node in hierarchy.nodes.iter().filter(|node| is_leaf(node)) {
-            assert_eq!(node.first, next_sphere, "leaves as well");
-            next_sphere += node.count & COUNT_MASK;
-        }
-        assert_eq!(next_sphere as usize, spheres.len());
-    }
 }

@@ -177,50 +177,6 @@ fn scene_following_camera_is_valid() {
 }
 
 #[test]
-fn damaged_scenes_are_refused() {
-    type Damage = fn(&mut PreparedScene<f32>);
-    fn tree(prepared: &mut PreparedScene<f32>) -> &mut Hierarchy<f32> {
-        prepared.hierarchy.as_mut().expect("a hierarchy")
-    }
-    fn leaf(prepared: &mut PreparedScene<f32>) -> &mut Node<f32> {
-        let nodes = &mut tree(prepared).nodes;
-        nodes.iter_mut().rfind(|node| node.count & COUNT_MASK > 0).expect("a leaf")
-    }
-    let of_lists: &[Damage] = &[
-        |prepared| prepared.records.truncate(1),
-        |prepared| prepared.scene_index.swap(0, 1),
-        |prepared| prepared.features.two_root = false,
-        |prepared| prepared.block_limit = 3,
-        |prepared| prepared.groups.two_root.reverse(),
-        |prepared| prepared.two_root[0][3] = -0.25,
-        |prepared| prepared.records.swap(0, 1),
-        |prepared| prepared.records[0].0[4] = f32::NAN,
-    ];
-    let of_trees: &[Damage] = &[
-        |prepared| tree(prepared).ranks[0] = tree(prepared).ranks[1],
-        |prepared| tree(prepared).ranks.swap(0, 1),
-        |prepared| prepared.two_root[0][3] *= -1.0,
-        |prepared| tree(prepared).nodes[0].first = 0,
-        |prepared| tree(prepared).nodes[0].first = 1 << 20,
-        |prepared| tree(prepared).nodes[0].low[0] += 0.5,
-        |prepared| leaf(prepared).high[1] = leaf(prepared).low[1],
-        |prepared| tree(prepared).extent = 1.0,
-        |prepared| leaf(prepared).count += 1000,
-        |prepared| leaf(prepared).count -= 1,
-        |prepared| prepared.anchored[0].anchor[0] += 1.0,
-        |prepared| prepared.anchored.clear(),
-    ];
-    for (job, damages) in [(job("three-spheres"), of_lists), (on_the_ground(), of_trees)] {
-        let whole = PreparedScene::<f32>::new(&job);
-        for (place, damage) in damages.iter().enumerate() {
-            let mut damaged = whole.clone();
-            damage(&mut damaged);
-            assert!(damaged.validate(&job).is_err(), "{place}");
-        }
-    }
-}
-
-#[test]
 fn block_sum_fits_32_bits() {
     let limit = |units: f64| block_limit(units / FIXED_POINT_SCALE);
     for power in 1..=7 {

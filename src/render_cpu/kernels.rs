@@ -161,15 +161,9 @@ mod tests {
         let needs = [OPAQUE, GLASS, parts::LENS, FINISHED, parts::RULES];
         for (isa, lanes, expected) in [
             (Isa::Portable, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
-            (Isa::Sse42, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
             (Isa::Sse42, 4, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
-            (Isa::Neon, 4, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
-            (Isa::Neon, 8, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
             (Isa::Sse42, 8, [GENERAL; 5]),
-            (Isa::Avx2, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
-            (Isa::Avx2, 4, [GENERAL; 5]),
-            (Isa::Avx2, 8, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
-            (Isa::Avx2, 16, [GENERAL; 5]),
+            (Isa::Neon, 8, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
             (Isa::Avx512, 8, [GENERAL; 5]),
             (Isa::Avx512, 16, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
         ] {

@@ -245,13 +245,10 @@ mod tests {
         // Tiles of 8 pixels in a picture of 20: three columns.
         let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
         let told = what_is_missing(&traced, 8, 20).expect("samples are missing");
-        assert_eq!(told, "of 9 blocks of samples in the tile at pixel (8, 8) 4 were finished");
+        assert!(told.contains("of 9 blocks") && told.contains("pixel (8, 8) 4"), "{told}");
         assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
         traced[2].panic = Some("a slip".to_owned());
         let told = what_is_missing(&traced, 8, 20).expect("a panic");
-        assert!(
-            told.starts_with("it panicked: a slip; of 9 blocks of samples in the tile at pixel (16, 0)"),
-            "{told}"
-        );
+        assert!(told.starts_with("it panicked: a slip; of 9") && told.contains("pixel (16, 0)"), "{told}");
     }
 }

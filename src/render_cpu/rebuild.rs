@@ -115,114 +115,84 @@ mod tests {
     const PASSES: std::ops::Range<u64> = 0..6;
 
     fn field(spheres: u32) -> RenderJob {
-        let mut recipe = Recipe::find(&format!("field:{spheres}")).expect("a field");
+        let mut recipe = Recipe::find(&format!("field:{spheres}")).unwrap();
         (recipe.settings.width, recipe.settings.height) = (20, 12);
-        recipe.job().expect("valid")
+        recipe.job().unwrap()
     }
 
-    fn renderer(threads: usize) -> CpuRenderer {
-        let options = CpuOptions { threads: Some(threads), ..CpuOptions::default() };
-        CpuRenderer::new(options).expect("available")
+    fn renderer(patience: u32) -> CpuRenderer {
+        let mut renderer =
+            CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).unwrap();
+        renderer.rebuild.patience = patience;
+        renderer
     }
 
-    fn pass(renderer: &mut CpuRenderer, job: &RenderJob, film: &mut Film, index: u64) {
-        renderer.accumulate(job, index..index + 1, film, &AtomicBool::new(false)).expect("traced");
-    }
-
-    /// The film of a renderer that keeps its first hierarchy.
-    fn expected(job: &RenderJob) -> Film {
-        let (mut renderer, mut film) = (renderer(2), job.new_film());
-        PASSES.for_each(|index| pass(&mut renderer, job, &mut film, index));
-        assert!(!renderer.rebuild.is_settled && renderer.rebuild.building.is_none(), "too early");
+    /// Renders some passes, each once the hierarchy in work is built.
+    fn render(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
+        let mut film = job.new_film();
+        for index in PASSES {
+            wait(&renderer.rebuild);
+            renderer.accumulate(job, index..index + 1, &mut film, &AtomicBool::new(false)).unwrap();
+        }
         film
     }
 
-    /// Waits until the hierarchy in work is built.
     fn wait(rebuild: &Rebuild) {
         while rebuild.building.as_ref().is_some_and(|(_, thread)| !thread.is_finished()) {
             std::thread::yield_now();
         }
     }
 
-    fn scene(renderer: &CpuRenderer) -> &PreparedScene<f32> {
-        match &renderer.prepared {
-            Some(Prepared::Single(broadcast, _)) => &broadcast.prepared,
-            _ => panic!("no scene is prepared"),
-        }
+    /// The film of a renderer that keeps its first hierarchy, and the hierarchy's nodes.
+    fn expected(job: &RenderJob) -> (Film, usize) {
+        let mut renderer = renderer(PATIENCE);
+        let film = render(&mut renderer, job);
+        assert!(!renderer.rebuild.is_settled && renderer.rebuild.building.is_none(), "too early");
+        let nodes = nodes(&renderer);
+        (film, nodes)
     }
 
     fn nodes(renderer: &CpuRenderer) -> usize {
-        scene(renderer).hierarchy.as_ref().map_or(0, |hierarchy| hierarchy.nodes.len())
+        let Some(Prepared::Single(scene, _)) = &renderer.prepared else { panic!("no scene is prepared") };
+        scene.prepared.hierarchy.as_ref().map_or(0, |hierarchy| hierarchy.nodes.len())
     }
 
     #[test]
     fn a_long_render_gets_a_better_hierarchy_and_the_same_film() {
         let job = field(21_000);
+        let (film, first) = expected(&job);
+        let mut renderer = renderer(0);
+        assert!(render(&mut renderer, &job) == film);
+        let better = nodes(&renderer);
+        assert!(better != first && renderer.rebuild.is_settled && renderer.rebuild.building.is_none());
+        // It outlives the move of a camera.
         let mut moved = *job.camera();
         moved.look_from += DVec3::new(0.5, 0.25, -1.0);
-        let moved = job.seen_by(moved, *job.settings()).expect("valid");
-        let mut renderer = renderer(2);
-        renderer.rebuild.patience = 0;
-        let mut film = job.new_film();
-        pass(&mut renderer, &job, &mut film, 0);
-        assert!(renderer.rebuild.building.is_some(), "it has begun");
-        let first = nodes(&renderer);
-        wait(&renderer.rebuild);
-        assert_eq!(nodes(&renderer), first, "it is taken between passes");
-        PASSES.skip(1).for_each(|index| pass(&mut renderer, &job, &mut film, index));
-        assert_ne!(nodes(&renderer), first);
-        assert!(renderer.rebuild.is_settled && renderer.rebuild.building.is_none(), "once is enough");
-        assert!(film == expected(&job));
-        // It outlives the move of a camera.
-        let (better, mut film) = (nodes(&renderer), moved.new_film());
-        PASSES.for_each(|index| pass(&mut renderer, &moved, &mut film, index));
+        let moved = job.seen_by(moved, *job.settings()).unwrap();
+        assert!(render(&mut renderer, &moved) == expected(&moved).0);
         assert_eq!(nodes(&renderer), better);
-        assert!(film == expected(&moved));
     }
 
     #[test]
     fn a_hierarchy_of_another_scene_is_dropped() {
         let (job, other) = (field(21_000), field(22_000));
-        let mut renderer = renderer(2);
-        renderer.rebuild.patience = 0;
-        pass(&mut renderer, &job, &mut job.new_film(), 0);
-        wait(&renderer.rebuild);
-        let mut film = other.new_film();
-        pass(&mut renderer, &other, &mut film, 0);
-        assert_eq!(scene(&renderer).scene_index.len(), other.scene().spheres.len());
-        assert!(renderer.rebuild.building.is_some(), "that of the other scene has begun");
-        wait(&renderer.rebuild);
-        PASSES.skip(1).for_each(|index| pass(&mut renderer, &other, &mut film, index));
-        assert!(film == expected(&other));
+        let mut renderer = renderer(0);
+        let never = AtomicBool::new(false);
+        renderer.accumulate(&job, 0..1, &mut job.new_film(), &never).unwrap();
+        assert!(renderer.rebuild.building.is_some(), "it has begun");
+        assert!(render(&mut renderer, &other) == expected(&other).0);
     }
 
     #[test]
     fn a_builder_that_panics_is_not_started_again() {
         let job = field(21_000);
-        let mut renderer = renderer(2);
-        renderer.rebuild.patience = 0;
-        let mut film = job.new_film();
-        pass(&mut renderer, &job, &mut film, 0);
-        let first = nodes(&renderer);
-        wait(&renderer.rebuild);
+        let mut renderer = renderer(0);
+        renderer.prepare(&job, &AtomicBool::new(false)).unwrap();
         let panics = std::thread::spawn(|| -> PreparedScene<f32> { panic!("injected fault") });
         renderer.rebuild.building = Some((job.clone(), panics));
-        wait(&renderer.rebuild);
-        PASSES.skip(1).for_each(|index| pass(&mut renderer, &job, &mut film, index));
+        let (film, first) = expected(&job);
+        assert!(render(&mut renderer, &job) == film && nodes(&renderer) == first);
         assert!(renderer.rebuild.is_settled && renderer.rebuild.building.is_none());
-        assert_eq!(nodes(&renderer), first);
-        assert!(film == expected(&job));
-    }
-
-    #[test]
-    fn nothing_is_rebuilt_that_cannot_get_better() {
-        for (job, threads) in [(field(5_000), 2), (field(21_000), 1)] {
-            let mut renderer = renderer(threads);
-            renderer.rebuild.patience = 0;
-            let mut film = job.new_film();
-            PASSES.for_each(|index| pass(&mut renderer, &job, &mut film, index));
-            assert!(renderer.rebuild.building.is_none());
-        }
     }
 
     #[test]
@@ -230,38 +200,16 @@ mod tests {
         let job = field(60);
         let prepared = PreparedScene::<f32>::new(&job);
         let second = Duration::from_secs(1);
-        let wanted = || Rebuild { first: second, is_settled: false, ..Rebuild::new() };
-        let mut rebuild = wanted();
-        rebuild.note_pass(1000 * second, 1, &prepared, &job, false);
-        assert!(rebuild.building.is_none(), "a single thread is left alone");
-        // Two threads: 39 seconds, then one more.
-        let mut rebuild = wanted();
-        rebuild.note_pass(39 * second, 2, &prepared, &job, false);
-        assert!(rebuild.building.is_none(), "too early");
-        rebuild.note_pass(second, 2, &prepared, &job, false);
-        assert!(rebuild.building.is_some());
-        wait(&rebuild);
-        assert!(rebuild.take_built(&job).is_some() && rebuild.is_settled);
-        assert!(rebuild.take_built(&job).is_none(), "once");
-        rebuild.note_pass(1000 * second, 2, &prepared, &job, false);
-        assert!(rebuild.building.is_none(), "nothing is better than the best");
-    }
-
-    #[test]
-    fn the_time_of_another_scene_does_not_count() {
-        let mut large = PreparedScene::<f32>::new(&field(21_000));
-        let mut rebuild = Rebuild::new();
-        rebuild.traced = Duration::from_secs(9);
-        rebuild.note_prepared(&large);
-        assert_eq!((rebuild.first, rebuild.traced), (large.hierarchy_time, Duration::ZERO));
-        assert!(!rebuild.is_settled);
-        // A hierarchy that was kept goes on being what it is.
-        rebuild.traced = Duration::from_secs(9);
-        large.hierarchy_time = Duration::ZERO;
-        rebuild.note_prepared(&large);
-        assert_eq!(rebuild.traced, Duration::from_secs(9));
-        assert!(!rebuild.is_settled && !rebuild.first.is_zero());
-        rebuild.note_prepared(&PreparedScene::new(&field(60)));
-        assert!(rebuild.is_settled, "a small scene needs no better one");
+        for (seconds, threads, is_settled, is_begun) in
+            [(1000, 1, false, false), (39, 2, false, false), (40, 2, false, true), (1000, 2, true, false)]
+        {
+            let mut rebuild = Rebuild { first: second, is_settled, ..Rebuild::new() };
+            rebuild.note_pass(seconds * second, threads, &prepared, &job, false);
+            assert_eq!(rebuild.building.is_some(), is_begun, "{seconds} s on {threads} threads");
+        }
+        // The time of another scene does not count, and a small one needs no better hierarchy.
+        let mut rebuild = Rebuild { traced: 9 * second, is_settled: false, ..Rebuild::new() };
+        rebuild.note_prepared(&prepared);
+        assert_eq!((rebuild.traced, rebuild.is_settled), (Duration::ZERO, true));
     }
 }

@@ -163,24 +163,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn a_record_is_connected_and_ends_where_the_path_does() {
-        let job = small_job("three-spheres");
-        for y in 0..7 {
-            for x in 0..12 {
-                let record = record_path(&job, [x, y], 0, None);
-                for pair in record.rays.windows(2) {
-                    let hit = pair[0].hit.expect("a ray that goes on has hit");
-                    assert_eq!(hit.position, Some(pair[1].origin));
-                    let sphere = job.scene().spheres[hit.sphere];
-                    let off =
-                        (glam::DVec3::from(pair[1].origin).distance(sphere.center) - sphere.radius).abs();
-                    assert!(off < 1e-12 * sphere.radius, "{off} off the sphere");
-                }
-                let last = record.rays.last().expect("a camera ray");
-                assert!(last.hit.is_none_or(|hit| hit.position.is_none()));
-            }
-        }
-    }
 }

@@ -42,31 +42,24 @@ mod tests {
 
     #[test]
     fn sums_are_added_to_their_rows_half_by_half() {
-        let mut film = Film::new(3, 4, 2);
-        for half in film.halves_mut() {
-            half.iter_mut().for_each(|sum| *sum = PixelSum([1000; 3]));
-        }
-        let sums: Vec<u64> = (0..36).collect();
-        add_rows(&mut film, 1, &sums);
-        for (half, begin) in film.halves().iter().zip([0, 18]) {
-            for (pixel, sum) in half.iter().enumerate() {
-                let first = 1000 + begin + 3 * (pixel as u64).saturating_sub(3);
-                let expected =
-                    if (3..9).contains(&pixel) { [first, first + 1, first + 2] } else { [1000; 3] };
-                assert_eq!(sum.0, expected, "pixel {pixel}");
+        // The last has more pixels than a thread takes at a time.
+        for (width, height, halves, first_row, rows) in [(3, 4, 2, 1, 2), (1, 2, 1, 1, 1), (5000, 1, 1, 0, 1)]
+        {
+            let mut film = Film::new(width, height, halves);
+            film.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum([1000; 3]));
+            let (width, of_half) = (width as usize, (width * rows) as usize);
+            // Words beyond the last pixel are left out.
+            let sums: Vec<u64> = (0..(3 * of_half * halves) as u64 + 1).collect();
+            add_rows(&mut film, first_row, &sums);
+            for (number, half) in film.halves().iter().enumerate() {
+                for (pixel, sum) in half.iter().enumerate() {
+                    let place =
+                        pixel.checked_sub(first_row as usize * width).filter(|place| *place < of_half);
+                    let first = place.map(|place| 3 * (number * of_half + place));
+                    let added = first.map_or([0; 3], |first| [0, 1, 2].map(|channel| sums[first + channel]));
+                    assert_eq!(sum.0, added.map(|added| 1000 + added), "pixel {pixel} of {width}x{height}");
+                }
             }
         }
-    }
-
-    #[test]
-    fn words_beyond_the_last_pixel_are_left_out() {
-        let mut film = Film::new(1, 2, 1);
-        add_rows(&mut film, 1, &[1, 2, 3, 99]);
-        assert_eq!(film.halves()[0], [PixelSum([0; 3]), PixelSum([1, 2, 3])]);
-        // More pixels than a thread takes at a time.
-        let mut film = Film::new(5000, 1, 1);
-        add_rows(&mut film, 0, &(0..15_000).collect::<Vec<u64>>());
-        let expected = |pixel: u64| [3 * pixel, 3 * pixel + 1, 3 * pixel + 2];
-        assert!((0..).zip(&film.halves()[0]).all(|(pixel, sum)| sum.0 == expected(pixel)));
     }
 }

@@ -172,16 +172,3 @@ pub struct GpuReport {
     /// Total time that the host spent adding its sums.
     pub film_time: Duration,
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_an_adapter_that_was_named_may_be_software() {
-        let best = GpuOptions::of_adapter(None);
-        assert_eq!((best.adapter.as_deref(), best.allow_software), (None, false));
-        let named = GpuOptions::of_adapter(Some("llvmpipe"));
-        assert_eq!((named.adapter.as_deref(), named.allow_software), (Some("llvmpipe"), true));
-    }
-}

@@ -71,33 +71,6 @@ fn read<T: Pod>(words: &[u32], first: usize) -> T {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_hit_is_where_the_next_ray_begins() {
-        let ray = |x: f32, sphere: u32| GpuRecordedRay {
-            origin: [x, 0.0, 0.0],
-            direction: [1.0, 0.0, 0.0],
-            throughput: [0.5; 3],
-            sphere,
-            distance: x,
-        };
-        let rays = [ray(1.0, 1), ray(2.0, 0), ray(4.0, NONE)];
-        let mut words = words_for([7, 5], 8);
-        let head = GpuRecordHead { ray_count: 3, sums: [1 << 24, 1 << 23, 0], ..GpuRecordHead::default() };
-        words[..word_count::<GpuRecordHead>()].copy_from_slice(bytemuck::cast_slice(&[head]));
-        for (number, ray) in rays.into_iter().enumerate() {
-            let first = first_of_ray(number);
-            let place = first..first + word_count::<GpuRecordedRay>();
-            words[place].copy_from_slice(bytemuck::cast_slice(&[ray]));
-        }
-        let path = from_words(&words, 8, &[30, 40], DVec3::new(0.0, 10.0, 0.0));
-        assert_eq!(path.radiance, [1.0, 0.5, 0.0]);
-        let origins: Vec<[f64; 3]> = path.rays.iter().map(|ray| ray.origin).collect();
-        assert_eq!(origins, [[1.0, 10.0, 0.0], [2.0, 10.0, 0.0], [4.0, 10.0, 0.0]]);
-        let hits: Vec<_> =
-            path.rays.iter().map(|ray| ray.hit.map(|hit| (hit.sphere, hit.distance, hit.position))).collect();
-        assert_eq!(hits, [Some((40, 1.0, Some(origins[1]))), Some((30, 2.0, Some(origins[2]))), None]);
-    }
-
     /// Stores a record from the word `first` on.
     fn put<T: Pod>(words: &mut [u32], first: usize, record: T) {
         words[first..first + word_count::<T>()].copy_from_slice(bytemuck::cast_slice(&[record]));

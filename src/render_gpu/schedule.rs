@@ -247,18 +247,11 @@ mod tests {
     #[test]
     fn blocks_are_taken_whole_where_there_is_room() {
         let mut blocks = Blocks::of_range(0..64, &settings(false), 32);
-        let counts = |(taken, total): (Vec<GpuBlock>, u64)| -> (Vec<u32>, u64) {
-            (taken.iter().map(|block| block.count).collect(), total)
-        };
+        let mut taken = |most| blocks.take(most).0.iter().map(|block| block.count).collect::<Vec<u32>>();
         // Of a block that is too large, a power of two is taken; the rest is left in parts that double.
-        assert_eq!(counts(blocks.take(7)), (vec![4], 4));
-        assert_eq!(counts(blocks.take(4)), (vec![4], 4));
-        assert_eq!(counts(blocks.take(23)), (vec![8], 8));
-        assert_eq!(counts(blocks.take(0)), (vec![1], 1));
-        assert_eq!(counts(blocks.take(1000)), (vec![1, 2, 4, 8, 32], 47));
-        assert_eq!(counts(blocks.take(1000)), (vec![], 0));
+        assert_eq!([taken(7), taken(4), taken(23), taken(0)], [[4], [4], [8], [1]]);
+        assert_eq!([taken(1000), taken(1000)], [vec![1, 2, 4, 8, 32], vec![]]);
         let mut many = Blocks::of_range(0..2 * BLOCK_LIMIT as u64, &settings(false), 1);
-        assert_eq!(many.take(u64::MAX).0.len(), BLOCK_LIMIT);
-        assert_eq!(many.take(10).0.len(), 10);
+        assert_eq!([u64::MAX, 10].map(|most| many.take(most).0.len()), [BLOCK_LIMIT, 10]);
     }
 }

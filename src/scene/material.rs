@@ -139,23 +139,3 @@ impl Material {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn refusal(material: Material) -> String {
-        material.validate(format_args!("materials.m")).expect_err("refused").to_string()
-    }
-
-    #[test]
-    fn fuzz_above_one_is_kept_and_acts_as_one() {
-        let fuzzy = Material::Metal { albedo: DVec3::ONE, fuzz: 5.0 };
-        fuzzy.validate(format_args!("materials.m")).expect("as in the book");
-        assert_eq!(fuzzy.effective_fuzz(), 1.0);
-        assert_eq!(fuzzy.look(), Look::Mirror { fuzz: 1.0 });
-        let refused = refusal(Material::Metal { albedo: DVec3::ONE, fuzz: -0.5 });
-        assert!(refused.starts_with("materials.m.fuzz is -0.5, but must be 0 or more"), "{refused}");
-        assert!(refusal(Material::Metal { albedo: DVec3::ONE, fuzz: f64::NAN }).contains("fuzz is NaN"));
-    }
-}

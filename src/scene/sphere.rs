@@ -35,26 +35,3 @@ impl Sphere {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn refusal(center: DVec3, radius: f64, material: usize) -> String {
-        let sphere = Sphere { center, radius, material };
-        sphere.validate(3, 1).expect_err("refused").to_string()
-    }
-
-    /// Case 37.
-    #[test]
-    fn radii_are_positive_and_fit_f32() {
-        for radius in [0.0, -0.0, -1.0, 1e-30, 1e30] {
-            let refused = refusal(DVec3::ZERO, radius, 0);
-            assert!(refused.starts_with(&format!("spheres[3].radius is {radius:?}, but must be within")));
-        }
-        assert!(refusal(DVec3::ZERO, -0.4, 0).contains("for a hollow glass sphere"));
-        for radius in [1e-18, 0.5, 1e18] {
-            Sphere { center: DVec3::ZERO, radius, material: 0 }.validate(3, 1).expect("fine");
-        }
-    }
-}

@@ -1,9 +1,8 @@
 //! Renders of frames, and a scene with keyframes.
 
-pub use crate::program_common::{names, weekender};
+pub use crate::program_common::{ends, names, until, weekender};
 
 use std::path::Path;
-use std::process::Output;
 
 /// Keyframes of a scene file after its `[camera]`.
 pub const SCENE: &str = "\
@@ -37,24 +36,16 @@ radius = 1.0
 material = \"ground\"
 ";
 
-pub fn run(directory: &Path, arguments: &[&str]) -> Output {
-    weekender(directory, arguments).output().unwrap()
+/// A directory with the scene.
+pub fn temp() -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    directory
 }
 
 /// Renders frames, which must succeed, and returns the figures.
 pub fn render(directory: &Path, arguments: &[&str]) -> serde_json::Value {
     let small = ["--batch", "--size", "24x14", "--threads", "2", "--json", "-"];
     let samples = if arguments.contains(&"--samples") { &[][..] } else { &["--samples", "4"] };
-    let output = run(directory, &[&small, samples, arguments].concat());
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// The bytes of a picture's pixels.
-pub fn pixels(path: &Path) -> Vec<u8> {
-    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut pixels).unwrap();
-    pixels
+    crate::program_common::json(directory, &[&small, samples, arguments].concat())
 }

@@ -1,14 +1,13 @@
 //! Frames, rendered by the program.
 
-use super::common::{SCENE, names, pixels, render, weekender};
+use super::common::{ends, names, render, temp, until, weekender};
 use std::fs;
+use std::path::Path;
 use std::process::Stdio;
-use std::time::{Duration, Instant};
 
-fn temp() -> tempfile::TempDir {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
-    directory
+/// The bytes of a picture's pixels.
+fn pixels(path: &Path) -> Vec<u8> {
+    image::open(path).unwrap().into_bytes()
 }
 
 const KEYFRAMED: [&str; 2] = ["--scene", "scene.toml"];
@@ -40,7 +39,7 @@ fn only_incomplete_frames_are_rendered_again() {
         let json = render(directory.path(), &[&["--turntable=8", "--out", "d"], more].concat());
         [&json["rendered"], &json["kept"]].map(|count| count.as_u64().unwrap())
     };
-    let path = |frame: u32| directory.path().join(format!("d/frame-{frame:04}.png"));
+    let path = |frame: usize| directory.path().join(format!("d/frame-{frame:04}.png"));
     assert_eq!(run(&["--frames", "2..5"]), [3, 0]);
     assert_eq!(run(&[]), [5, 3], "a whole turn by default");
     assert_eq!(run(&[]), [0, 8]);
@@ -57,8 +56,8 @@ fn only_incomplete_frames_are_rendered_again() {
     fs::remove_file(path(5)).unwrap();
     assert_eq!(run(&[]), [5, 3]);
     for frame in [0, 1, 2, 4, 5] {
-        fs::write(directory.path().join("good.png"), &good[frame as usize]).unwrap();
-        assert!(pixels(&path(frame)) == pixels(&directory.path().join("good.png")), "frame {frame}");
+        let again = image::load_from_memory(&good[frame]).unwrap().into_bytes();
+        assert!(pixels(&path(frame)) == again, "frame {frame}");
     }
     // Another picture has other frames.
     assert_eq!(run(&["--samples", "5"]), [8, 0]);
@@ -72,32 +71,24 @@ fn interrupted_run_keeps_whole_frames_and_continues() {
     for (signal, code) in [("INT", 130), ("TERM", 143)] {
         let directory = temp();
         let flags = ["--batch", "--size", "160x90", "--samples", "64", "--turntable=400", "--out", "frames"];
-        let mut child = weekender(directory.path(), &[&flags[..], &["--json", "figures.json"]].concat())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let arguments = [&flags[..], &["--json", "figures.json"]].concat();
+        let mut command = weekender(directory.path(), &arguments);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let frames = directory.path().join("frames");
         let count = || if frames.is_dir() { names(&frames).len() } else { 0 };
-        let begin = Instant::now();
-        while count() < 3 && begin.elapsed() < Duration::from_secs(100) {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        let kill = std::process::Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
-        assert!(kill.unwrap().success());
+        until("no frames are written", || count() >= 3);
+        crate::program_common::signal(&child, signal);
         assert_eq!(child.wait().unwrap().code(), Some(code));
 
         let done = count();
         assert!((3..400).contains(&done), "{done} frames");
         assert!(names(&frames).iter().all(|name| name.starts_with("frame-")), "{:?}", names(&frames));
-        let figures = fs::read_to_string(directory.path().join("figures.json")).unwrap();
-        let figures: serde_json::Value = serde_json::from_str(&figures).unwrap();
+        let figures = crate::program_common::json_file(&directory.path().join("figures.json"));
         assert_eq!(figures["frames_done"], done);
 
         let range = format!("0..{}", done + 1);
         let again = [&flags[..], &["--frames", &range, "--json", "-"]].concat();
-        let output = weekender(directory.path(), &again).output().unwrap();
-        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let json = crate::program_common::json(directory.path(), &again);
         assert_eq!((&json["kept"], &json["rendered"]), (&done.into(), &1.into()));
     }
 }
@@ -109,9 +100,7 @@ fn failed_run_reports_where_and_keeps_its_frames() {
     let flags = ["--batch", "--size", "24x14", "--samples", "4", "--turntable=4", "--out", "d"];
     // The second run renders none, but keeps the frames of the first.
     for _ in 0..2 {
-        let output = weekender(directory.path(), &flags).output().unwrap();
-        let message = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(3), "{message}");
+        let (_, message) = ends(directory.path(), 3, &flags);
         assert!(message.contains("frame 2 failed; 2 frames before it stay"), "{message}");
     }
     assert_eq!(names(&directory.path().join("d")), ["frame-0000.png", "frame-0001.png", "frame-0002.png"]);

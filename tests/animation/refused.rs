@@ -1,18 +1,8 @@
 //! Animations that make no sense.
 
-use super::common::{SCENE, names, run};
-
 /// Exit code 2, a message with all of `parts`, and no new file.
 fn refused(arguments: &[&str], parts: &[&str]) {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
-    let output = run(directory.path(), arguments);
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-    for part in parts {
-        assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
-    }
-    assert_eq!(names(directory.path()), ["scene.toml"], "{arguments:?} left something behind");
+    crate::program_common::refused(super::common::temp().path(), arguments, parts);
 }
 
 #[test]

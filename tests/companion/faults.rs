@@ -1,11 +1,11 @@
 //! Errors in the texts end the command and name file and line.
 
-use super::{checkout, companion, text};
+use super::companion;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-fn copy(from: &Path, to: &Path) {
+pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap() {
         let (source, target) = (entry.as_ref().unwrap().path(), to.join(entry.unwrap().file_name()));
@@ -21,7 +21,7 @@ fn copy(from: &Path, to: &Path) {
 fn texts() -> TempDir {
     let directory = TempDir::new().unwrap();
     for folder in ["assets", "docs/companion", "examples", "src", "shaders", "reference"] {
-        copy(&checkout().join(folder), &directory.path().join(folder));
+        copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &directory.path().join(folder));
     }
     directory
 }
@@ -33,12 +33,11 @@ fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> Stri
     let path = texts.path().join(file);
     let original = fs::read_to_string(&path).unwrap();
     fs::write(&path, change(&original)).unwrap();
-    let out = texts.path().join("out");
-    let output = companion(&out, &["--source", texts.path().to_str().unwrap()]);
+    let (code, _, message) = companion(texts.path(), &["--source", "."]);
     fs::write(&path, original).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{file}: {}", text(&output.stderr));
-    assert!(!out.exists(), "{file}: something was written");
-    text(&output.stderr)
+    assert_eq!(code, Some(2), "{file}: {message}");
+    assert!(!texts.path().join("out").exists(), "{file}: something was written");
+    message
 }
 
 #[test]

@@ -3,35 +3,33 @@
 use super::common::{
     ENDLESS, PICTURE, PROGRAM, batch, film, names, signal, succeeds, text, until, wait, weekender,
 };
-use std::fs::{self};
+use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
-/// Runs the program with resource limits of the shell.
-fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
+/// Renders in `at` with resource limits of the shell and `elsewhere` as the place for other files. Returns the message
+/// of the render, which must fail.
+fn fails(at: &Path, limits: &str, flags: &[&str]) -> String {
+    fs::create_dir(at.join("elsewhere")).unwrap();
     let mut command = Command::new("sh");
-    command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(arguments);
+    command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(PICTURE).args(flags);
     for name in ["TMPDIR", "XDG_STATE_HOME", "HOME"] {
         command.env(name, at.join("elsewhere"));
     }
-    command.current_dir(at).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    wait(&mut child);
-    child.wait_with_output().unwrap()
+    let output = command.current_dir(at).stdin(Stdio::null()).output().unwrap();
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    message
 }
 
 #[test]
 fn file_size_limit_is_an_error_and_the_loss_is_reported() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    fs::create_dir(at.join("elsewhere")).unwrap();
-    let flags =
-        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"]].concat();
-    let output = limited(at, "ulimit -f 1", &flags);
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{message}");
+    let flags = ["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"];
+    let message = fails(at, "ulimit -f 1", &flags);
     for part in ["g.exr", "g.png", "ulimit -f", "the samples are lost (2 per pixel", "elsewhere"] {
         assert!(message.contains(part), "{message} should say {part}");
     }
@@ -42,21 +40,16 @@ fn file_size_limit_is_an_error_and_the_loss_is_reported() {
 fn a_full_disk_keeps_the_samples_elsewhere() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    fs::create_dir(at.join("elsewhere")).unwrap();
     fs::create_dir(at.join("here")).unwrap();
     for name in ["g.exr", "g.png"] {
         symlink("/dev/full", at.join("here").join(name)).unwrap();
     }
-    let flags =
-        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "here/g.exr", "--out", "here/g.png"]]
-            .concat();
-    let output = limited(at, "true", &flags);
-    let message = text(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{message}");
+    let flags = ["off", "--samples", "2", "--checkpoint", "here/g.exr", "--out", "here/g.png"];
+    let message = fails(at, "true", &flags);
     let kept: Vec<String> =
         names(&at.join("here")).into_iter().filter(|name| name.starts_with("weekender-")).collect();
     let [kept] = kept.as_slice() else { panic!("{message}") };
-    assert!(message.contains(kept) && message.contains("g.exr") && message.contains("g.png"), "{message}");
+    assert!([kept, "g.exr", "g.png"].iter().all(|part| message.contains(part)), "{message}");
     assert_eq!(film(&at.join("here").join(kept)).sample_count(), 2);
 }
 

@@ -6,13 +6,11 @@ use std::io::{BufRead, BufReader};
 use std::thread::sleep;
 use std::time::Duration;
 use tempfile::TempDir;
-use weekender::film::checkpoint;
 
 /// The files of a power cut look like those of `kill -9`: both leave the last film that was renamed into place.
 #[test]
 fn part_killed_at_random_ends_with_the_bits_of_one_run() {
     let mut dice = Dice::new();
-    println!("dice {}", dice.seed());
     let at = TempDir::new().unwrap();
     let at = at.path();
     let picture = ["--size", "48x27", "--device", "cpu", "--threads", "2"];
@@ -34,7 +32,7 @@ fn part_killed_at_random_ends_with_the_bits_of_one_run() {
         let status = wait(&mut child);
         assert_eq!(status.code(), asked.then_some(143), "round {round}: {status}");
         if path.exists() {
-            let held = checkpoint::load(&path).unwrap().film.samples().clone();
+            let held = film(&path).samples().clone();
             assert_eq!(held.first_gap(1 << 30..held.end(), u64::MAX), None, "round {round}");
             assert!(held.count() >= last, "round {round}: {} samples, {last} before", held.count());
             last = held.count();

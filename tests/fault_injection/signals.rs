@@ -1,9 +1,9 @@
 //! Kills and other signals.
 
 use super::common::{
-    ENDLESS, PATIENCE, PICTURE, PROGRAM, batch, film, names, rounds, signal, succeeds, text, until, wait,
-    weekender,
+    ENDLESS, PICTURE, PROGRAM, batch, film, names, rounds, signal, succeeds, text, until, wait, weekender,
 };
+use crate::program_common::{PATIENCE, restore_signals};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
@@ -13,17 +13,14 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Pseudo-random numbers; each test prints its seed.
+/// Pseudo-random numbers, from a seed that is printed.
 pub struct Dice(u64);
 
 impl Dice {
     pub fn new() -> Dice {
         let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        println!("dice {now:?}");
         Dice(now.as_nanos() as u64 | 1)
-    }
-
-    pub fn seed(&self) -> u64 {
-        self.0
     }
 
     /// A number below `limit`.
@@ -49,8 +46,7 @@ fn continues_to_the_same_bits(at: &Path, part: &str) {
 #[test]
 fn signals_at_any_moment_leave_a_resumable_film() {
     let mut dice = Dice::new();
-    println!("dice {}", dice.seed());
-    let (mut films, mut unfinished) = (0, 0);
+    let mut films = 0;
     for round in 0..rounds(6) {
         let at = TempDir::new().unwrap();
         let at = at.path();
@@ -70,16 +66,13 @@ fn signals_at_any_moment_leave_a_resumable_film() {
             // Before the first sample, there is nothing to save.
             assert!(names(at).is_empty() || names(at) == ["g.exr", "g.png"], "{name}: {:?}", names(at));
         }
-        unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
         if at.join("g.exr").exists() {
             films += 1;
             continues_to_the_same_bits(at, "g.exr");
-            let left: Vec<String> = names(at).into_iter().filter(|name| name.ends_with(".part")).collect();
-            assert!(left.is_empty(), "the next run clears up: {left:?}");
+            assert!(names(at).iter().all(|name| !name.ends_with(".part")), "the next run clears up");
         }
     }
     assert!(films > 0);
-    println!("{} rounds: {films} films, {unfinished} unfinished files cleared up", rounds(6));
 }
 
 #[test]
@@ -97,15 +90,7 @@ fn signals_wait_for_file_writes_and_are_answered() {
             sender.send(line).unwrap();
         }
     });
-    let hear = |part: &str| {
-        let begin = Instant::now();
-        while begin.elapsed() < PATIENCE {
-            if lines.recv_timeout(PATIENCE).unwrap().contains(part) {
-                return;
-            }
-        }
-        panic!("{part:?} is not said");
-    };
+    let hear = |part: &str| while !lines.recv_timeout(PATIENCE).unwrap().contains(part) {};
     let film_in_pipe =
         batch(at, "off", &["--samples", "4294967296", "--out", "a.png", "--checkpoint", "pipe.exr"])
             .output()
@@ -134,8 +119,8 @@ fn repeated_signal_counts_once() {
     let at = at.path();
     let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
     until("the film is not written", || at.join("g.exr").exists());
-    signal(&child, "INT");
-    signal(&child, "TERM");
+    let both = format!("kill -s INT {0} && kill -s TERM {0}", child.id());
+    succeeds(Command::new("sh").args(["-c", &both]));
     assert_eq!(wait(&mut child).code(), Some(130));
     assert_eq!(names(at), ["g.exr", "g.png"]);
 }
@@ -147,19 +132,17 @@ fn stopped_time_does_not_count() {
     let limit =
         ["--time-limit", "3", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png", "--json", "-"];
     let begin = Instant::now();
-    let mut child = batch(at, "off", &limit).spawn().unwrap();
+    let child = batch(at, "off", &limit).spawn().unwrap();
     until("the film is not written", || at.join("g.exr").exists());
     signal(&child, "STOP");
     sleep(Duration::from_secs(5));
     signal(&child, "CONT");
-    assert!(wait(&mut child).success());
-    let all = begin.elapsed().as_secs_f64();
-    let mut json = String::new();
-    child.stdout.take().unwrap().read_to_string(&mut json).unwrap();
-    let seconds =
-        serde_json::from_str::<serde_json::Value>(&json).unwrap()["trace_seconds"].as_f64().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success());
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (all, traced) = (begin.elapsed().as_secs_f64(), json["trace_seconds"].as_f64().unwrap());
     // A second of the five may count.
-    assert!(all > 7.0 && seconds < 4.5, "{seconds} of {all}");
+    assert!(all > traced + 4.0, "{traced} of {all}");
 }
 
 #[test]
@@ -167,7 +150,7 @@ fn a_second_signal_ends_the_program_at_once() {
     // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
     let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
-    for milliseconds in [800, 3000, 10_000] {
+    for milliseconds in [800, 3000, 10_000, 30_000] {
         let at = TempDir::new().unwrap();
         let at = at.path();
         let mut child = weekender(at, &[&picture[..], &flags].concat()).spawn().unwrap();
@@ -175,20 +158,19 @@ fn a_second_signal_ends_the_program_at_once() {
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(milliseconds));
         signal(&child, "INT");
+        // Longer than the time within which two signals count as one.
         sleep(Duration::from_millis(700));
-        if child.try_wait().unwrap().is_some() && names(at).is_empty() {
-            // The signal came before the first pass, which may start late on a busy machine.
-            continue;
-        }
         signal(&child, "INT");
         let status = wait(&mut child);
         let mut message = String::new();
         stderr.read_to_string(&mut message).unwrap();
         assert_eq!(status.code(), Some(130), "{message}");
-        assert!(message.contains("ended at once"), "{message}");
-        // The next run removes the lock.
-        assert!(names(at).iter().all(|name| name.ends_with(".lock")), "nothing is written: {:?}", names(at));
-        return;
+        // The first signal may come before the first pass, which starts late on a busy machine.
+        if message.contains("ended at once") {
+            // The next run removes the lock.
+            assert!(names(at).iter().all(|name| name.ends_with(".lock")), "{:?} is written", names(at));
+            return;
+        }
     }
     panic!("no pass was under way when the first signal came");
 }
@@ -199,6 +181,7 @@ fn initially_ignored_signals_stay_ignored() {
     for (ignored, heard, code) in [("HUP", "TERM", 143), ("INT", "HUP", 129), ("TERM", "INT", 130)] {
         let at = TempDir::new().unwrap();
         let at = at.path();
+        restore_signals();
         let mut command = Command::new("sh");
         command.args(["-c", "trap '' \"$0\" && exec \"$@\"", ignored, PROGRAM]);
         command.args(PICTURE).arg("off").args(ENDLESS).current_dir(at);
@@ -210,12 +193,8 @@ fn initially_ignored_signals_stay_ignored() {
         // Twice, because the film is also written at the end.
         for _ in 0..2 {
             let before = film(&path).sample_count();
-            let begin = Instant::now();
-            while film(&path).sample_count() == before {
-                assert_eq!(child.try_wait().unwrap(), None, "SIG{ignored} has ended it");
-                assert!(begin.elapsed() < PATIENCE, "the film does not grow");
-                sleep(Duration::from_millis(5));
-            }
+            until("the film does not grow", || film(&path).sample_count() > before);
+            assert_eq!(child.try_wait().unwrap(), None, "SIG{ignored} has ended it");
         }
         signal(&child, heard);
         assert_eq!(wait(&mut child).code(), Some(code), "SIG{ignored} was ignored, SIG{heard} was not");

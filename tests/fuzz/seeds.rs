@@ -64,13 +64,11 @@ fn written(ending: &str, film: &Film) -> Vec<u8> {
 }
 
 pub fn films() -> Vec<Vec<u8>> {
-    let mut films = vec![written("exr", &film(5, 4, 2)), written("exr", &film(1, 1, 1))];
     // A short text leaves more mutations for the rest of the file.
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.exr");
     checkpoint::save(&path, &film(3, 2, 1), &Description::new("x")).unwrap();
-    films.push(std::fs::read(path).unwrap());
-    films
+    vec![written("exr", &film(5, 4, 2)), written("exr", &film(1, 1, 1)), std::fs::read(path).unwrap()]
 }
 
 pub fn exrs() -> Vec<Vec<u8>> {

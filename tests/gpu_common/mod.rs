@@ -64,6 +64,18 @@ pub fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> F
     film
 }
 
+/// Number of pixels with a channel in which two films differ by more than `by`.
+pub fn parted(a: &Film, b: &Film, by: f32) -> usize {
+    let pairs = a.means().into_iter().zip(b.means());
+    pairs.filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > by)).count()
+}
+
+/// The mean of all pixels and channels.
+pub fn picture_mean(film: &Film) -> f64 {
+    let means = film.means();
+    means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
+}
+
 /// The CPU renderer to compare with.
 pub fn cpu() -> CpuRenderer {
     CpuRenderer::new(CpuOptions::default()).unwrap()

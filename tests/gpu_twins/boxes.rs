@@ -27,24 +27,8 @@ fn ray_and_box(i: u32) -> Words {
         _ => {}
     }
     let d = d.normalize();
-    let mut words = words(&[
-        origin[0],
-        origin[1],
-        origin[2],
-        d.x as f32,
-        d.y as f32,
-        d.z as f32,
-        0.0,
-        0.0,
-        low[0],
-        low[1],
-        low[2],
-        high[0],
-        high[1],
-        high[2],
-        16.0 * limit,
-        4.0,
-    ]);
+    let direction = d.as_vec3().to_array();
+    let mut words = words(&[&origin[..], &direction, &[0.0; 2], &low, &high, &[16.0 * limit, 4.0]].concat());
     (words[6], words[7]) = (NONE, NONE);
     words
 }

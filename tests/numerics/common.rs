@@ -7,6 +7,7 @@ use weekender::film::Film;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer, Stats};
 use weekender::kernel::Real;
 use weekender::render_cpu::lanes::{Float, Lanes, V3, Wide, splat3};
+use weekender::render_cpu::material::Surface;
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
@@ -103,6 +104,16 @@ pub fn exact_roots(origin: DVec3, direction: DVec3, center: DVec3, radius: f64) 
     let across = f - direction * (h / a);
     let d = radius * radius - across.length_squared();
     (d >= 0.0).then(|| [h - (a * d).sqrt(), h + (a * d).sqrt()].map(|q| q / a))
+}
+
+/// The surface of glass.
+pub fn glass_surface<L: Lanes>(l: L, index: f64) -> Surface<L> {
+    Surface {
+        weight: l.constant(-0.0),
+        refraction_index: l.constant(index),
+        inverse_index: l.constant(1.0 / index),
+        f0: l.constant(((1.0 - index) / (1.0 + index)).powi(2)),
+    }
 }
 
 /// A unit vector at right angles to `v`.
@@ -203,52 +214,33 @@ pub fn view_ray(camera: &Camera, width: u32, height: u32, x: f64, y: f64) -> (DV
 }
 
 /// How two renderers differ on the same samples.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Paired {
     pub bias: f64,
-    #[expect(dead_code, reason = "printed")]
-    pub rms: f64,
     /// Share of samples with a channel off by more than 1e-3.
     pub outliers: f64,
     /// Root mean square of the other samples.
     pub inlier_rms: f64,
-    /// Root mean square of the pixels' means.
-    #[expect(dead_code, reason = "printed")]
-    pub pixel_rms: f64,
 }
 
 /// Renders single samples with both and compares them pixel by pixel.
 pub fn paired(job: &RenderJob, samples: u64, a: &mut CpuRenderer, b: &mut CpuRenderer) -> Paired {
     assert!(!job.settings().estimate_error, "one half holds all samples");
     let pixels = (job.settings().width * job.settings().height) as usize;
-    let (mut sum, mut squares, mut inlier_squares, mut outliers) = (0.0, 0.0, 0.0, 0_u64);
-    let mut pixel_sums = vec![[0.0; 3]; pixels];
+    let paths = (samples * pixels as u64) as f64;
+    let mut found = Paired::default();
     for index in 0..samples {
         let (a, b) = (render(a, job, index..index + 1), render(b, job, index..index + 1));
-        for (pixel, pixel_sum) in pixel_sums.iter_mut().enumerate() {
+        for pixel in 0..pixels {
             let (a, b) = (a.mean(pixel), b.mean(pixel));
             let difference = [0, 1, 2].map(|channel| a[channel] - b[channel]);
-            let square: f64 = difference.iter().map(|x| x * x).sum();
-            sum += difference.iter().sum::<f64>();
-            squares += square;
+            found.bias += difference.iter().sum::<f64>() / (3.0 * paths);
             if difference.iter().any(|x| x.abs() > 1e-3) {
-                outliers += 1;
+                found.outliers += 1.0 / paths;
             } else {
-                inlier_squares += square;
-            }
-            for (channel, x) in pixel_sum.iter_mut().zip(difference) {
-                *channel += x;
+                found.inlier_rms += difference.iter().map(|x| x * x).sum::<f64>() / (3.0 * paths);
             }
         }
     }
-    let paths = samples * pixels as u64;
-    let values = (3 * paths) as f64;
-    let pixel_squares: f64 = pixel_sums.iter().flatten().map(|x| (x / samples as f64).powi(2)).sum();
-    Paired {
-        bias: sum / values,
-        rms: (squares / values).sqrt(),
-        outliers: outliers as f64 / paths as f64,
-        inlier_rms: (inlier_squares / values).sqrt(),
-        pixel_rms: (pixel_squares / (3 * pixels) as f64).sqrt(),
-    }
+    Paired { inlier_rms: found.inlier_rms.sqrt(), ..found }
 }

@@ -10,7 +10,7 @@ use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::{Effort, Hierarchy};
 use weekender::render_cpu::bvh::{EMPTY_STACK, misses_box, slabs_of, traverse};
 use weekender::render_cpu::lanes::{Key, Lanes, Mask, Reference, Scalar, Unsigned, V3, Wide, WideU};
-use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
+use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root};
 use weekender::scene::builtin::{BOOK_CAMERA, book};
 use weekender::scene::{Camera, Sphere};
 use weekender::stages::{Rules, SurfaceRule};
@@ -39,36 +39,36 @@ fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> V
     spheres
 }
 
-fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64) -> Rays<L> {
+/// A ray before it is rounded, and the spheres that it leaves and is inside of.
+struct OneRay {
+    origin: DVec3,
+    direction: DVec3,
+    left: u32,
+    inside: u32,
+}
+
+fn one_ray(random: &mut Random, spheres: &[Sphere], spread: f64) -> OneRay {
     let index = (random.bits() % spheres.len() as u64) as usize;
     let target = spheres[index];
     let aim = target.center + random.direction() * target.radius * random.within(0.0, 1.001);
+    let free = |origin, direction: DVec3| OneRay {
+        origin,
+        direction: direction.normalize(),
+        left: NONE,
+        inside: NONE,
+    };
     match random.bits() % 5 {
         // Outwards or inwards from the surface of a sphere.
         kind @ (0 | 1) => {
-            let from = ray(l, target.center, random.direction());
-            let [center, radius] = [target.center, DVec3::splat(target.radius)];
-            let t = l.constant(target.radius);
-            let inverse = l.constant(1.0 / target.radius);
-            let point = surface_point(l, &from, t, v3(l, center), inverse, l.constant(radius.x));
-            let mut rays = ray(l, DVec3::ZERO, random.direction());
-            rays.origin = point.position;
-            if kind == 0 {
-                rays.left = l.splat_u(index as u32);
-            } else {
-                rays.inside = l.splat_u(index as u32);
-            }
-            rays
+            let from = free(target.center + random.direction() * target.radius, random.direction());
+            let index = index as u32;
+            if kind == 0 { OneRay { left: index, ..from } } else { OneRay { inside: index, ..from } }
         }
         // Along an axis, where a component of the direction is 0.
         2 => {
-            let mut direction = [0.0; 3];
-            direction[(random.bits() % 3) as usize] = if random.bits() & 1 == 0 { 1.0 } else { -1.0 };
-            ray(
-                l,
-                aim - DVec3::from_array(direction) * spread * random.log_within(0.1, 100.0),
-                DVec3::from_array(direction),
-            )
+            let axis = DVec3::AXES[(random.bits() % 3) as usize];
+            let direction = if random.bits() & 1 == 0 { axis } else { -axis };
+            free(aim - direction * spread * random.log_within(0.1, 100.0), direction)
         }
         // From afar past the point where a sphere touches its box, nearly along another axis.
         3 => {
@@ -76,13 +76,37 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
             let [touching, along] = [DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3]];
             let aim = target.center + touching * target.radius * (1.0 + random.within(-1e-6, 1e-6));
             let direction = along + random.direction() * random.log_within(1e-9, 1e-3);
-            ray(l, aim - direction * target.radius * random.log_within(1.0, 1e4), direction)
+            free(aim - direction * target.radius * random.log_within(1.0, 1e4), direction)
         }
         // From afar.
         _ => {
             let origin = random.direction() * spread * random.log_within(0.1, 1000.0);
-            ray(l, origin, aim - origin)
+            free(origin, aim - origin)
         }
+    }
+}
+
+fn packet<L: Lanes>(l: L, rays: &[OneRay]) -> Rays<L> {
+    let column = |of: &dyn Fn(&OneRay) -> f64| {
+        let mut wide = Wide::default();
+        wide.0.iter_mut().zip(rays).for_each(|(to, ray)| *to = L::Real::from_f64(of(ray)));
+        l.load(&wide)
+    };
+    let vector = |of: &dyn Fn(&OneRay) -> DVec3| V3 {
+        x: column(&|ray| of(ray).x),
+        y: column(&|ray| of(ray).y),
+        z: column(&|ray| of(ray).z),
+    };
+    let integers = |of: &dyn Fn(&OneRay) -> u32| {
+        let mut wide = WideU::default();
+        wide.0.iter_mut().zip(rays).for_each(|(to, ray)| *to = of(ray));
+        l.load_u(&wide)
+    };
+    Rays {
+        origin: vector(&|ray| ray.origin),
+        direction: vector(&|ray| ray.direction),
+        left: integers(&|ray| ray.left),
+        inside: integers(&|ray| ray.inside),
     }
 }
 
@@ -127,122 +151,61 @@ fn nearest_in_list<L: Lanes>(l: L, rays: &Rays<L>, rows: &[[L::Real; 4]], number
     nearest
 }
 
-fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
+/// Number, spread and radii of a scene's spheres.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    count: usize,
+    spread: f64,
+    radii: [f64; 2],
+}
+
+/// Checks packets of rays in all directions, and returns the number of hits.
+#[inline(always)]
+fn same_hits<L: Lanes>(l: L, seed: u64, scale: Scale, ray_count: usize) -> u32 {
     let mut random = Random::new(seed);
-    let listed = spheres(&mut random, count, spread, radii);
+    let listed = spheres(&mut random, scale.count, scale.spread, scale.radii);
     let Tree { hierarchy, ordered, rows, numbers } = Tree::<L>::over(&listed);
-    let mut stack = EMPTY_STACK;
-    let mut hits = 0;
-    for _ in 0..ray_count {
-        let rays = one_ray(l, &mut random, &ordered, spread);
+    let (mut stack, mut hits) = (EMPTY_STACK, 0);
+    let all = l.mask((1 << L::WIDTH) - 1);
+    for _ in 0..ray_count / L::WIDTH {
+        let single: Vec<_> = (0..L::WIDTH).map(|_| one_ray(&mut random, &ordered, scale.spread)).collect();
+        let rays = packet(l, &single);
         let mut found = Nearest::nothing(l);
-        traverse(l, &hierarchy, &rows, &rays, l.mask(1), &mut stack, &mut found);
+        traverse(l, &hierarchy, &rows, &rays, all, &mut stack, &mut found);
         let expected = nearest_in_list(l, &rays, &rows, &numbers);
         let same = found.key.eq(expected.key) & found.sphere.eq(expected.sphere);
-        assert_eq!(
-            same.bits() & 1,
-            1,
-            "seed {seed}, {count} spheres, spread {spread}: {:?}, not {:?}, from {} to {}",
-            distance::<L>(found.key),
-            distance::<L>(expected.key),
-            vector::<L>(rays.origin),
-            vector::<L>(rays.direction),
-        );
-        hits += (!found.sphere.eq(l.splat_u(NONE))).bits() & 1;
+        assert_eq!(same.bits() & all.bits(), all.bits(), "seed {seed}, {scale:?}");
+        hits += ((!found.sphere.eq(l.splat_u(NONE))).bits() & all.bits()).count_ones();
     }
     hits
 }
 
 /// A hundred scenes of various sizes, at scales from `1e-12` to `1e12`.
 #[test]
-fn hierarchy_matches_list_on_hundred_scenes() {
+fn hierarchy_and_list_agree() {
     let mut random = Random::new(11);
     let (mut hits, mut rays) = (0, 0);
     for seed in 100..200 {
         let count = random.log_within(1.0, 300.0) as usize;
         let spread = random.log_within(1e-9, 1e12);
         let largest = spread * random.log_within(1e-4, 1.0);
-        let radii = [largest * random.log_within(1e-6, 1.0), largest];
-        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 200);
-        hits += same_hits(Scalar::<false>, seed, count, spread, radii, 100);
-        hits += same_hits(Reference, seed, count, spread, radii, 100);
-        hits += packets_agree(seed, count, spread, radii, 300);
-        rays += 700;
+        let scale = Scale { count, spread, radii: [largest * random.log_within(1e-6, 1.0), largest] };
+        hits += same_hits(Scalar::<true>, seed, scale, 200);
+        hits += same_hits(Scalar::<false>, seed, scale, 100);
+        hits += same_hits(Reference, seed, scale, 100);
+        rays += 400;
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = fearless_simd::Level::new().as_avx2() {
+            use fearless_simd::Simd;
+            hits += simd.vectorize(
+                #[inline(always)]
+                || same_hits(weekender::render_cpu::lanes::Lanes8(simd), seed, scale, 300),
+            );
+            rays += 300;
+        }
     }
     println!("a hundred scenes: {hits} hits of {rays} rays");
     assert!(hits > rays / 4, "{hits}");
-}
-
-/// Packets of rays in all directions find the same hits as single rays tested against the whole list.
-#[cfg(target_arch = "x86_64")]
-fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
-    use fearless_simd::{Level, Simd};
-    use weekender::render_cpu::lanes::Lanes8;
-    let Some(simd) = Level::new().as_avx2() else {
-        return same_hits(Scalar::<false>, seed, count, spread, radii, ray_count);
-    };
-    simd.vectorize(
-        #[inline(always)]
-        || same_packets(Lanes8(simd), seed, count, spread, radii, ray_count),
-    )
-}
-
-#[cfg(not(target_arch = "x86_64"))]
-fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
-    same_hits(Scalar::<false>, seed, count, spread, radii, ray_count)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn same_packets<L: Lanes<Real = f32>>(
-    l: L,
-    seed: u64,
-    count: usize,
-    spread: f64,
-    radii: [f64; 2],
-    ray_count: usize,
-) -> u32 {
-    let mut random = Random::new(seed);
-    let listed = spheres(&mut random, count, spread, radii);
-    let Tree { hierarchy, ordered, rows, numbers } = Tree::<L>::over(&listed);
-    let mut stack = EMPTY_STACK;
-    let mut hits = 0;
-    for _ in 0..ray_count / L::WIDTH {
-        let single: Vec<_> =
-            (0..L::WIDTH).map(|_| one_ray(Scalar::<true>, &mut random, &ordered, spread)).collect();
-        let column = |f: &dyn Fn(&Rays<Scalar<true>>) -> f32| {
-            let mut wide = Wide::default();
-            wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
-            l.load(&wide)
-        };
-        let integers = |f: &dyn Fn(&Rays<Scalar<true>>) -> u32| {
-            let mut wide = WideU::default();
-            wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
-            l.load_u(&wide)
-        };
-        let rays = Rays::<L> {
-            origin: V3 {
-                x: column(&|r| r.origin.x.0),
-                y: column(&|r| r.origin.y.0),
-                z: column(&|r| r.origin.z.0),
-            },
-            direction: V3 {
-                x: column(&|r| r.direction.x.0),
-                y: column(&|r| r.direction.y.0),
-                z: column(&|r| r.direction.z.0),
-            },
-            left: integers(&|r| r.left.0),
-            inside: integers(&|r| r.inside.0),
-        };
-        let mut found = Nearest::nothing(l);
-        let all = l.mask((1 << L::WIDTH) - 1);
-        traverse(l, &hierarchy, &rows, &rays, all, &mut stack, &mut found);
-        let expected = nearest_in_list(l, &rays, &rows, &numbers);
-        let same = found.key.eq(expected.key) & found.sphere.eq(expected.sphere);
-        assert_eq!(same.bits(), all.bits(), "seed {seed}, {count} spheres, spread {spread}");
-        hits += (!found.sphere.eq(l.splat_u(NONE))).bits().count_ones();
-    }
-    hits
 }
 
 /// The book's final picture with and without the hierarchy.

@@ -6,7 +6,7 @@ use weekender::job::render::RenderJob;
 use weekender::kernel::Real;
 use weekender::prepared::PreparedScene;
 use weekender::render_cpu::lanes::{Lanes, Mask, Reference, Scalar};
-use weekender::render_cpu::material::{Surface, incidence_of, scatter};
+use weekender::render_cpu::material::{incidence_of, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root,
     surface_point,
@@ -30,12 +30,6 @@ struct Aimed {
     largest_error: f64,
 }
 
-impl Aimed {
-    fn misclassified(&self) -> f64 {
-        f64::from(self.false_misses + self.false_hits) / f64::from(self.rays)
-    }
-}
-
 /// Aims `count` rays at the disk of radius `reach` radii around a sphere at `distance_away` from the origin, and
 /// compares with the exact roots of the rays as the lanes hold them.
 fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) -> Aimed {
@@ -48,12 +42,9 @@ fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) 
         let radius = f64::from(radius as f32);
         let across = perpendicular(center, &mut random) * (reach * radius * random.unit().sqrt());
         let rays = ray(l, DVec3::ZERO, center + across);
-        let found = distance::<L>(
-            near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)).key(l),
-        );
-        let both = distance::<L>(
-            nearest_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)).key(l),
-        );
+        let sphere = || Spheres::splat(l, packed::<L>(center, radius), number);
+        let found = distance::<L>(near_root(l, &rays, &sphere()).key(l));
+        let both = distance::<L>(nearest_root(l, &rays, &sphere()).key(l));
         assert_eq!(found, both, "one root or two");
         let exact = exact_roots(DVec3::ZERO, vector::<L>(rays.direction), center, radius);
         match (found, exact) {
@@ -66,57 +57,39 @@ fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) 
             (None, None) => {}
         }
         if let Some(t) = found {
-            let point = surface_of(l, &rays, t, center, radius);
-            assert!(point.position.is_finite() && point.outward.is_finite());
+            let point = surface_at(l, &rays, t, center, radius);
+            assert!([point.position, point.outward].into_iter().all(|v| vector::<L>(v).is_finite()));
         }
     }
     result
-}
-
-struct Point {
-    position: DVec3,
-    outward: DVec3,
-}
-
-fn surface_of<L: Lanes>(l: L, rays: &Rays<L>, t: f64, center: DVec3, radius: f64) -> Point {
-    let point = surface_at(l, rays, t, center, radius);
-    Point { position: vector::<L>(point.position), outward: vector::<L>(point.outward) }
 }
 
 pub fn surface_at<L: Lanes>(l: L, rays: &Rays<L>, t: f64, center: DVec3, radius: f64) -> SurfacePoint<L> {
     surface_point(l, rays, l.constant(t), v3(l, center), l.constant(1.0 / radius), l.constant(radius))
 }
 
+/// A sphere that is far away, one at a million radii, and a tiny one.
 #[test]
-fn case_01_far_sphere() {
-    for (name, aimed) in
-        [("fused", aim(FUSED, 1e3, 0.5, 1.0, 200_000)), ("unfused", aim(UNFUSED, 1e3, 0.5, 1.0, 200_000))]
-    {
-        let missed = f64::from(aimed.false_misses) / f64::from(aimed.hits + aimed.false_misses);
-        println!("case 1 {name}: false misses {missed:.2e}, distance {:.2e}", aimed.largest_error);
-        assert!(missed <= 1e-4, "{name}: {missed:e} of the hits are missed");
-        assert!(aimed.largest_error <= 5e-3, "{name}: {aimed:?}");
+fn cases_01_to_03_aimed_rays() {
+    let aimed = |distance, radius, reach, count| {
+        [
+            ("fused", aim(FUSED, distance, radius, reach, count)),
+            ("unfused", aim(UNFUSED, distance, radius, reach, count)),
+        ]
+    };
+    for (name, far) in aimed(1e3, 0.5, 1.0, 200_000) {
+        let missed = f64::from(far.false_misses) / f64::from(far.hits + far.false_misses);
+        println!("case 1 {name}: false misses {missed:.2e}, distance {:.2e}", far.largest_error);
+        assert!(missed <= 1e-4 && far.largest_error <= 5e-3, "{name}: {far:?}");
     }
-}
-
-#[test]
-fn case_02_sphere_at_a_million() {
-    for (name, aimed) in
-        [("fused", aim(FUSED, 1e6, 0.5, 2.0, 100_000)), ("unfused", aim(UNFUSED, 1e6, 0.5, 2.0, 100_000))]
-    {
-        println!("case 2 {name}: misclassified {:.2e}", aimed.misclassified());
-        assert!(aimed.misclassified() <= 0.03, "{name}: {aimed:?}");
+    for (name, farther) in aimed(1e6, 0.5, 2.0, 100_000) {
+        let wrong = f64::from(farther.false_misses + farther.false_hits) / f64::from(farther.rays);
+        println!("case 2 {name}: misclassified {wrong:.2e}");
+        assert!(wrong <= 0.03, "{name}: {farther:?}");
     }
-}
-
-#[test]
-fn case_03_tiny_sphere() {
-    for (name, aimed) in
-        [("fused", aim(FUSED, 3.0, 1e-3, 1.0, 200_000)), ("unfused", aim(UNFUSED, 3.0, 1e-3, 1.0, 200_000))]
-    {
-        let missed = f64::from(aimed.false_misses) / f64::from(aimed.hits + aimed.false_misses);
-        println!("case 3 {name}: distance {:.2e}, false misses {missed:.2e}", aimed.largest_error);
-        assert!(aimed.largest_error <= 2e-5, "{name}: {aimed:?}");
+    for (name, tiny) in aimed(3.0, 1e-3, 1.0, 200_000) {
+        println!("case 3 {name}: distance {:.2e}", tiny.largest_error);
+        assert!(tiny.largest_error <= 2e-5, "{name}: {tiny:?}");
     }
 }
 
@@ -174,30 +147,18 @@ fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
     largest
 }
 
-fn ground_case(number: u32, radius: f64) {
-    for (name, [distance, height]) in
-        [("fused", ground_errors(FUSED, radius)), ("unfused", ground_errors(UNFUSED, radius))]
-    {
-        println!("case {number} {name}: distance {distance:.2e}, height of the hit {height:.2e}");
-        assert!(distance <= 2e-5, "{name}: {distance:e}");
+#[test]
+fn cases_04_to_06_grounds() {
+    for (number, radius) in [(4, 1e3), (5, 1e5), (6, 1e7)] {
+        for (name, [distance, height]) in
+            [("fused", ground_errors(FUSED, radius)), ("unfused", ground_errors(UNFUSED, radius))]
+        {
+            println!("case {number} {name}: distance {distance:.2e}, height of the hit {height:.2e}");
+            assert!(distance <= 2e-5, "{name}: {distance:e}");
+        }
+        let [distance, _] = ground_errors(Reference, radius);
+        assert!(distance <= 1e-8, "the reference itself: {distance:e}");
     }
-    let [distance, _] = ground_errors(Reference, radius);
-    assert!(distance <= 1e-8, "the reference itself: {distance:e}");
-}
-
-#[test]
-fn case_04_ground_of_radius_1e3() {
-    ground_case(4, 1e3);
-}
-
-#[test]
-fn case_05_ground_of_radius_1e5() {
-    ground_case(5, 1e5);
-}
-
-#[test]
-fn case_06_ground_of_radius_1e7() {
-    ground_case(6, 1e7);
 }
 
 #[test]
@@ -211,17 +172,9 @@ fn case_07_direction_of_any_length() {
         let towards = center + across - origin;
         let hit = |length: f64| {
             let rays = ray(UNFUSED, origin, towards.normalize() * length);
-            let key = near_root(
-                UNFUSED,
-                &rays,
-                &Spheres::splat(
-                    UNFUSED,
-                    packed::<Scalar<false>>(center, 0.5),
-                    Lanes::splat_u(UNFUSED, NUMBER),
-                ),
-            )
-            .key(UNFUSED);
-            distance::<Scalar<false>>(key)
+            let sphere = packed::<Scalar<false>>(center, 0.5);
+            let sphere = Spheres::splat(UNFUSED, sphere, Lanes::splat_u(UNFUSED, NUMBER));
+            distance::<Scalar<false>>(near_root(UNFUSED, &rays, &sphere).key(UNFUSED))
         };
         let [short, one, long] = [1e-3, 1.0, 1e6].map(|length| hit(length).expect("the same hit"));
         for other in [short, long] {
@@ -256,15 +209,10 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let direction = perpendicular(normal, &mut random) + normal * lift;
         let mut rays = ray(l, DVec3::ZERO, direction);
         (rays.origin, rays.left) = (point.position, number);
-        let sphere = packed::<Scalar<false>>(center, radius);
-        assert_eq!(
-            distance::<Scalar<false>>(near_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l)),
-            None
-        );
-        assert_eq!(
-            distance::<Scalar<false>>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l)),
-            None
-        );
+        let sphere = || Spheres::splat(l, packed::<Scalar<false>>(center, radius), number);
+        for key in [near_root(l, &rays, &sphere()).key(l), nearest_root(l, &rays, &sphere()).key(l)] {
+            assert_eq!(distance::<Scalar<false>>(key), None);
+        }
         left += 1;
     }
     // A ground, seen from its anchor.
@@ -290,12 +238,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)).key(l))?;
     let point = surface_at(l, &rays, t, center, radius);
     let cosine = -rays.direction.dot(point.outward);
-    let surface = Surface::<L> {
-        weight: l.constant(-0.0),
-        refraction_index: l.constant(1.5),
-        inverse_index: l.constant(1.0 / 1.5),
-        f0: l.constant(0.04),
-    };
+    let surface = glass_surface(l, 1.5);
     let zero = v3(l, DVec3::ZERO);
     let bounced = scatter::<L, true>(
         l,

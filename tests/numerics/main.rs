@@ -5,7 +5,7 @@
 //! `f64`; whole pictures run in the widest packets against the `f64` reference, sample by sample. The
 //! module [`parity`] tests that the other widths render the same bits.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod camera;
 mod common;
@@ -13,7 +13,6 @@ mod film;
 mod hierarchy;
 mod images;
 mod intersection;
-mod layers;
 mod materials;
 mod parity;
 mod reflections;

@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::DVec3;
 use weekender::job::render::{RenderSettings, SamplerKind};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
-use weekender::render_cpu::material::{Surface, incidence_of, incidence_of_sine2, reflectance, scatter};
+use weekender::render_cpu::material::{incidence_of, incidence_of_sine2, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
 use weekender::stages::DielectricLaws;
 
@@ -151,17 +151,11 @@ fn grazing<const FUSED: bool>() {
     let mut random = Random::new(7);
     for step in 0..20_000 {
         let index = if step == 0 { 1.0 } else { random.log_within(1e-3, 1e3) };
-        let f0 = l.constant(((1.0 - index) / (1.0 + index)).powi(2));
-        assert_eq!(reflectance(l, l.constant(0.0), f0).0, 1.0, "index {index}");
+        let surface = glass_surface(l, index);
+        assert_eq!(reflectance(l, l.constant(0.0), surface.f0).0, 1.0, "index {index}");
         let normal = random.direction();
         let direction = perpendicular(normal, &mut random);
         for front in [false, true] {
-            let surface = Surface::<Scalar<FUSED>> {
-                weight: l.constant(-0.0),
-                refraction_index: l.constant(index),
-                inverse_index: l.constant(1.0 / index),
-                f0,
-            };
             // The largest random number below 1.
             let coin = l.splat(weekender::kernel::sampling::unit_float(u32::MAX));
             let zero = v3(l, DVec3::ZERO);

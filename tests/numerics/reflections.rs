@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::intersection::{FUSED, NUMBER, UNFUSED, surface_at};
 use glam::DVec3;
 use weekender::render_cpu::lanes::{Float, Lanes, Mask, V3};
-use weekender::render_cpu::material::{Surface, incidence_of, scatter};
+use weekender::render_cpu::material::{incidence_of, scatter};
 use weekender::render_cpu::sphere::{NONE, Rays, Spheres, nearest_root};
 use weekender::stages::DielectricLaws;
 
@@ -22,12 +22,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
         left: l.splat_u(NONE),
         inside: number,
     };
-    let surface = Surface::<L> {
-        weight: l.constant(-0.0),
-        refraction_index: l.constant(1.5),
-        inverse_index: l.constant(1.0 / 1.5),
-        f0: l.constant(0.04),
-    };
+    let surface = glass_surface(l, 1.5);
     let zero = l.constant(0.0);
     let rounded_center = vector::<L>(v3(l, center));
     let mut largest = [0.0_f64; 2];

@@ -2,12 +2,15 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod pipes;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 
 use std::path::{Path, PathBuf};
 use weekender::film::{CheckpointError, checkpoint};
 use weekender::job::output::{Encoding, Values, decode_picture, read_picture};
 use weekender::job::saved::{self, OpenError};
 use weekender::pictures::Picture;
+use weekender::pictures::check::Mine;
 use weekender::pictures::compare::{Comparison, compare_sides};
 use weekender::stages::Transfer;
 
@@ -139,57 +142,106 @@ fn other_formats_are_named() {
     }
 }
 
-fn decoded(bytes: &[u8]) -> (Vec<[u16; 3]>, String) {
-    let read = decode_picture(std::io::Cursor::new(bytes), bytes.len() as u64, None)
-        .unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(bytes)));
+/// The pixels of a file, and what is said about it.
+fn decoded(bytes: &[u8]) -> Result<(Vec<[u16; 3]>, String), String> {
+    let read = decode_picture(std::io::Cursor::new(bytes), bytes.len() as u64, None);
+    let read = read.map_err(|error| error.to_string())?;
     let Values::Integers { rgb, .. } = read.values else { panic!("floats") };
     let titles = read.damages.into_iter().map(|damage| damage.title).chain(read.notes);
-    (rgb, titles.collect::<Vec<_>>().join("; "))
+    Ok((rgb, titles.collect::<Vec<_>>().join("; ")))
 }
 
-#[test]
-fn faults_of_text_pictures_are_named() {
-    let right = vec![[204, 226, 255], [1, 2, 3]];
-    for (text, said) in [
-        ("P3 2 1 255 204 226 255 1 2 3", ""),
-        ("P3\n#a\n2 # b\n1\n# c\n255 # d\n204 # e 7\n226 255\n#f\n1 2 3#g", ""),
-        ("P3\n2 1\n255\n204, 226, 255\n1, 2, 3,\n", "commas between"),
-        ("P3\n2 1\n255\n204,226,255\n1,2,3\n", "commas between"),
-        ("P3\n2 1\n255\n204,5 226,0 255,0\n1,2 2,9 3,0\n", "decimal commas"),
-        ("P3 2 1 255 9 9 9 9 9 9\nP3 2 1 255 204 226 255 1 2 3", "several pictures"),
-        ("P3 2 1 255 9 9 9\nP3 2 1 255 204 226 255 1 2 3", "several pictures"),
-    ] {
-        let (found, notes) = decoded(text.as_bytes());
-        assert!(
-            found == right && notes.contains(said) && notes.is_empty() == said.is_empty(),
-            "{text}: {notes}"
-        );
+/// Files with the pixels `right`, and a word of what is said about each, if anything is.
+fn assert_decoded(right: [[u16; 3]; 2], files: &[(Vec<u8>, &str)]) {
+    for (file, said) in files {
+        let shown = String::from_utf8_lossy(file);
+        let (found, notes) = decoded(file).unwrap_or_else(|error| panic!("{error}: {shown}"));
+        assert_eq!(found, right, "{shown}");
+        assert!(notes.contains(said) && notes.is_empty() == said.is_empty(), "{shown}: {notes}");
     }
 }
 
 #[test]
-fn faults_of_binary_pictures_are_named() {
-    let right = vec![[10, 13, 10], [32, 9, 10]];
+fn text_pictures_are_read_and_their_faults_named() {
+    const P3: &str = "P3\n# tiny\n2 1\n255\n204 226 255\n1 2 3\n";
+    let files = [
+        (P3, ""),
+        ("P3\r2 1\r255\r204 226 255\r1 2 3", ""),
+        ("P3\r\n2\t1 255 # c 9 9\r\n204 226 255\r\n1 2 3\r\n", ""),
+        ("P3\n#a\n2 # b\n1\n# c\n255 # d\n204 # e 7\n226 255\n#f\n1 2 3#g", ""),
+        ("\u{FEFF}P3 2 1 255 204 226 255 1 2 3", "byte order mark"),
+        ("P3\n2 1\n255\n204, 226, 255\n1, 2, 3,\n", "commas between"),
+        ("P3\n2 1\n255\n204,226,255\n1,2,3\n", "commas between"),
+        ("P3\n2 1\n255\n204,5 226,0 255,0\n1,2 2,9 3,0\n", "decimal commas"),
+        ("P3\n2 1\n255\n204 226.4 255\n1 2 3\n", "1 values are not whole"),
+        ("P3\n2 1\n255\n204 226 256\n1 2 3\n", "1 numbers"),
+        ("P3 2 1 255 204 226 255 1 2 3 7", "7 numbers"),
+        ("P3\n2 1\n255\nScanlines remaining: 1\n204 226 255 1 2 3", "1 lines"),
+        ("starting\nP3\n2 1\n255\n204 226 255\n1 2 3\n", "other text before"),
+        ("P3 2 1 255 9 9 9 9 9 9\nP3 2 1 255 204 226 255 1 2 3", "several pictures"),
+        ("P3 2 1 255 9 9 9\nP3 2 1 255 204 226 255 1 2 3", "several pictures"),
+    ]
+    .map(|(file, said)| (file.as_bytes().to_vec(), said));
+    assert_decoded([[204, 226, 255], [1, 2, 3]], &files);
+    let utf_16 = ["", "\u{FEFF}"].into_iter().flat_map(|mark| {
+        let words = move || mark.encode_utf16().chain(P3.encode_utf16());
+        [words().flat_map(u16::to_le_bytes).collect(), words().flat_map(u16::to_be_bytes).collect()]
+    });
+    let utf_16: Vec<(Vec<u8>, &str)> = utf_16.map(|file| (file, "UTF-16")).collect();
+    assert_decoded([[204, 226, 255], [1, 2, 3]], &utf_16);
+}
+
+#[test]
+fn binary_pictures_are_read_and_their_faults_named() {
     let pixels = b"\n\r\n \t\n";
     let file = |header: &[u8], pixels: &[u8], more: &[u8]| [header, pixels, more].concat();
-    let with_returns = b"\r\n\r\r\n \t\r\n";
-    for (bytes, said) in [
+    let files = [
         (file(b"P6 2 1 255\n", pixels, b""), ""),
         (file(b"P6\r\n2 1\r\n255\r\n", pixels, b""), ""),
         (file(b"P6 2 1 255 \n", pixels, b""), ""),
-        (file(b"P6 2 1 255#x\n", pixels, b""), ""),
-        (file(b"P6\r\n2 1\r\n255\r\n", with_returns, b""), "text mode"),
+        (file(b"P6 # a\n2\n#b\n# c\n1 255#x\n", pixels, b""), ""),
+        (file(b"P6\r\n2 1\r\n255\r\n", b"\r\n\r\r\n \t\r\n", b""), "text mode"),
         (file(b"P6 2 1 255\n", pixels, b"more"), "4 bytes after"),
         (file(b"P6 2 1 255\n", b"123456", &file(b"P6 2 1 255\n", pixels, b"")), "several pictures"),
         (file(b"P6 2 1 255\n", b"123456", b"\nP3 2 1 255 10 13 10 32 9 10"), "several pictures"),
         (file(b"Scanlines: 3\nDone.\nP6 2 1 255\n", pixels, b""), "other text before"),
+    ];
+    assert_decoded([[10, 13, 10], [32, 9, 10]], &files);
+}
+
+#[test]
+fn files_that_are_no_pictures_are_refused() {
+    for (file, word) in [
+        (&b"P3 2 2 255 0 0 0 0 0 0 0"[..], "1 of 2 rows"),
+        (b"P3 2 2 255 0 0 0", "12 numbers"),
+        (b"P6 2 1 255\n12", "binary mode"),
+        (b"P3", "header"),
+        (b"P3 0 5 255", "0 x 5"),
+        (b"P3 99999 99999 255", "99999x99999"),
+        (b"P6 99999 99999 255\n", "99999x99999"),
+        (b"GIF89a", "it is a GIF file"),
+        (b"", "it is not a PNG"),
     ] {
-        let (found, notes) = decoded(&bytes);
-        assert!(
-            found == right && notes.contains(said) && notes.is_empty() == said.is_empty(),
-            "{notes}: {found:?}"
-        );
+        let reason = Mine::decode(file).unwrap_err();
+        assert!(reason.contains(word), "{reason} should say {word}");
     }
+}
+
+/// Values are scaled by the largest one; alpha is ignored.
+#[test]
+fn bytes_of_a_picture_are_those_of_255() {
+    for (file, byte) in [
+        ("P3 1 1 1 0 1 1", [0, 255, 255]),
+        ("P3 1 1 65535 0 32768 65535", [0, 128, 255]),
+        ("P3 1 1 100 50 99 -7", [128, 252, 0]),
+    ] {
+        assert_eq!(Mine::decode(file.as_bytes()).unwrap().bytes, [byte], "{file}");
+    }
+    let image = image::RgbaImage::from_fn(16, 9, |x, y| image::Rgba([7, x as u8, y as u8, x as u8]));
+    let mut file = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut file, image::ImageFormat::Png).unwrap();
+    let png = Mine::decode(file.get_ref()).unwrap();
+    assert_eq!((png.bytes[5 * 16 + 3], png.format), ([7, 3, 5], "PNG"));
 }
 
 #[test]

@@ -1,28 +1,20 @@
 //! Standard input and output, and pipes.
 
+use crate::program_common::{self, text};
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 fn weekender(directory: &Path, arguments: &str, input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_weekender"))
-        .args(arguments.split(' '))
-        .current_dir(directory)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut command = program_common::weekender(directory, &arguments.split(' ').collect::<Vec<_>>());
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
     let input = input.to_vec();
     let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().unwrap();
     writer.join().unwrap();
     output
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 #[test]
@@ -95,7 +87,7 @@ fn check_reads_standard_input_and_fifos() {
     #[cfg(unix)]
     {
         std::fs::write(at.join("a.ppm"), &picture.stdout).unwrap();
-        let line = format!("{} check <(cat a.ppm) --stage metal", env!("CARGO_BIN_EXE_weekender"));
+        let line = format!("{} check <(cat a.ppm) --stage metal", program_common::PROGRAM);
         let found = Command::new("bash").args(["-c", &line]).current_dir(at).output().unwrap();
         assert_eq!(found.status.code(), Some(0), "{}", text(&found.stderr));
     }

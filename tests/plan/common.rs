@@ -1,41 +1,19 @@
 //! Plans of a small picture.
 
-pub use crate::program_common::text;
+pub use crate::program_common::{ends, film, json, succeeds};
 
 use crate::program_common::weekender;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use weekender::film::{Film, checkpoint};
+use std::process::Command;
+use weekender::film::Film;
 
 /// A small picture. Two threads of the CPU make the same bits everywhere.
 pub const PICTURE: [&str; 6] = ["--size", "32x18", "--device", "cpu", "--threads", "2"];
 
 pub fn command(at: &Path, arguments: &[&str]) -> Command {
     let mut command = weekender(at, arguments);
-    for name in ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"] {
-        command.env_remove(name);
-    }
+    command.env_remove("SLURM_ARRAY_TASK_ID").env_remove("JOB_COMPLETION_INDEX");
     command
-}
-
-pub fn run(at: &Path, arguments: &[&str]) -> Output {
-    command(at, arguments).output().unwrap()
-}
-
-/// Runs a command that must end with `code`. Returns standard output and standard error.
-pub fn ends(at: &Path, code: i32, arguments: &[&str]) -> (String, String) {
-    let output = run(at, arguments);
-    let (out, message) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{message}");
-    (out, message)
-}
-
-pub fn succeeds(at: &Path, arguments: &[&str]) -> String {
-    ends(at, 0, arguments).0
-}
-
-pub fn film(path: &Path) -> Film {
-    checkpoint::load(path).unwrap().film
 }
 
 /// Plans the small picture with these flags into `directory`. Returns standard output.

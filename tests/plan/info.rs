@@ -1,7 +1,6 @@
 //! `weekender info`.
 
-use super::common::{PICTURE, ends, plan, render_part, succeeds, whole};
-use serde_json::Value;
+use super::common::{PICTURE, ends, film, json, plan, render_part, succeeds, whole};
 use tempfile::TempDir;
 
 #[test]
@@ -13,8 +12,7 @@ fn files_say_what_they_are() {
     let pictures = ["--samples", "4", "--progress", "off", "--out", "a.png", "--checkpoint", "a b.exr"];
     succeeds(at, &[&["--batch"], &PICTURE[..], &pictures].concat());
     succeeds(at, &["--scene", "book", "--save-scene", "s.toml"]);
-    let json =
-        |file: &str| -> Value { serde_json::from_str(&succeeds(at, &["info", file, "--json"])).unwrap() };
+    let json = |file: &str| json(at, &["info", file, "--json"]);
     let keys = ["kind", "scene", "stage", "samples_per_pixel", "sample_ranges", "film_version", "parts"];
     let of = |file: &str| {
         let json = json(file);
@@ -40,17 +38,10 @@ fn files_say_what_they_are() {
     let before = whole(at, "0..4", &[]);
     std::fs::remove_file(at.join("a b.exr")).unwrap();
     succeeds(at, &words.iter().skip(1).map(String::as_str).collect::<Vec<_>>());
-    assert!(super::common::film(&at.join("a b.exr")) == before);
+    assert!(film(&at.join("a b.exr")) == before);
     let part = json("p/part-1.exr")["command"].as_str().unwrap().to_owned();
     assert_eq!(part, "weekender render-part p --part 1 --device cpu");
-    for words in [
-        "film     a b.exr",
-        "version 4",
-        "three-spheres, 32x18",
-        "4 per pixel, samples 0..4",
-        "RMSE",
-        "program  Weekender",
-    ] {
+    for words in ["three-spheres, 32x18", "4 per pixel, samples 0..4", "RMSE"] {
         assert!(message.contains(words), "{words}: {message}");
     }
     std::fs::write(at.join("x.exr"), "x").unwrap();

@@ -1,6 +1,8 @@
 //! Parts rendered one by one.
 
-use super::common::{command, damage, ends, film, part_path, plan, render_part, succeeds, whole};
+use super::common::{command, damage, ends, film, json, part_path, plan, render_part, succeeds, whole};
+use crate::program_common::{signal, text, until};
+use std::process::Command;
 use tempfile::TempDir;
 
 #[test]
@@ -43,17 +45,17 @@ fn commands_quote_directories_for_the_shell() {
     let directory = "it's a \"plan\" for $HOME & Köln; *";
     let lines = plan(at, directory, &["--samples", "4", "--parts", "2"]);
     assert_eq!(lines.lines().count(), 2);
-    let shell =
-        std::process::Command::new("sh").arg("-e").arg("-c").arg(&lines).current_dir(at).output().unwrap();
-    assert!(shell.status.success(), "{lines}{}", String::from_utf8_lossy(&shell.stderr));
+    let shell = |line: &str| {
+        let output = Command::new("sh").args(["-e", "-c", line]).current_dir(at).output().unwrap();
+        assert!(output.status.success(), "{line}{}", text(&output.stderr));
+    };
+    shell(&lines);
     succeeds(at, &["merge", directory, "--out", "merged.exr"]);
     assert!(film(&at.join("merged.exr")) == whole(at, "0..4", &[]));
     std::fs::remove_file(part_path(at, directory, 1)).unwrap();
     // The command for what is missing is quoted for a shell, too.
     let (message, _) = ends(at, 1, &["merge", directory, "--check"]);
-    let line = message.lines().last().unwrap();
-    let shell = std::process::Command::new("sh").arg("-c").arg(line).current_dir(at).output().unwrap();
-    assert!(shell.status.success(), "{line}{}", String::from_utf8_lossy(&shell.stderr));
+    shell(message.lines().last().unwrap());
     succeeds(at, &["merge", directory, "--check"]);
 }
 
@@ -64,33 +66,21 @@ fn part_continues_from_its_checkpoint_unless_whole() {
     plan(at, "p", &["--samples", "64", "--parts", "2"]);
     let path = part_path(at, "p", 1);
     // As a killed run leaves it.
-    let begun = whole(at, "32..39", &[]);
+    whole(at, "32..39", &[]);
     std::fs::rename(at.join("one-run.exr"), &path).unwrap();
-    let json = succeeds(
-        at,
-        &["render-part", "p/plan.json", "--part", "1", "--device", "cpu", "--threads", "2", "--json", "-"],
-    );
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!((&json["added_samples_per_pixel"], &json["samples_per_pixel"]), (&25.into(), &32.into()));
-    assert_eq!(begun.sample_count(), 7);
-    let complete = film(&path);
-    assert!(complete == whole(at, "32..64", &[]));
+    let part = ["render-part", "p/plan.json", "--part", "1", "--device", "cpu", "--json", "-"];
+    let found = json(at, &part);
+    assert_eq!((&found["added_samples_per_pixel"], &found["samples_per_pixel"]), (&25.into(), &32.into()));
+    assert!(film(&path) == whole(at, "32..64", &[]));
 
     let modified = || std::fs::metadata(&path).unwrap().modified().unwrap();
     let before = modified();
     assert!(render_part(at, "p", 1).contains("part 1 is whole: samples 32..64 in"));
-    assert_eq!(modified(), before);
     // A scheduler that repeats a command reads the same JSON again.
-    for target in ["-", "p1.json"] {
-        let part = ["render-part", "p", "--part", "1", "--device", "cpu", "--json", target];
-        let (out, message) = ends(at, 0, &part);
-        let json = if target == "-" { out } else { std::fs::read_to_string(at.join(target)).unwrap() };
-        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-        assert_eq!((&json["added_samples_per_pixel"], &json["samples_per_pixel"]), (&0.into(), &32.into()));
-        assert_eq!((&json["ended_by"], &json["files"][0]), (&"samples".into(), &"p/part-1.exr".into()));
-        assert!(json["rmse_estimate"].is_number() && json["paths"] == 0, "{json}");
-        assert_eq!(message.contains("part 1 is whole"), target == "-");
-    }
+    let again = json(at, &part);
+    assert_eq!((&again["added_samples_per_pixel"], &again["samples_per_pixel"]), (&0.into(), &32.into()));
+    assert_eq!((&again["ended_by"], &again["files"][0]), (&"samples".into(), &"p/part-1.exr".into()));
+    assert!(again["rmse_estimate"].is_number() && again["paths"] == 0, "{again}");
     assert_eq!(modified(), before);
     // The remedy lists only the unfinished part.
     let (message, _) = ends(at, 1, &["merge", "p", "--check"]);
@@ -145,13 +135,10 @@ fn second_run_of_a_part_is_refused() {
     plan(at, "p", &["--samples", "4294967296", "--parts", "2"]);
     let part = ["render-part", "p", "--part", "0", "--device", "cpu", "--threads", "1", "--every", "0.1s"];
     let mut first = command(at, &part).stdout(std::process::Stdio::null()).spawn().unwrap();
-    while !part_path(at, "p", 0).exists() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+    until("the film is not written", || part_path(at, "p", 0).exists());
     let (_, message) = ends(at, 2, &part);
     assert!(message.contains("part-0.exr is locked"), "{message}");
-    let killed = std::process::Command::new("kill").arg(first.id().to_string()).status().unwrap();
-    assert!(killed.success());
+    signal(&first, "TERM");
     assert_eq!(first.wait().unwrap().code(), Some(143));
     assert!(film(&part_path(at, "p", 0)).sample_count() > 0);
 }

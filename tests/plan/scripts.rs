@@ -1,6 +1,7 @@
 //! The files for Slurm, GNU parallel and make.
 
 use super::common::{film, part_path, plan, whole};
+use crate::program_common::{PROGRAM, signal, text, until};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -10,7 +11,7 @@ use tempfile::TempDir;
 /// A program whose name a shell and make would split if it were not quoted.
 fn awkward_program(at: &Path) -> String {
     let path = at.join("it's $HOME's weekender");
-    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_weekender"), &path).unwrap();
+    std::os::unix::fs::symlink(PROGRAM, &path).unwrap();
     path.to_str().unwrap().to_owned()
 }
 
@@ -22,44 +23,32 @@ fn is_there(tool: &str) -> bool {
     found
 }
 
-#[cfg(unix)]
-#[test]
-fn make_renders_and_merges() {
-    if !is_there("make") {
-        return;
-    }
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let program = awkward_program(at);
-    let flags = ["--samples", "6", "--parts", "3", "--format", "make", "--program", &program];
-    let start = plan(at, "a b", &flags);
-    assert_eq!(start, "make -C 'a b'\n");
-    let make = || Command::new("sh").arg("-c").arg(&start).current_dir(at).output().unwrap();
-    let made = make();
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
-    // Only what was lost is rendered again.
-    fs::remove_file(part_path(at, "a b", 1)).unwrap();
-    let again = make();
-    let message = String::from_utf8_lossy(&again.stdout);
-    assert!(again.status.success() && message.matches("is whole: samples").count() == 2, "{message}");
+/// Runs a line in a shell. Returns standard output.
+fn shell(at: &Path, line: &str) -> String {
+    let output = Command::new("sh").args(["-c", line]).current_dir(at).output().unwrap();
+    assert!(output.status.success(), "{line}{}", text(&output.stderr));
+    text(&output.stdout)
 }
 
 #[cfg(unix)]
 #[test]
-fn parallel_renders_and_merges() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let program = awkward_program(at);
-    let flags = ["--samples", "6", "--parts", "3", "--format", "parallel", "--program", &program];
-    let start = plan(at, "a b", &flags);
-    assert_eq!(start, "sh 'a b/run.sh'\n");
-    if !is_there("parallel") {
-        return;
+fn make_and_parallel_render_and_merge() {
+    for (tool, start) in [("make", "make -C 'a b'\n"), ("parallel", "sh 'a b/run.sh'\n")] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let program = awkward_program(at);
+        let flags = ["--samples", "6", "--parts", "3", "--format", tool, "--program", &program];
+        assert_eq!(plan(at, "a b", &flags), start);
+        if !is_there(tool) {
+            continue;
+        }
+        shell(at, start);
+        assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
+        // Only what was lost is rendered again.
+        fs::remove_file(part_path(at, "a b", 1)).unwrap();
+        let again = shell(at, start);
+        assert!(tool != "make" || again.matches("is whole: samples").count() == 2, "{again}");
     }
-    let run = Command::new("sh").arg("-c").arg(&start).current_dir(at).output().unwrap();
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
 }
 
 /// Slurm itself is not needed: a task is its script with the variables that Slurm sets.
@@ -78,6 +67,7 @@ fn slurm_task_requeues_itself_after_sigterm() {
     for line in ["#SBATCH --array=0-63", "#SBATCH --requeue", "#SBATCH --signal=B:TERM@120"] {
         assert!(script.lines().any(|found| found == line), "{line}: {script}");
     }
+    assert!(script.contains("--every"), "{script}");
     assert!(fs::read_to_string(at.join("a b/submit.sh")).unwrap().contains("afterany"));
     // A scontrol that records how it is called.
     let tools = at.join("tools");
@@ -101,17 +91,9 @@ fn slurm_task_requeues_itself_after_sigterm() {
             .unwrap();
         let part = at.join("a b/part-05.exr");
         let before = if part.exists() { film(&part).sample_count() } else { 0 };
-        let (begin, mut is_late) = (std::time::Instant::now(), false);
-        while !is_late && (!part.exists() || film(&part).sample_count() == before) {
-            std::thread::sleep(std::time::Duration::from_millis(20));
-            // Much later than --every asks, but sooner than without it.
-            is_late = begin.elapsed().as_secs() >= 45;
-        }
-        let killed = Command::new("kill").args(["-s", "TERM", &task.id().to_string()]).status().unwrap();
-        assert!(killed.success());
+        until("no checkpoint is written", || part.exists() && film(&part).sample_count() > before);
+        signal(&task, "TERM");
         assert_eq!(task.wait().unwrap().code(), Some(143));
-        assert!(!is_late, "no checkpoint is written");
         assert_eq!(fs::read_to_string(&asked_path).unwrap(), asked);
-        assert!(film(&part).sample_count() > before);
     }
 }

@@ -1,5 +1,6 @@
 //! A renderer that fails on request.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
@@ -17,6 +18,12 @@ pub const PAUSE: Duration = Duration::from_micros(100);
 
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
+type Pass =
+    Box<dyn FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send>;
+
+type Prepare = Box<dyn FnMut(&AtomicBool) -> Result<(), RenderError> + Send>;
+type OnPass = Box<dyn FnMut(&Range<u64>, u32) + Send>;
+
 /// Adds to each pixel a number that depends only on pixel and sample.
 pub struct Fake {
     pub name: &'static str,
@@ -24,14 +31,23 @@ pub struct Fake {
     pub pause: Duration,
     pub fails_at: Option<u64>,
     pub panics_at: Option<u64>,
-    /// Time to prepare.
-    pub preparation: Duration,
     /// Message after every pass.
     pub message: Option<&'static str>,
     /// Claimed time per sample before its first pass, after a quick and after a thorough trial.
     pub trial: Option<[Duration; 2]>,
     /// Whether later passes last until they are stopped and are then given up.
     pub waits_for_stop: bool,
+    pub value: Box<dyn Fn(usize, u64) -> PixelSum + Send>,
+    pub prepares: Option<Prepare>,
+    /// What a pass does instead.
+    pub pass: Option<Pass>,
+    /// Passes whose samples are held back until they are collected, as by a GPU.
+    pub holds: usize,
+    pub held: VecDeque<Range<u64>>,
+    /// Collections that succeed before one loses the samples.
+    pub good_collections: u32,
+    /// Called on every pass that is held back with the number of collections that will still succeed.
+    pub on_pass: OnPass,
 }
 
 impl Fake {
@@ -43,11 +59,34 @@ impl Fake {
             pause: PAUSE,
             fails_at: None,
             panics_at: None,
-            preparation: Duration::ZERO,
             message: None,
             trial: None,
             waits_for_stop: false,
+            value: Box::new(sample),
+            prepares: None,
+            pass: None,
+            holds: 0,
+            held: VecDeque::new(),
+            good_collections: u32::MAX,
+            on_pass: Box::new(|_, _| ()),
         }
+    }
+
+    pub fn preparing_for(self, time: Duration) -> Self {
+        let prepares = move |_: &AtomicBool| {
+            std::thread::sleep(time);
+            Ok(())
+        };
+        Fake { prepares: Some(Box::new(prepares)), ..self }
+    }
+
+    /// Holds all samples back until they are collected.
+    pub fn holding(
+        self,
+        good_collections: u32,
+        on_pass: impl FnMut(&Range<u64>, u32) + Send + 'static,
+    ) -> Box<dyn Renderer> {
+        Box::new(Fake { holds: usize::MAX, good_collections, on_pass: Box::new(on_pass), ..self })
     }
 }
 
@@ -69,9 +108,9 @@ impl Renderer for Fake {
         self.message.into_iter().map(str::to_owned).collect()
     }
 
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        std::thread::sleep(self.preparation);
-        Ok(())
+    fn prepare(&mut self, _: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.held.clear();
+        self.prepares.as_mut().map_or(Ok(()), |prepares| prepares(cancel))
     }
 
     fn try_out(&mut self, _: &mut Film, one_in: usize, _: &AtomicBool) -> Option<Duration> {
@@ -95,6 +134,39 @@ impl Renderer for Fake {
         Ok(None)
     }
 
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        if self.holds == 0 {
+            return self.accumulate(job, range, film, cancel);
+        }
+        std::thread::sleep(PAUSE);
+        (self.on_pass)(&range, self.good_collections);
+        self.held.push_back(range);
+        if self.held.len() <= self.holds {
+            return Ok(Stats::default());
+        }
+        let due = self.held.pop_front().unwrap();
+        self.accumulate(job, due, film, cancel)
+    }
+
+    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        let held = std::mem::take(&mut self.held);
+        if self.holds > 0 {
+            self.good_collections =
+                self.good_collections.checked_sub(1).ok_or_else(|| pulled_out(self.name))?;
+        }
+        let mut stats = Stats::default();
+        for range in held {
+            stats.add(&self.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
+        }
+        Ok(stats)
+    }
+
     fn accumulate(
         &mut self,
         _: &RenderJob,
@@ -102,6 +174,11 @@ impl Renderer for Fake {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
+        if let Some(mut pass) = self.pass.take() {
+            let outcome = pass(self, range, film, cancel);
+            self.pass = Some(pass);
+            return outcome;
+        }
         if self.fails_at.is_some_and(|at| range.end > at) {
             return Err(pulled_out(self.name));
         }
@@ -113,7 +190,7 @@ impl Renderer for Fake {
             std::thread::sleep(self.pause);
             let half_count = film.halves().len();
             let half = &mut film.halves_mut()[index as usize % half_count];
-            half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add(sample(pixel, index)));
+            half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add((self.value)(pixel, index)));
         }
         let samples = range.end - range.start;
         film.record(range, 0)?;
@@ -122,39 +199,11 @@ impl Renderer for Fake {
 }
 
 /// A fake renderer whose passes are made by a closure.
-struct Scripted<A> {
-    fake: Fake,
-    pass: A,
-}
-
-impl<A> Renderer for Scripted<A>
-where
-    A: FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send,
-{
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.fake.prepare(job, cancel)
-    }
-
-    fn accumulate(
-        &mut self,
-        _: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        (self.pass)(&mut self.fake, range, film, cancel)
-    }
-}
-
 pub fn scripted<A>(name: &'static str, pass: A) -> Box<dyn Renderer>
 where
     A: FnMut(&mut Fake, Range<u64>, &mut Film, &AtomicBool) -> Result<Stats, RenderError> + Send + 'static,
 {
-    Box::new(Scripted { fake: Fake::new(name), pass })
+    Box::new(Fake { pass: Some(Box::new(pass)), ..Fake::new(name) })
 }
 
 /// Spoils the film in its second pass, then calls `spoilt`.
@@ -174,67 +223,6 @@ pub fn spoiling(name: &'static str, mut spoilt: impl FnMut() + Send + 'static) -
 /// Adds nothing to the film and does not report it.
 pub fn forgetful() -> Box<dyn Renderer> {
     scripted("cpu", |_, _, _, _| Ok(Stats::default()))
-}
-
-/// Holds samples back until they are collected, as a GPU does.
-pub struct Holding<F> {
-    fake: Fake,
-    held: Vec<Range<u64>>,
-    /// Collections that succeed before one loses the samples.
-    good_collections: u32,
-    /// Called on every pass with the number of collections that will still succeed.
-    on_pass: F,
-}
-
-impl<F: FnMut(&Range<u64>, u32) + Send> Holding<F> {
-    pub fn new(fake: Fake, good_collections: u32, on_pass: F) -> Self {
-        Holding { fake, held: Vec::new(), good_collections, on_pass }
-    }
-}
-
-impl<F: FnMut(&Range<u64>, u32) + Send> Renderer for Holding<F> {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        self.held.clear();
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.fake.accumulate(job, range, film, cancel)
-    }
-
-    fn advance(
-        &mut self,
-        _: &RenderJob,
-        range: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        std::thread::sleep(PAUSE);
-        (self.on_pass)(&range, self.good_collections);
-        self.held.push(range);
-        Ok(Stats::default())
-    }
-
-    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        let held = std::mem::take(&mut self.held);
-        self.good_collections =
-            self.good_collections.checked_sub(1).ok_or_else(|| pulled_out(self.fake.name))?;
-        let mut stats = Stats::default();
-        for range in held {
-            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
-        }
-        Ok(stats)
-    }
 }
 
 pub const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {

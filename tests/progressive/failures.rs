@@ -1,8 +1,8 @@
 //! Failures and panics of backends, listeners and the render thread.
 
 use super::common::{
-    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, spoiling,
-    started, started_with, stopped, wait_for, wait_until,
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, forgetful, job, other_cpu, parts, spoiling, started,
+    started_with, stopped, wait_for, wait_until,
 };
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::mpsc::channel;
@@ -94,7 +94,7 @@ fn uncollected_samples_are_rendered_by_the_next_backend() {
                 let traced = traced.clone();
                 // The test may have stopped listening.
                 let tell = move |_: &_, good_collections| _ = traced.send(good_collections);
-                return Box::new(Holding::new(fake, u32::from(is_switch), tell));
+                return fake.holding(u32::from(is_switch), tell);
             }
             if is_switch {
                 is_released.recv_timeout(PATIENCE).unwrap();

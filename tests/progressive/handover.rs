@@ -1,8 +1,8 @@
 //! Films, pictures and samples that pass between render, renderer and user.
 
 use super::common::{
-    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture,
-    scripted, started, started_with, stopped, usual, wait_for, wait_until,
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, film, idle, job, other_cpu, parts, picture, scripted,
+    started, started_with, stopped, usual, wait_for, wait_until,
 };
 use std::ops::Range;
 use std::sync::mpsc::channel;
@@ -56,7 +56,7 @@ fn a_pause_adds_what_the_device_holds() {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         let count = Arc::clone(&count);
         let add = move |range: &Range<u64>, _| *count.lock().unwrap() += range.end - range.start;
-        Box::new(Holding::new(fake, u32::MAX, add))
+        fake.holding(u32::MAX, add)
     });
     for more in [64, 512] {
         let first = *traced.lock().unwrap();
@@ -206,7 +206,7 @@ fn film_is_shown_on_request_and_again_only_in_another_view() {
 /// The first picture is worth waiting for the device's samples.
 #[test]
 fn the_first_picture_is_collected() {
-    let mut progressive = idle(|choice| Box::new(Holding::new(Fake::new(choice.name()), 1000, |_, _| ())));
+    let mut progressive = idle(|choice| Fake::new(choice.name()).holding(1000, |_, _| ()));
     progressive.ask_for_picture();
     let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
     progressive.start(RenderRequest::new(job(2), CPU, plan));
@@ -239,8 +239,8 @@ fn a_preview_is_smooth_and_its_first_pass_is_long_enough() {
 fn status_describes_the_current_backend() {
     const PREPARATION: Duration = Duration::from_millis(20);
     let progressive = started_with(CPU, Plan::endless(), |choice| {
-        let (name, message) = (choice.name(), Some("a layer is too thin"));
-        Box::new(Fake { preparation: PREPARATION, message, ..Fake::new(name) })
+        let fake = Fake::new(choice.name()).preparing_for(PREPARATION);
+        Box::new(Fake { message: Some("a layer is too thin"), ..fake })
     });
     wait_for(&progressive, 2);
     let first = progressive.status();

@@ -36,11 +36,7 @@ pub fn write(directory: &Path, figures: &[(&str, &[Stage])]) {
 <title>Live figures</title>
 <link rel="icon" href="data:,">
 <style>
-:root {{ color-scheme: light dark; --fg: #1c2024; --bg: #fcfcfb; --accent: #2563c9; --muted: #63696f; --line: #c9cdd2; }}
-@media (prefers-color-scheme: dark) {{
-  :root {{ --fg: #e4e7ea; --bg: #17191c; --accent: #7fb0ff; --muted: #9aa1a8; --line: #43484e; }}
-}}
-body {{ margin: 0 auto; padding: 1rem; max-width: 62rem; color: var(--fg); background: var(--bg); font: 1rem/1.5 Georgia, serif; }}
+:root {{ color-scheme: light dark; }}
 .figure {{ margin: 1.5rem 0; }}
 .panels {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); gap: 0.75rem; }}
 .panel img {{ width: 100%; height: auto; }}

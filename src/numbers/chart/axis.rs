@@ -111,22 +111,3 @@ pub(super) fn label(value: f64) -> String {
         format!("{rounded:e}")
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn labels(limits: [f64; 2]) -> Vec<String> {
-        let ruler = Axis { limits: Some(limits), ..Axis::new("") }.ruler(std::iter::empty());
-        ruler.ticks.iter().map(|tick| ruler.format_ext(tick)).collect()
-    }
-
-    #[test]
-    fn ticks_are_round_numbers_within_the_axis() {
-        assert_eq!(labels([1e3, 1e7]), ["1000", "10000", "1e5", "1e6", "1e7"]);
-        assert_eq!(labels([3.0, 60.0]), ["3", "5", "7", "10", "20", "30", "50"]);
-        assert_eq!(labels([1e-5, 0.1]), ["1e-5", "1e-4", "0.001", "0.01", "0.1"]);
-        assert_eq!(labels([1e5, 1e6]), ["1e5", "2e5", "5e5", "1e6"]);
-        assert_eq!(labels([1.0, 1e12]).len(), 7, "every second power");
-    }
-}

@@ -7,15 +7,6 @@ fn ball(x: f64, radius: f64) -> Sphere {
     Sphere { center: DVec3::X * x, radius, material: 0 }
 }
 
-fn crowded(spheres: &[Sphere]) -> bool {
-    is_crowded(&Bounded::all(spheres, &DVec3::ZERO))
-}
-
-fn nested(spheres: &[Sphere]) -> bool {
-    let bounded = Bounded::all(spheres, &DVec3::ZERO);
-    has_nested_runs(&bounded, &along_a_curve(&bounded))
-}
-
 /// Shells around the origin, largest first.
 fn shells(count: u32) -> impl Iterator<Item = Sphere> {
     (0..count).map(|index| ball(0.0, 1.0 - 1e-5 * f64::from(index)))
@@ -34,82 +25,39 @@ fn row(count: u32) -> impl Iterator<Item = Sphere> {
     (1..=count).map(|place| ball(3.0 * f64::from(place), 0.1))
 }
 
+/// Those that clustering would chain, and those that it pairs fast.
 #[test]
-fn nested_runs_are_crowded() {
-    // The first 31 pairs of a run do not count.
-    let spheres = |shell: u32, apart: u32| shells(shell).chain(row(apart)).collect::<Vec<_>>();
-    assert!(nested(&spheres(1056, 1000)) && !nested(&spheres(1055, 1001)));
-    // Few spheres are never a crowd.
-    let of = |shell: u32, apart: u32| crowded(&spheres(shell, apart));
-    assert!(of(2048, 0) && !of(2047, 0) && of(1100, 948) && !of(1100, 947));
-    assert!(!nested(&spheres(0, 3000)));
-    let hollow = |size: u32, count: u32| -> Vec<Sphere> {
-        let of = |place: u32| move |index: u32| ball(3.0 * f64::from(place), 1.0 - 0.01 * f64::from(index));
-        (0..count).flat_map(|place| (0..size).map(of(place))).collect()
-    };
-    assert!(!crowded(&hollow(32, 100)) && !nested(&hollow(32, 100)), "hollow balls");
-    // Each run of 64 pairs counts 33.
-    let apart: Vec<Sphere> = (0..40).map(|place| ball(1e3 + 3.0 * f64::from(place), 0.1)).collect();
-    assert!(nested(&hollow(65, 32)) && !nested(&[hollow(65, 31), apart].concat()));
-}
-
-#[test]
-fn slow_pairing_is_crowded() {
-    let over_decades = |decades: f64, share: f64, count: u32| -> Vec<Sphere> {
-        let share_of = |index: u32| f64::from(index) / f64::from(count) - 0.5;
-        let along = (0..count).map(|index| 10_f64.powf(decades * share_of(index)));
+fn nested_and_stretched_scenes_are_crowded() {
+    let over_decades = |decades: f64, share: f64| -> Vec<Sphere> {
+        let along = (0..4096).map(|index| 10_f64.powf(decades * (f64::from(index) / 4096.0 - 0.5)));
         let at = |x: f64| Sphere { center: DVec3::new(x, 0.0, -x), radius: share * x, material: 0 };
         along.map(at).collect()
     };
-    for decades in [3.0, 24.0] {
-        for share in [0.3, 1e-4] {
-            assert!(crowded(&over_decades(decades, share, 4096)), "{decades}, {share}");
-        }
-    }
-    assert!(crowded(&row(4096).collect::<Vec<_>>()));
     // In an order unrelated to their size.
-    let mut mixed = over_decades(24.0, 0.3, 4096);
+    let mut mixed = over_decades(24.0, 0.3);
     mixed.sort_by_key(|ball| ball.center.x.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15));
-    assert!(crowded(&mixed));
-}
-
-#[test]
-fn fast_pairing_is_not_crowded() {
-    assert!(!crowded(&strewn(20_000).collect::<Vec<_>>()));
+    let hollow: Vec<Sphere> = (0..100_u32)
+        .flat_map(|place| (0..32).map(move |index| (place, index)))
+        .map(|(place, index)| ball(3.0 * f64::from(place), 1.0 - 0.01 * f64::from(index)))
+        .collect();
     let lattice = |i: u32| Sphere {
         center: DVec3::new(f64::from(i % 16), f64::from(i / 16 % 16), f64::from(i / 256)),
         radius: 0.25,
         material: 0,
     };
-    assert!(!crowded(&(0..4096).map(lattice).collect::<Vec<_>>()));
-    let box_at = |x: f32| Aabb::new(glam::Vec3A::splat(x), glam::Vec3A::splat(x + 1.0));
-    let united = |from: f32, to: f32| box_at(from).union(&box_at(to));
-    for (places, pairs) in [
-        (&[0.0, 2.0, 5.0, 6.0][..], vec![united(0.0, 2.0), united(5.0, 6.0)]),
-        (&[0.0, 1.0, 3.0, 6.0][..], vec![united(0.0, 1.0), box_at(3.0), box_at(6.0)]),
-        (&[0.0, 3.0, 5.0, 6.0][..], vec![box_at(0.0), box_at(3.0), united(5.0, 6.0)]),
-        (&[0.0, 2.0][..], vec![united(0.0, 2.0)]),
-        (&[1.0][..], vec![box_at(1.0)]),
+    for (what, spheres, expected) in [
+        ("shells", shells(3000).collect(), true),
+        ("shells beside a row", shells(1500).chain(row(1000)).collect(), true),
+        ("few shells", shells(2000).collect(), false),
+        ("three decades", over_decades(3.0, 0.3), true),
+        ("many decades of small balls", over_decades(24.0, 1e-4), true),
+        ("mixed", mixed, true),
+        ("a row", row(4096).collect(), true),
+        ("hollow balls", hollow, false),
+        ("scattered", strewn(20_000).collect(), false),
+        ("a lattice", (0..4096).map(lattice).collect::<Vec<_>>(), false),
     ] {
-        let clusters: Vec<Aabb> = places.iter().map(|x| box_at(*x)).collect();
-        let corners = |all: &[Aabb]| all.iter().map(|aabb| [aabb.min.x, aabb.max.x]).collect::<Vec<_>>();
-        assert_eq!(corners(&paired(&clusters)), corners(&pairs), "{places:?}");
-    }
-}
-
-#[test]
-fn neighbours_in_space_have_neighbouring_codes() {
-    assert_eq!(morton_code([0.0; 3]), 0);
-    assert_eq!(morton_code([1.0; 3]), (1 << 63) - 1);
-    let unit = 1.0 / f64::from((1 << 21) - 1);
-    for (number, code) in [(1, 0b1), (2, 0b1000), (3, 0b1001), (5, 0b100_0001), (1 << 20, 1 << 60)] {
-        // A little more, so that the number does not round down.
-        let x = (f64::from(number) + 0.5) * unit;
-        for axis in 0..3 {
-            let mut place = [0.0; 3];
-            place[axis] = x;
-            assert_eq!(morton_code(place), code << axis, "{number} on axis {axis}");
-        }
+        assert_eq!(is_crowded(&Bounded::all(&spheres, &DVec3::ZERO)), expected, "{what}");
     }
 }
 
@@ -145,22 +93,6 @@ fn split_minimises_area_times_spheres() {
     let nested: Vec<Sphere> = (0..6).map(|index| ball(0.0, [8.0, 1.0][index % 2])).collect();
     assert_eq!(sides(&nested), Some([vec![1, 3, 5], vec![0, 2, 4]]));
     assert_eq!(sides(&[ball(1.0, 2.0); 5]), None, "copies cannot be parted");
-}
-
-#[test]
-fn halving_uses_widest_key() {
-    let place = |index: u32| DVec3::new(f64::from(index % 2), -f64::from(index), 0.5 * f64::from(index));
-    let spheres: Vec<Sphere> =
-        (0..7).map(|index| Sphere { center: place(index), radius: 0.1, material: 0 }).collect();
-    let mut part: Vec<u32> = (0..7).collect();
-    let left = part_in_the_middle(&Bounded::all(&spheres, &DVec3::ZERO), &mut part);
-    part[..left].sort_unstable();
-    assert_eq!((left, &part[..left]), (3, &[4, 5, 6][..]));
-    // Equal keys keep the scene's order.
-    let mut part: Vec<u32> = (0..4).rev().collect();
-    let left = part_in_the_middle(&Bounded::all(&[ball(0.0, 1.0); 4], &DVec3::ZERO), &mut part);
-    part[..left].sort_unstable();
-    assert_eq!(part[..left], [0, 1]);
 }
 
 #[test]

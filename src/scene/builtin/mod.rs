@@ -119,18 +119,3 @@ impl fmt::Debug for BuiltinScene {
         f.debug_struct("BuiltinScene").field("name", &self.name).finish_non_exhaustive()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scenes_are_valid_and_deterministic() {
-        for builtin in BuiltinScene::ALL {
-            let (scene, camera) = (builtin.build)();
-            scene.validate().expect(builtin.name);
-            camera.validate().expect(builtin.name);
-            assert_eq!((builtin.build)(), (scene, camera), "{}", builtin.name);
-        }
-    }
-}

@@ -1,13 +1,10 @@
 //! The shaders' text: valid for naga (and for tint, if installed), with the host's memory layout.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
-mod gpu_common;
-
-use gpu_common::say_loudly;
+use super::gpu_common::say_loudly;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use weekender::job::render::SamplerKind;
-use weekender::kernel::{CameraTable, Features, RecordColumns, ShadingRecord, records, words_of};
+use weekender::kernel::{Features, records};
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::stages::{DielectricLaws, Shading, SurfaceRule};
 
@@ -156,36 +153,4 @@ fn layouts_agree() {
         assert_eq!(fields, members, "{name}");
         assert_eq!(size, span, "size of {name}");
     }
-}
-
-/// A record as the host writes it has the length and field order that the shaders expect.
-#[test]
-fn words_match_fields() {
-    let vectors = ShadingRecord {
-        reference: [1.0, 2.0, 3.0],
-        albedo: [5.0, 6.0, 7.0],
-        inward: [13.0, 14.0, 15.0],
-        ..ShadingRecord::default()
-    };
-    let record = ShadingRecord {
-        curvature: 4.0,
-        radius: 8.0,
-        weight: 9.0,
-        refraction_index: 10.0,
-        inverse_index: 11.0,
-        f0: 12.0,
-        anchoring: 16.0,
-        ..vectors
-    };
-    let expected: Vec<f32> = (1..=16).map(|number| number as f32).collect();
-    assert_eq!(RecordColumns::from(record).0[..16], expected);
-    let words = words_of(&[record, record]);
-    assert_eq!(words.len() * 4, 2 * size_of::<ShadingRecord<f32>>());
-    let second = &words[words.len() / 2..];
-    assert_eq!(second[..16], expected.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
-    let job = records::layouts().into_iter().find(|(name, ..)| name == "Job").unwrap();
-    let camera = CameraTable { tau: 2.0, size: [3.0, 4.0], ..CameraTable::default() };
-    let words = words_of(&[camera]);
-    assert_eq!((words[3], words[19], words.len()), (2.0_f32.to_bits(), 4.0_f32.to_bits(), 20));
-    assert_eq!(job.2[1].offset, 80);
 }

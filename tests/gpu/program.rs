@@ -1,27 +1,16 @@
 //! The program with a GPU, as users run it: the device is lost, or CPU and GPU share a film.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
-mod gpu_common;
-
-use std::process::{Command, Output};
+use super::program_common::{ends, film, json_file};
 use tempfile::TempDir;
-use weekender::film::checkpoint;
 use weekender::render_gpu::GpuOptions;
 
-/// Runs the program on the tests' adapter; `None` without one.
-fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
-    let gpu = gpu_common::gpu(GpuOptions::default())?;
-    let adapter = gpu.adapter();
-    let program = env!("CARGO_BIN_EXE_weekender");
-    let mut command = Command::new(program);
-    let output = command
-        .current_dir(directory.path())
-        .args(["--batch", "--size", "64x36", "--progress", "off", "--adapter", &adapter.name])
-        .args(arguments)
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    Some(output)
+const PICTURE: [&str; 5] = ["--batch", "--size", "64x36", "--progress", "off"];
+
+/// Runs the program on the tests' adapter, and returns its messages; `None` without one.
+fn run(directory: &TempDir, arguments: &[&str]) -> Option<String> {
+    let gpu = super::gpu_common::gpu(GpuOptions::default())?;
+    let adapter = ["--adapter", &gpu.adapter().name];
+    Some(ends(directory.path(), 0, &[&PICTURE, &adapter[..], arguments].concat()).1)
 }
 
 #[test]
@@ -36,24 +25,23 @@ fn fault_completes_picture_with_warning() {
                 let count = samples.to_string();
                 let arguments =
                     ["--device", device, "--samples", &count, flag, after, "--out", "broken.exr", "--json"];
-                let output = run(&directory, &[&arguments[..], &["broken.json"]].concat())?;
-                let film = checkpoint::load(&directory.path().join("broken.exr")).unwrap().film;
+                let message = run(&directory, &[&arguments[..], &["broken.json"]].concat())?;
+                let film = film(&directory.path().join("broken.exr"));
                 assert_eq!((film.sample_count(), film.rejected()), (samples, 0), "{device} {flag}");
                 let parts = parts(&directory, "broken.json");
                 assert_eq!(
-                    parts.iter().map(|(_, samples)| samples).sum::<u64>(),
+                    parts.iter().map(|part| part.1).sum::<u64>(),
                     samples,
                     "{device} {flag}: {parts:?}"
                 );
-                assert!(
-                    parts.iter().any(|(name, samples)| name == "cpu" && *samples > 0),
-                    "{device} {flag}: {parts:?}"
-                );
-                let message = String::from_utf8_lossy(&output.stderr).into_owned();
+                assert!(parts.iter().any(|(name, added)| name == "cpu" && *added > 0), "{parts:?}");
                 (device == "gpu" || message.contains("continues")).then_some(message)
             });
             let Some(message) = broken else {
-                assert!(gpu_common::gpu(GpuOptions::default()).is_none(), "{device} {flag}: no warning");
+                assert!(
+                    super::gpu_common::gpu(GpuOptions::default()).is_none(),
+                    "{device} {flag}: no warning"
+                );
                 return;
             };
             assert!(message.contains(word) && message.contains("continues"), "{device} {flag}: {message}");
@@ -63,8 +51,7 @@ fn fault_completes_picture_with_warning() {
 
 /// The number of samples that each backend added, from the JSON.
 fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
-    let json = std::fs::read_to_string(directory.path().join(name)).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let report = json_file(&directory.path().join(name));
     let part = |share: &serde_json::Value| {
         (share["name"].as_str().unwrap().to_owned(), share["samples_per_pixel"].as_u64().unwrap())
     };
@@ -87,14 +74,10 @@ fn film_after_fault_matches_counts() {
     let range = format!("{split}..256");
     if by_gpu > 0 {
         run(&directory, &["--device", "gpu", "--samples", &split, "--out", "first.exr"]).unwrap();
-        let cpu =
-            ["--batch", "--size", "64x36", "--progress", "off", "--device", "cpu", "--sample-range", &range];
-        let program = || Command::new(env!("CARGO_BIN_EXE_weekender"));
-        let second =
-            program().current_dir(directory.path()).args(cpu).args(["--out", "second.exr"]).output().unwrap();
-        assert!(second.status.success());
+        let cpu = ["--device", "cpu", "--sample-range", &range, "--out", "second.exr"];
+        ends(directory.path(), 0, &[&PICTURE, &cpu[..]].concat());
     }
-    let load = |name: &str| checkpoint::load(&directory.path().join(name)).unwrap().film;
+    let load = |name: &str| film(&directory.path().join(name));
     let mut expected = load("first.exr");
     expected.merge(&load("second.exr")).unwrap();
     assert!(load("both.exr") == expected);
@@ -107,8 +90,7 @@ fn cpu_and_gpu_share_film() {
     if run(&directory, &arguments).is_none() {
         return;
     }
-    let film = checkpoint::load(&directory.path().join("both.exr")).unwrap().film;
-    assert_eq!(film.samples().to_string(), "0..256");
+    assert_eq!(film(&directory.path().join("both.exr")).samples().to_string(), "0..256");
     let parts = parts(&directory, "both.json");
     assert_eq!(parts.len(), 2, "{parts:?}");
     assert!(parts.iter().all(|(_, samples)| *samples > 0), "{parts:?}");
