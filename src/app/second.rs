@@ -98,15 +98,7 @@ impl Second {
             tracer.abandon();
         }
         self.picture.follow(context, &kept, &view.tone.of_picture());
-        let is_difference = view.mode() == Some(Mode::Difference);
-        self.film = kept.known_means().filter(|_| is_difference).cloned();
-        if is_difference && self.film.is_none() && !self.films.is_open() {
-            let (kept, answer) = (Arc::clone(&kept), self.films.answer(context));
-            super::kept::run(move || {
-                let means = Arc::clone(kept.means());
-                answer.give(Ok((Arc::clone(&kept.document.origin), means)));
-            });
-        }
+        self.film = (view.mode() == Some(Mode::Difference)).then(|| Arc::clone(&kept.means));
         let origin = Arc::clone(&kept.document.origin);
         self.of = Some((Other::Kept(kept), origin));
     }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A sight that is shown, and what was shown before.
 pub struct Sighted {
     origin: Arc<Origin>,
-    looks: (Show, Option<Mode>),
+    looks: (Show, Option<Mode>, With),
     view: ViewState,
     placement: Placement,
     /// The camera before, if it was not the stage's.
@@ -27,13 +27,12 @@ impl Sighted {
         let home = document.origin.recipe.camera;
         let mut before = Sighted {
             origin: Arc::clone(&document.origin),
-            looks: (view.show(), view.mode()),
+            looks: (view.show(), view.mode(), view.with()),
             view: view.clone(),
             placement: placement.clone(),
             camera: (document.camera != home).then_some(document.camera),
         };
         document.camera = home;
-        view.look(None);
         view.choose(Show::of_means(stage.sight.means));
         match stage.sight.means {
             Means::Luminance(range) => view.tone.range = range,
@@ -47,15 +46,13 @@ impl Sighted {
             Some(part) => placement.show_part(part),
             None => placement.fit(),
         }
-        before.looks = (view.show(), view.mode());
+        before.looks = (view.show(), view.mode(), view.with());
         before
     }
 
     /// Whether the window still shows it.
     pub fn lasts(&self, document: &Document, view: &ViewState) -> bool {
-        Arc::ptr_eq(&self.origin, &document.origin)
-            && self.looks == (view.show(), view.mode())
-            && view.kept.looked().is_none()
+        Arc::ptr_eq(&self.origin, &document.origin) && self.looks == (view.show(), view.mode(), view.with())
     }
 
     /// Whether another picture is shown.
@@ -82,8 +79,7 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{Kept, Tone};
-    use crate::film::Film;
+    use crate::app::model::Tone;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();
@@ -94,13 +90,6 @@ mod tests {
     fn with_means(is_it: fn(&Means) -> bool) -> (&'static Stage, Document) {
         let found = Stage::ALL.iter().find(|stage| is_it(&stage.sight.means)).unwrap();
         stage(found.id)
-    }
-
-    /// A picture that was kept.
-    fn kept(document: &Document) -> Kept {
-        let mut film = Film::new(4, 2, 1);
-        film.record(0..1, 0).unwrap();
-        Kept::new(document.clone(), film, Arc::default(), None)
     }
 
     #[test]
@@ -172,10 +161,7 @@ mod tests {
         other.toggle(Mode::Difference, With::Kept(0));
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.kept.add(kept(&document));
-        other.look(None);
-        assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
-        other.look(Some(0));
+        other.look(0);
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));

@@ -119,38 +119,3 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts) {
     let button = choice(ui, facts.is_on(command), command.name());
     add_command(ui, facts, command, button);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::CheckedScene;
-    use crate::app::tests::{dressed, facts_of};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
-
-    fn panel(words: &str) -> Harness<'static, Facts> {
-        let draw = |ui: &mut Ui, facts: &mut Facts| super::ui(ui, facts);
-        dressed([270.0, 900.0]).build_ui_state(draw, facts_of(words))
-    }
-
-    #[test]
-    fn spheres_and_materials_are_counted_as_edited() {
-        let mut harness = panel("--scene field:20 --size 32x18");
-        let shown = |harness: &Harness<'_, Facts>| {
-            let scene = harness.state().document().scene();
-            let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
-            assert!(harness.query_by_label(&words).is_some(), "{words}");
-            words
-        };
-        let before = shown(&harness);
-        let document = &mut harness.state_mut().model.document;
-        let mut scene = document.scene().clone();
-        let material = scene.materials[0].clone();
-        scene.materials.extend([material.clone(), material]);
-        scene.spheres.truncate(4);
-        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
-        harness.run_steps(3);
-        assert_ne!(shown(&harness), before);
-    }
-}

@@ -2,13 +2,11 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::kept::FilmId;
 use super::model::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
 use super::widgets::{command_button, compact, small, tip};
-use super::wording::grouped;
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
@@ -17,6 +15,7 @@ use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
     Stroke, Ui, accesskit::Live,
 };
+use indicatif::HumanCount;
 
 const HEIGHT: f32 = 32.0;
 
@@ -90,7 +89,7 @@ fn announce(response: &Response, sentence: &str) {
 
 fn left_out(ui: &mut Ui, count: u64) {
     if count > 0 {
-        let words = format!("{} samples were left out", grouped(count));
+        let words = format!("{} samples were left out", HumanCount(count));
         let response = ui.label(RichText::new(words).color(theme::colours(ui).warn));
         tip(ui, response, "They were not numbers, so they would spoil their pixels", None);
     }
@@ -102,9 +101,9 @@ pub fn sentence(facts: &Facts) -> String {
     if let Some(reason) = &facts.invalid {
         return format!("Not rendered: {reason}");
     }
-    let kept = &facts.model.view.kept;
-    if let Some((place, shown)) = kept.looked().zip(kept.shown()) {
-        let (title, samples) = (kept.title(place), grouped(shown.samples()));
+    let view = &facts.model.view;
+    if let Some((place, kept)) = view.looked().zip(view.wiped()) {
+        let (title, samples) = (view.kept.title(place), HumanCount(kept.samples()));
         return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {
@@ -120,7 +119,7 @@ pub fn sentence(facts: &Facts) -> String {
         (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
         (None, _) => String::new(),
     };
-    let samples = format!("{} samples per pixel", grouped(count));
+    let samples = format!("{} samples per pixel", HumanCount(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
         _ if facts.is_coarse && facts.is_moving => "A coarse picture while you move".to_owned(),
@@ -143,7 +142,7 @@ pub fn sentence(facts: &Facts) -> String {
             Some(end) => {
                 let per_sample = status.trace.as_secs_f64() / count as f64;
                 let left = time(per_sample * end.saturating_sub(count) as f64);
-                let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
+                let samples = format!("{} of {} samples per pixel", HumanCount(count), HumanCount(end));
                 format!("{samples}{error}; done in about {left}")
             }
             None => format!("{samples}{error}{}", ending(facts)),
@@ -154,9 +153,9 @@ pub fn sentence(facts: &Facts) -> String {
 /// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
 fn denoised_error(facts: &Facts) -> Option<Result<DenoisedError, &str>> {
     let view = &facts.model.view;
-    let (film, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let (run, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
     let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
-    (*film == FilmId::Live(facts.status.run) && outcome != Err("")).then_some(outcome)
+    (*run == facts.status.run && outcome != Err("")).then_some(outcome)
 }
 
 /// When a render without a number of samples will end.
@@ -174,8 +173,7 @@ fn ending(facts: &Facts) -> String {
 /// How much of the work is done, `0..=1`; none without an end.
 pub fn share(facts: &Facts) -> Option<f64> {
     let (status, stop) = (&*facts.status, facts.document().stop);
-    let is_kept = facts.model.view.kept.looked().is_some();
-    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse || is_kept {
+    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse {
         return None;
     }
     let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);

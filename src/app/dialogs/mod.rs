@@ -7,11 +7,11 @@ mod palette;
 mod sky;
 
 pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
-pub use help::Keys;
 
 use super::facts::Facts;
 use super::finder::Finder;
-use eframe::egui::{self, Context, Id, Modal, PointerState, Ui};
+use super::stage_list;
+use eframe::egui::{self, Align2, Color32, Context, Id, Modal, PointerState, Ui, vec2};
 use std::path::PathBuf;
 
 /// What happens to a dialog after a frame.
@@ -30,8 +30,10 @@ pub enum Outcome {
 pub enum Dialog {
     /// All commands by name.
     Palette(Finder),
+    /// The list of stages.
+    Stages(Finder),
     /// Keys and mouse.
-    Help(Keys),
+    Help,
     /// The colours of the sky.
     Sky,
     /// Version and licences.
@@ -81,13 +83,23 @@ impl Dialogs {
         let room = ui.ctx().content_rect().size();
         // Each kind has its own size.
         let id = Id::unique(("dialog", std::mem::discriminant(dialog)));
-        let modal = Modal::new(id).frame(egui::Frame::window(ui.style())).show(ui.ctx(), |ui| {
+        let mut modal = Modal::new(id).frame(egui::Frame::window(ui.style()));
+        if matches!(dialog, Dialog::Stages(_)) {
+            // It hangs below the bar.
+            let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
+            modal = modal.area(area).frame(egui::Frame::menu(ui.style()).inner_margin(8));
+            modal = modal.backdrop_color(Color32::TRANSPARENT);
+        }
+        let modal = modal.show(ui.ctx(), |ui| {
             ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
                 Dialog::Palette(finder) => {
                     palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts)
                 }
-                Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
+                Dialog::Stages(finder) => {
+                    stage_list::ui(finder, ui, (room.y - 140.0).clamp(160.0, 720.0), facts)
+                }
+                Dialog::Help => help::ui(ui, (room.y - 200.0).clamp(100.0, 560.0)),
                 Dialog::Sky => sky::ui(ui, facts),
                 Dialog::About => about::ui(ui, facts),
                 Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
@@ -127,7 +139,7 @@ mod tests {
         let mut dialogs = Dialogs::default();
         for is_open in [false, true] {
             if is_open {
-                dialogs.open(Dialog::Help(Keys::default()));
+                dialogs.open(Dialog::Help);
             }
             let mut seen = Vec::new();
             let mut harness = part([800.0, 600.0], |ui| {

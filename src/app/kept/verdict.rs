@@ -91,21 +91,3 @@ fn compared(kept: &Kept, recipe: Recipe, film: Film) -> Result<Answer, String> {
     };
     Ok(Answer { is_equal, headline, words })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::kept::tests::small_film;
-    use crate::app::model::Origin;
-    use crate::stages::Stage;
-
-    #[test]
-    fn films_are_identical_or_differ() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let kept = Kept::new(document.clone(), small_film(8, 0.5), Arc::default(), None);
-        let answer = compared(&kept, document.recipe(), small_film(8, 0.5)).unwrap();
-        assert_eq!((answer.is_equal, answer.headline), (true, "Identical to the bit."));
-        let answer = compared(&kept, document.recipe(), small_film(8, 700.0)).unwrap();
-        assert!(!answer.is_equal, "{}", answer.headline);
-    }
-}

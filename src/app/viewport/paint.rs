@@ -32,8 +32,8 @@ pub struct Pictures<'a> {
     pub has_film: bool,
     /// The picture at the other side of a wipe.
     pub second: Option<(&'a Texture, bool)>,
-    /// Paths to draw over the picture, if it is the traced one.
-    pub paths: Option<&'a Paths>,
+    /// Paths to draw over the picture.
+    pub paths: &'a Paths,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
@@ -92,9 +92,7 @@ pub(super) fn paint(
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     }
-    if let Some(paths) = paths {
-        paths.paint(document, ui, &painter, rect);
-    }
+    paths.paint(document, ui, &painter, rect);
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
@@ -133,10 +131,12 @@ fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     painter.text(knob, Align2::CENTER_CENTER, "‹ ›", FontId::proportional(16.0), Color32::from_gray(30));
 }
 
-/// A title in a corner of the area, cut if it has no room.
+/// A title in a corner of the area, cut or left out if it has no room.
 pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str) {
     let area = area.shrink(CORNER);
-    plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
+    if area.is_positive() {
+        plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
+    }
 }
 
 /// Words on a plate, readable on any picture, within the painter's area, and cut to this width.
