@@ -203,7 +203,7 @@ impl Check {
                 if let Some(pointer) = response.interact_pointer_pos() {
                     self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
                 }
-                let left = yours.id(ui.ctx(), options);
+                let left = (yours.id(ui.ctx(), options), rect);
                 paint::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
             Side::Yours => paint::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
@@ -233,13 +233,13 @@ fn links(ui: &mut Ui, answer: &Answer, facts: &Facts) {
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
         if let Some(next) = next
-            && primary(ui, format!("Next: {}", next.section)).clicked()
+            && ui.add(primary(format!("Next: {}", next.section))).clicked()
         {
             facts.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
-            let go = primary(ui, format!("Go to {}", stage.section));
+            let go = ui.add(primary(format!("Go to {}", stage.section)));
             if tip(ui, go, stage.title, None).clicked() {
                 facts.send(Command::Stage(stage));
             }

@@ -82,21 +82,13 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
                 Dock::Error => Command::ErrorDock,
             });
         }
-        if dock == Dock::Kept {
-            actions(ui, facts);
-        }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
 }
 
-/// What can be done with the chosen kept picture.
-const ACTIONS: [(&str, Command); 5] = [
-    ("Look", Command::Flip),
-    ("Wipe", Command::KeptWipe),
-    ("Difference", Command::KeptDifference),
-    ("Only noise?", Command::OnlyNoise),
-    ("Keep", Command::Keep),
-];
+/// How the chosen kept picture is compared.
+const COMPARISONS: [(&str, Command); 3] =
+    [("Look", Command::Flip), ("Wipe", Command::KeptWipe), ("Difference", Command::KeptDifference)];
 
 /// What the menu of a right click on it offers.
 const MENU: [Command; 6] = [
@@ -108,14 +100,6 @@ const MENU: [Command; 6] = [
     Command::DeleteKept,
 ];
 
-/// The actions, from right to left. The first three are a switch.
-fn actions(ui: &mut Ui, facts: &Facts) {
-    for (name, command) in ACTIONS[3..].iter().rev() {
-        command_button(ui, facts, *command, name);
-    }
-    command_switch(ui, facts, 0.0, &ACTIONS[..3]);
-}
-
 fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
     let list = &model.view.kept;
     let Some(chosen) = list.meant() else {
@@ -123,6 +107,9 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
         return;
     };
     ui.horizontal_wrapped(|ui| {
+        command_switch(ui, facts, 0.0, &COMPARISONS);
+        command_button(ui, facts, Command::OnlyNoise, "Only noise?");
+        command_button(ui, facts, Command::Keep, "Keep");
         if !kept.verdict.ui(ui, chosen.number, facts.status.run) {
             let memory = words(list.bytes());
             small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));

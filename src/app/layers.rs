@@ -71,19 +71,6 @@ impl Layers {
             (self.ordered, self.shown) = (None, None);
             return None;
         };
-        let fault = self.fetch();
-        let ordered = self.ordered.as_ref().filter(|ordered| ordered.layer == layer);
-        let is_at_it = ordered.is_some_and(|ordered| ordered.document.has_same_film(document));
-        // Until a coarse layer has been displayed, starting another one would only delay it.
-        let has_to_wait = ordered.is_some_and(|ordered| !ordered.is_pictured);
-        if !is_at_it && !has_to_wait {
-            self.order(context, layer, document);
-        }
-        fault
-    }
-
-    /// Takes what was traced. Returns why the layer cannot be traced, if so.
-    fn fetch(&mut self) -> Option<String> {
         let mut fault = None;
         while let Some(outcome) = self.traced.take() {
             let Some(ordered) = self.ordered.as_mut() else { continue };
@@ -98,6 +85,13 @@ impl Layers {
                 Ok(None) => {}
                 Err(reason) => fault = Some(reason),
             }
+        }
+        let ordered = self.ordered.as_ref().filter(|ordered| ordered.layer == layer);
+        let is_at_it = ordered.is_some_and(|ordered| ordered.document.has_same_film(document));
+        // Until a coarse layer has been displayed, starting another one would only delay it.
+        let has_to_wait = ordered.is_some_and(|ordered| !ordered.is_pictured);
+        if !is_at_it && !has_to_wait {
+            self.order(context, layer, document);
         }
         fault
     }

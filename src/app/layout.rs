@@ -3,7 +3,7 @@
 use super::display::Display;
 use super::facts::Facts;
 use super::inspector::Inspector;
-use super::model::{Document, Model, Remembered, Tab, ViewState};
+use super::model::{Model, Remembered, Tab};
 use super::paths::at_same_place;
 use super::second::Second;
 use super::viewport::{Pictures, Touch};
@@ -73,7 +73,7 @@ impl Window {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
                             display.tone.ui(ui, view, facts);
-                            numbers(ui, view, facts, display, &tracing.second, &tools.inspector);
+                            numbers(ui, facts, display, &tracing.second, &tools.inspector);
                         });
                         right::scrolling(ui, |ui| stage_panel::ui(ui, facts));
                     }
@@ -133,10 +133,10 @@ impl Window {
             && let (Some(room), Some(at)) = (touch.room, ui.input(|input| input.pointer.hover_pos()))
             && touch.hovered.is_some()
         {
-            let Window { model, display, tracing, tools, .. } = self;
-            let numbers =
-                |ui: &mut Ui| numbers(ui, &model.view, facts, display, &tracing.second, &tools.inspector);
-            present::magnify(ui, room, at, numbers);
+            let Window { display, tracing, tools, .. } = self;
+            present::magnify(ui, room, at, |ui| {
+                numbers(ui, facts, display, &tracing.second, &tools.inspector);
+            });
         }
         self.tools.inspector.hover(touch.hovered);
         self.list_paths(ui.ctx(), touch.listed);
@@ -166,24 +166,14 @@ fn titles(facts: &Facts, second: &Second) -> [String; 2] {
 }
 
 /// The numbers of the pixel under the pointer.
-fn numbers(
-    ui: &mut Ui,
-    view: &ViewState,
-    facts: &Facts,
-    display: &Display,
-    second: &Second,
-    inspector: &Inspector,
-) {
+fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspector: &Inspector) {
+    let view = &facts.model.view;
     let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
-    let other = at.and_then(|at| other_pixel(view, second, facts.document(), at));
-    inspector.ui(ui, facts.document(), value, other);
-}
-
-/// What the other picture of a comparison has at a pixel: linear radiance.
-fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
-    match view.wiped() {
-        Some(kept) => kept.means.mean(at_same_place(at, [live.size(), kept.size()])),
+    let size = facts.document().size();
+    let other = at.and_then(|at| match view.wiped() {
+        Some(kept) => kept.means.mean(at_same_place(at, [size, kept.size()])),
         None => second.film.as_ref()?.mean(at),
-    }
+    });
+    inspector.ui(ui, facts.document(), value, other);
 }

@@ -79,60 +79,10 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::Tone;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();
         (stage, Document::new(Origin::of_stage(stage)))
-    }
-
-    /// A stage whose sight has these means.
-    fn with_means(is_it: fn(&Means) -> bool) -> (&'static Stage, Document) {
-        let found = Stage::ALL.iter().find(|stage| is_it(&stage.sight.means)).unwrap();
-        stage(found.id)
-    }
-
-    #[test]
-    fn a_sight_shows_its_means_from_the_stages_own_camera_and_returns() {
-        let cases: [fn(&Means) -> bool; 3] = [
-            |means| matches!(means, Means::Luminance(_)),
-            |means| matches!(means, Means::Wipe(_)),
-            |means| matches!(means, Means::StandardError),
-        ];
-        for is_it in cases {
-            if !Stage::ALL.iter().any(|stage| is_it(&stage.sight.means)) {
-                continue;
-            }
-            let (stage, mut document) = with_means(is_it);
-            let home = document.camera;
-            document.camera.vfov_degrees = 33.0;
-            let moved = document.camera;
-            let mut view = ViewState::default();
-            view.tone.expose(1.0);
-            let (range, mut placement) = (view.tone.range, Placement::default());
-            placement.actual_size();
-            let before = placement.zoom;
-            let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-            assert!(document.camera == home && sight.lasts(&document, &view));
-            assert_eq!(view.show(), Show::of_means(stage.sight.means));
-            match stage.sight.means {
-                Means::Luminance(wanted) => assert_eq!(view.tone.range, wanted),
-                Means::Wipe(divider) => {
-                    assert_eq!((view.mode(), view.divider), (Some(Mode::Wipe), divider));
-                }
-                _ => {}
-            }
-            assert_ne!(placement.zoom, before);
-            view.tone.expose(1.0);
-            sight.end(&mut document, &mut view, &mut placement);
-            assert_eq!((document.camera, placement.zoom), (moved, before));
-            assert_eq!((view.show(), view.mode()), (Show::Picture, None));
-            assert_eq!(
-                view.tone,
-                Tone { exposure: 2.0, range, ..Tone::default() },
-                "the exposure stays as it was chosen"
-            );
-        }
     }
 
     #[test]

@@ -3,12 +3,10 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Document, With, partner};
-use super::widgets::{
-    add_command, choice, command_button, command_switch, hint, primary, small, tip, with_keys,
-};
+use super::widgets::{add_command, choice, command_button, command_switch, hint, primary, small};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
-use eframe::egui::{Button, Label, Link, RichText, Ui};
+use eframe::egui::{Label, Link, RichText, Ui};
 
 pub fn ui(ui: &mut Ui, facts: &Facts) {
     let document = facts.document();
@@ -61,18 +59,14 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts) {
 
 /// A button that shows what to look for, and then says what is seen.
 fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts) {
-    let command = Command::ShowMe;
-    let reason = facts.disabled_reason(command);
+    let is_off = facts.disabled_reason(Command::ShowMe).is_some();
     ui.add_space(4.0);
     // The card of the first steps has the one button to press next.
-    let response = if facts.has_sight || facts.model.has_first_steps || reason.is_some() {
+    if facts.has_sight || facts.model.has_first_steps || is_off {
         let label = if facts.has_sight { "Return" } else { "Show me" };
-        ui.add_enabled(reason.is_none(), Button::new(label))
+        command_button(ui, facts, Command::ShowMe, label);
     } else {
-        primary(ui, "Show me")
-    };
-    if tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref()).clicked() {
-        facts.send(command);
+        add_command(ui, facts, Command::ShowMe, primary("Show me"));
     }
     if facts.has_sight {
         let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));

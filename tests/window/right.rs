@@ -82,7 +82,7 @@ fn the_code_of_a_stage_is_shown_and_copied() {
     harness.step();
     let is_code = |command: &egui::OutputCommand| matches!(command, egui::OutputCommand::CopyText(text) if text.contains("fn reflectance"));
     assert!(harness.output().platform_output.commands.iter().any(is_code));
-    control(&harness, "Stage").click();
+    send(&mut harness, Command::Code);
     harness.run_steps(2);
     assert!(harness.query_by_label("Why").is_some());
 }

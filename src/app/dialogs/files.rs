@@ -156,7 +156,7 @@ fn buttons(ui: &mut Ui, field: &egui::Response, label: &str, is_usable: bool) ->
     let is_enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = 32.0;
-        let is_pressed = ui.add_enabled_ui(is_usable, |ui| primary(ui, label)).inner.clicked();
+        let is_pressed = ui.add_enabled(is_usable, primary(label)).clicked();
         let is_cancelled = ui.button("Cancel").clicked();
         if is_pressed || is_enter && is_usable { Some(true) } else { is_cancelled.then_some(false) }
     })

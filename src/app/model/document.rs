@@ -315,8 +315,8 @@ mod tests {
         let changed = edited(&metal());
         assert_eq!(names(&changed), expected("10.5 Mirrors (changed)", "metal-changed"));
         let opened = Document::new(Origin::new(changed.recipe(), Source::File("a.toml".into())));
-        assert_eq!(names(&opened), expected("metal-changed", "metal-changed"));
-        assert_eq!(names(&edited(&opened)), expected("metal-changed (changed)", "metal-changed"));
+        assert_eq!(names(&opened), expected("a.toml", "metal-changed"));
+        assert_eq!(names(&edited(&opened)), expected("a.toml (changed)", "metal-changed"));
     }
 
     #[test]
