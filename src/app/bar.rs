@@ -10,6 +10,9 @@ use eframe::egui::{self, Align, Atom, Button, Layout, Margin, Rect, RichText, Ui
 
 const HEIGHT: f32 = 48.0;
 
+/// Height of its tallest button.
+const ROW: f32 = 26.0;
+
 /// Narrower windows have a second row, points.
 const ONE_ROW: f32 = 780.0;
 
@@ -26,10 +29,11 @@ const SAVE: f32 = 64.0;
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, facts: &Facts) {
     let has_one_row = ui.available_width() >= ONE_ROW;
-    let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
-    let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
+    let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 14.0 };
+    let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 11)));
     panel.show(ui, |ui| {
         ui.horizontal(|ui| {
+            ui.set_min_height(ROW);
             ui.scope(|ui| {
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 0.0;
@@ -41,7 +45,10 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
             }
         });
         if !has_one_row {
-            ui.horizontal(|ui| actions(ui, facts));
+            ui.horizontal(|ui| {
+                ui.set_min_height(ROW);
+                actions(ui, facts);
+            });
         }
     });
 }
@@ -49,7 +56,7 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
 /// The stage in the middle of the window; device, pause and save at the right.
 fn actions(ui: &mut Ui, facts: &Facts) {
     let gap = ui.spacing().item_spacing.x;
-    let at_right = 3.0 * DEVICE + PAUSE + SAVE + 6.0 * gap;
+    let at_right = 3.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
     let window = ui.ctx().content_rect();
     let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
     let room = ui.available_width() - at_right;
@@ -58,7 +65,7 @@ fn actions(ui: &mut Ui, facts: &Facts) {
     ui.add_space(indent.min(room - width).max(gap));
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
-    ui.add_space((ui.available_width() - at_right).max(0.0) + gap);
+    ui.add_space((ui.available_width() - at_right).max(0.0));
     device(ui, facts);
     ui.add_space(gap);
     pause(ui, facts);

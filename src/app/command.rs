@@ -4,7 +4,7 @@ use super::dialogs::{Dialog, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Tone, ViewState, With};
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Tab, Tone, ViewState, With};
 use super::spheres::neighbour;
 use super::stage_list;
 use super::window::Window;
@@ -155,8 +155,6 @@ table! {
         Theme(ThemePreference),
         Device(Device),
         Channel(Channel),
-        /// Gives the picture the size of the viewport or of the book.
-        Size(Sizing),
         Stage(&'static Stage),
         Extreme(&'static Case),
         /// Opens a recent file.
@@ -390,6 +388,12 @@ table! {
     OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance",
         |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
         also("kept slot compare same");
+    RenderAtSize "Render at this size",
+        "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
+        |w, _| {
+            w.model.document.has_own_size = false;
+            w.tracing.sizer.ask();
+        }, unlisted();
     StopSaving "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted();
     Recover "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted();
     WholeCompanion "Write the full one",
@@ -463,15 +467,6 @@ fn family_rows() -> Vec<Row> {
     ] {
         let row = Row::new(None, Command::SaveAs(format), [name, ""], move |w, _| w.ask_save(format));
         rows.push(row.keys(modifiers, key).unlisted());
-    }
-    for sizing in Sizing::ALL {
-        let help = "Renders one pixel of the picture per pixel of the screen; the samples begin anew";
-        let row = Row::new(None, Command::Size(sizing), ["Render at this size", help], move |w, _| {
-            w.model.remembered.sizing = sizing;
-            w.model.document.has_own_size = false;
-            w.tracing.sizer.ask();
-        });
-        rows.push(row.unlisted());
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         let row =

@@ -36,7 +36,7 @@ pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, fac
         panel_line(ui);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
-    size_and_samples(ui, document, facts);
+    size_and_samples(ui, document, remembered, facts);
     if has_rays {
         tracer(ui, document, remembered);
     }
@@ -199,7 +199,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -208,7 +208,7 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let reset = is_changed.then_some("Reset size and samples");
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
-        sizing(ui, document, facts);
+        sizing(ui, document, remembered, facts);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
     });
@@ -220,20 +220,23 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     }
 }
 
-fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts) {
+fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let names = [
         ("Fill the window", Some(Sizing::Viewport)),
         ("As in the book", Some(Sizing::Book)),
         ("Other", None),
     ];
-    let chosen = (!document.has_own_size).then_some(facts.model.remembered.sizing);
+    let chosen = (!document.has_own_size).then_some(remembered.sizing);
     let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
     ui.spacing_mut().combo_width = 136.0;
     list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
         for (name, sizing) in names {
             if entry(ui, sizing == chosen, About::new(name, "")) {
                 match sizing {
-                    Some(sizing) => facts.send(Command::Size(sizing)),
+                    Some(sizing) => {
+                        remembered.sizing = sizing;
+                        facts.send(Command::RenderAtSize);
+                    }
                     None => document.has_own_size = true,
                 }
             }

@@ -19,7 +19,6 @@ impl Window {
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let facts = self.facts();
         bar::name_window(ui.ctx(), facts.document());
-        self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
             present::ui(ui, &facts);
         }

@@ -202,7 +202,6 @@ mod tests {
     use super::facts::Facts;
     use super::*;
     use crate::cli::{Request, parse};
-    use eframe::egui::{Event, Pos2, Ui};
     use egui_kittest::{Harness, HarnessBuilder};
 
     /// The window of a command line, without a display.
@@ -225,17 +224,6 @@ mod tests {
     /// What draws a part of the window with the window's own style, which is dark.
     pub(super) fn dressed<State>(size: [f32; 2]) -> HarnessBuilder<State> {
         Harness::<State>::builder().with_size(size).with_context_setup(theme::install)
-    }
-
-    /// A part of the window that keeps no state.
-    pub(super) fn part<'a>(size: [f32; 2], draw: impl FnMut(&mut Ui) + 'a) -> Harness<'a> {
-        dressed(size).build_ui(draw)
-    }
-
-    /// Rests the pointer at this point until tips are shown.
-    pub(super) fn rest_at<State>(harness: &mut Harness<'_, State>, at: Pos2) {
-        harness.event(Event::PointerMoved(at));
-        harness.run_steps(6);
     }
 
     #[test]

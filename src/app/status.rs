@@ -2,7 +2,6 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::model::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
@@ -66,7 +65,7 @@ fn sentence_ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
     } else if let Some([width, height]) = offered {
         ui.label("This picture is scaled.");
         let name = format!("Render at {width} × {height}");
-        command_button(ui, facts, Command::Size(Sizing::Viewport), &name);
+        command_button(ui, facts, Command::RenderAtSize, &name);
     }
 }
 

@@ -73,7 +73,9 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
     let text = [Some(help), reason].into_iter().flatten().filter(|part| !part.is_empty());
     let text = text.collect::<Vec<_>>().join("\n\n");
     let is_held = response.ctx.input(|input| input.pointer.any_down());
-    if !text.is_empty() && !is_held && Tooltip::should_show_tooltip(&response, true) {
+    // A dialog may have opened above it.
+    let is_reached = response.ctx.memory(|memory| memory.allows_interaction(response.layer_id));
+    if !text.is_empty() && !is_held && is_reached && Tooltip::should_show_tooltip(&response, true) {
         show_tip(ui, &response, &text);
     }
     response

@@ -11,7 +11,7 @@ pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, fi
 use super::facts::Facts;
 use super::finder::Finder;
 use super::stage_list;
-use eframe::egui::{self, Align2, Color32, Context, Id, Modal, PointerState, Ui, vec2};
+use eframe::egui::{self, Align2, Color32, Id, Modal, Ui, vec2};
 use std::path::PathBuf;
 
 /// What happens to a dialog after a frame.
@@ -50,8 +50,6 @@ pub enum Dialog {
 #[derive(Default)]
 pub struct Dialogs {
     open: Option<Dialog>,
-    /// The pointer, while what is behind a dialog is drawn.
-    pointer: Option<PointerState>,
     pub system: files::System,
 }
 
@@ -66,19 +64,8 @@ impl Dialogs {
         self.open = Some(dialog);
     }
 
-    /// Hides the pointer from what is drawn behind a dialog: a tip that was shown there would stay above the dialog as long as
-    /// the pointer rests.
-    pub fn begin(&mut self, context: &Context) {
-        if self.is_open() {
-            self.pointer = Some(context.input_mut(|input| std::mem::take(&mut input.pointer)));
-        }
-    }
-
     /// Draws the dialog. Returns how it closes.
     pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) -> Outcome {
-        if let Some(pointer) = self.pointer.take() {
-            ui.ctx().input_mut(|input| input.pointer = pointer);
-        }
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
         // Each kind has its own size.
@@ -124,33 +111,5 @@ impl Dialogs {
             (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }
         None
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::{facts_of, part, rest_at};
-    use eframe::egui;
-
-    #[test]
-    fn what_is_behind_a_dialog_does_not_see_the_pointer() {
-        let facts = facts_of("--stage metal --size 32x18");
-        let mut dialogs = Dialogs::default();
-        for is_open in [false, true] {
-            if is_open {
-                dialogs.open(Dialog::Help);
-            }
-            let mut seen = Vec::new();
-            let mut harness = part([800.0, 600.0], |ui| {
-                dialogs.begin(ui.ctx());
-                let behind = ui.ctx().input(|input| input.pointer.hover_pos());
-                dialogs.ui(ui, &facts);
-                seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
-            });
-            rest_at(&mut harness, egui::pos2(400.0, 300.0));
-            drop(harness);
-            assert_eq!(seen.last(), Some(&[!is_open, true]));
-        }
     }
 }
