@@ -16,8 +16,8 @@ use super::spheres::{self, Selected};
 use super::window::Window;
 use crate::film::Film;
 use crate::job::output::OutputFormat;
+use crate::measure::grouped;
 use eframe::egui::{self, Context, ViewportCommand};
-use indicatif::HumanCount;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::Arc;
@@ -415,7 +415,7 @@ impl Window {
         let Some((document, samples)) = self.autosave.left().and_then(|path| picture_of(&path)) else {
             return;
         };
-        let (name, samples) = (document.place(), HumanCount(samples));
+        let (name, samples) = (document.place(), grouped(samples));
         let words =
             format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
         self.shell.toasts.offer(words, &[Command::Recover]);

@@ -9,12 +9,12 @@ use super::widgets::{command_button, compact, small, tip};
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
+use crate::measure::grouped;
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
     Stroke, Ui, accesskit::Live,
 };
-use indicatif::HumanCount;
 
 const HEIGHT: f32 = 32.0;
 
@@ -88,7 +88,7 @@ fn announce(response: &Response, sentence: &str) {
 
 fn left_out(ui: &mut Ui, count: u64) {
     if count > 0 {
-        let words = format!("{} samples were left out", HumanCount(count));
+        let words = format!("{} samples were left out", grouped(count));
         let response = ui.label(RichText::new(words).color(theme::colours(ui).warn));
         tip(ui, response, "They were not numbers, so they would spoil their pixels", None);
     }
@@ -102,7 +102,7 @@ pub fn sentence(facts: &Facts) -> String {
     }
     let view = &facts.model.view;
     if let Some((place, kept)) = view.looked().zip(view.wiped()) {
-        let (title, samples) = (view.kept.title(place), HumanCount(kept.samples()));
+        let (title, samples) = (view.kept.title(place), grouped(kept.samples()));
         return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {
@@ -118,7 +118,7 @@ pub fn sentence(facts: &Facts) -> String {
         (Some(raw), None) => format!(", error {}", percent(raw.rmse)),
         (None, _) => String::new(),
     };
-    let samples = format!("{} samples per pixel", HumanCount(count));
+    let samples = format!("{} samples per pixel", grouped(count));
     match &status.phase {
         Phase::Failed(reason) => format!("Stopped at {samples}: {reason}"),
         _ if facts.is_coarse && facts.is_moving => "A coarse picture while you move".to_owned(),
@@ -141,7 +141,7 @@ pub fn sentence(facts: &Facts) -> String {
             Some(end) => {
                 let per_sample = status.trace.as_secs_f64() / count as f64;
                 let left = time(per_sample * end.saturating_sub(count) as f64);
-                let samples = format!("{} of {} samples per pixel", HumanCount(count), HumanCount(end));
+                let samples = format!("{} of {} samples per pixel", grouped(count), grouped(end));
                 format!("{samples}{error}; done in about {left}")
             }
             None => format!("{samples}{error}{}", ending(facts)),
