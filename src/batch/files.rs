@@ -1,6 +1,6 @@
 //! The films and the picture of a render: locked and checked before it begins, and written at its end.
 
-use crate::cli::RenderOptions;
+use crate::cli::{RenderOptions, command_line};
 use crate::denoise::{self, DenoisedError};
 use crate::film::{Description, Film, LockedFilm, SampleRanges, checkpoint, key};
 use crate::job::output::{OutputFormat, write_image_as};
@@ -185,7 +185,7 @@ impl Files {
     fn described(&self, film: &Film, status: &Status) -> Description {
         let Files { render, seconds_before, .. } = self;
         let mut description = describe(&render.recipe, render.stage, film, status, *seconds_before);
-        description.set(key::COMMAND, &render.command);
+        description.set(key::COMMAND, command_line());
         description
     }
 }

@@ -4,8 +4,8 @@
 use super::progress::display;
 use super::studio::{Event, Studio};
 use super::{ended, write_figures};
-use crate::cli::FramesOptions;
 use crate::cli::terminal::{Display, print_beside};
+use crate::cli::{FramesOptions, command_line};
 use crate::film::{Film, key};
 use crate::job::output::write_image;
 use crate::job::recipe::Recipe;
@@ -150,7 +150,7 @@ impl Run<'_> {
         let _writing = self.interrupt.while_writing(path.shown());
         let mut description = describe(recipe, self.options.stage, film, status, Some(0.0));
         description.set(key::FRAME, frame);
-        description.set(key::COMMAND, &self.options.command);
+        description.set(key::COMMAND, command_line());
         write_image(path, film, recipe.rules.transfer, &description)?;
         log::info!("wrote {}", path.display());
         Ok(())

@@ -36,7 +36,7 @@ pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
 /// What a file says about itself.
 struct Info {
     json: Value,
-    /// The estimated error of a film, or why there is none.
+    /// The estimated error of a picture, or why a film has none.
     error: Option<String>,
     /// Why a picture that was a film is none any more.
     note: Option<String>,
@@ -54,7 +54,7 @@ impl Info {
         }
         let saved = Saved::describe(path)?;
         let text = |key| saved.description.get(key);
-        let info = Info::new("picture", path, &saved.recipe()?).with(json!({
+        let mut info = Info::new("picture", path, &saved.recipe()?).with(json!({
             "stage": text(key::STAGE),
             "samples_per_pixel": saved.samples(),
             "trace_seconds": saved.seconds(),
@@ -63,6 +63,7 @@ impl Info {
             "program": text(key::SOFTWARE),
             "command": text(key::COMMAND),
         }));
+        info.error = text(key::ERROR).map(str::to_owned);
         info.with_film(path)
     }
 

@@ -46,7 +46,6 @@ fn render_samples(plan: &Plan, index: usize, options: PartOptions) -> Result<Exi
             checkpoint: Some(path.clone()),
             every: options.every,
             resume: Some(path.clone()),
-            command: options.command,
         },
         save_scene: None,
         backend: options.backend,

@@ -1,15 +1,14 @@
 //! `weekender plan`: writes a plan and makes the commands for its parts.
 
-use crate::cli::PlanOptions;
+use crate::cli::{PlanOptions, program};
 use crate::film::Film;
 use crate::job::plan::{Commands, Format, Plan, scripts};
 use crate::progressive::describe::counted;
 use crate::system::console;
-use crate::system::failure::{Failure, output_failure};
+use crate::system::failure::Failure;
 use crate::system::files::{ShownPath, make_directory};
 use crate::system::memory;
 use crate::system::shell::{Shell, operand};
-use anyhow::anyhow;
 use std::process::ExitCode;
 
 /// Writes the plan and makes its commands.
@@ -19,7 +18,7 @@ use std::process::ExitCode;
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
     let (recipe, job, manifest) = options.divided().map_err(Failure::Input)?;
     make_directory(&options.out).map_err(Failure::Input)?;
-    let program = options.program.as_deref().unwrap_or("weekender");
+    let program = &options.program.clone().unwrap_or_else(program);
     let scripts = scripts(options.format, &manifest, program);
     let plan = Plan::write(&options.out, &recipe, &job, manifest, &scripts).map_err(Failure::Input)?;
     console::note(&about(&plan));
@@ -37,7 +36,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
             parts.map(|part| commands.part(Shell::HERE, &part.to_string()) + "\n").collect()
         }
     };
-    console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
+    console::write_out(&lines).map_err(Failure::Run)?;
     if options.format == Format::Text {
         let result = options.out.join(&plan.manifest.result);
         console::note(&format!("then: {}", commands.merge(Shell::HERE, &result.to_string_lossy())));

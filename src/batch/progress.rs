@@ -44,7 +44,7 @@ fn step(elapsed: Duration, left: Option<f64>) -> u64 {
 
 /// Seconds until the first stop condition is met, if that can be predicted.
 fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
-    let added: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    let added = status.added();
     if added == 0 {
         return None;
     }

@@ -45,10 +45,6 @@ impl Summary<'_> {
         (self.status.elapsed + self.writing).as_secs_f64()
     }
 
-    fn added(&self) -> u64 {
-        self.status.contributions.iter().map(|part| part.samples_per_pixel).sum()
-    }
-
     pub fn json(&self) -> Value {
         let Summary { render, status, .. } = self;
         let (settings, backend, error) = (render.job.settings(), status.backend.as_ref(), status.error);
@@ -68,7 +64,7 @@ impl Summary<'_> {
             "left_out": status.left_out,
             "samples_per_pixel": status.samples_per_pixel,
             "sample_ranges": self.samples.as_deref().unwrap_or_default(),
-            "added_samples_per_pixel": self.added(),
+            "added_samples_per_pixel": status.added(),
             "prepare_seconds": self.preparing_seconds(),
             "hierarchy_seconds": status.hierarchy.as_secs_f64(),
             "trace_seconds": status.trace.as_secs_f64(),
@@ -129,7 +125,7 @@ impl fmt::Display for Summary<'_> {
             settings.sampler.name(),
             settings.seed
         );
-        let (held, added) = (status.samples_per_pixel, self.added());
+        let (held, added) = (status.samples_per_pixel, status.added());
         let new = if added == held { String::new() } else { format!(" ({added} of them new)") };
         let samples = format!("{held}{new} per pixel, ended by {}", self.ended_by().1);
         let time = format!(

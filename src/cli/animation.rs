@@ -1,9 +1,9 @@
 //! Animations: `--frames` and `--turntable`.
 
+use super::check_paths;
 use super::render::RenderFlags;
 use super::sources::{self, PictureFlags};
 use super::values::{ProgressChoice, parse_turn, range};
-use super::{Line, check_paths};
 use crate::backends::BackendChoice;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
@@ -86,12 +86,10 @@ pub struct FramesOptions {
     pub backend: BackendChoice,
     pub progress: ProgressChoice,
     pub json: Option<PathBuf>,
-    /// The command that renders them.
-    pub command: String,
 }
 
 /// Validates the flags of an animation.
-pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
+pub(super) fn frames(flags: RenderFlags) -> Result<FramesOptions> {
     let (chosen, job) = sources::picture(&flags.picture, &flags.samples, None)?;
     let (frames, path) = flags.animation.of(&job, &chosen.recipe, &flags.picture)?;
     let Some(out) = flags.files.out.as_deref().filter(|_| flags.batch) else {
@@ -114,7 +112,6 @@ pub(super) fn frames(flags: RenderFlags, line: &Line) -> Result<FramesOptions> {
         backend: flags.backend,
         progress: flags.progress,
         json: flags.files.json,
-        command: line.command.clone(),
     })
 }
 

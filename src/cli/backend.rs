@@ -33,7 +33,7 @@ struct BackendFlags {
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto")]
     isa: Auto<Isa>,
     /// CPU threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1024))]
     threads: Option<usize>,
     /// Lose the GPU after this many dispatches, to see that the CPU continues (fault injection)
     #[arg(long, value_name = "DISPATCHES", group = "fault")]

@@ -26,7 +26,7 @@ pub struct BenchOptions {
     size: Option<(u32, u32)>,
     /// Maximum samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
     /// many as --run-limit allows]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100))]
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
     samples: Option<u64>,
     /// Source of random numbers [default: sobol, or the scene's]
     #[arg(long, value_enum)]
@@ -35,13 +35,13 @@ pub struct BenchOptions {
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto")]
     isa: Auto<Vec<Isa>>,
     /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_usize, 8))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1024))]
     threads: Option<usize>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING")]
     pub adapter: Option<String>,
     /// Runs of each row, after a warm-up that does not count, 1 to 1000; with --quick, 3 by default
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_usize, 5), default_value = "5",
+    #[arg(long, value_name = "COUNT", value_parser = whole::<usize>(1..=1000), default_value = "5",
           default_value_if("quick", "true", "3"))]
     pub runs: usize,
     /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with

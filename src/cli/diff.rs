@@ -16,12 +16,12 @@ pub struct DiffOptions {
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find", conflicts_with = "find")]
     pixel: Option<[u32; 2]>,
     /// Index of the sample, from 0
-    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=SAMPLE_LIMIT - 1, 7), default_value = "0",
+    #[arg(long, value_name = "NUMBER", value_parser = whole::<u64>(0..=SAMPLE_LIMIT - 1), default_value = "0",
           conflicts_with = "find")]
     pub sample: u64,
     /// Search this many samples of every pixel for the one that differs most; without --size, the picture is at most
     /// 200 pixels wide
-    #[arg(long, value_name = "SAMPLES", value_parser = whole(1..=SAMPLE_LIMIT, 100), num_args = 0..=1,
+    #[arg(long, value_name = "SAMPLES", value_parser = whole::<u64>(1..=SAMPLE_LIMIT), num_args = 0..=1,
           default_missing_value = "4")]
     pub find: Option<u64>,
     /// The two backends to compare: cpu, portable (multiply and add rounded separately), reference (f64) or gpu

@@ -22,9 +22,6 @@ pub struct MergeOptions {
     /// what is missing
     #[arg(long, conflicts_with = "out")]
     pub check: bool,
-    /// How commands call this program.
-    #[arg(skip)]
-    pub program: String,
 }
 
 /// Options of `weekender info`.
@@ -132,6 +129,7 @@ impl ValueEnum for Encoding {
             Encoding::Book(Transfer::Linear) => "linear",
             Encoding::Book(_) => "gamma2",
             Encoding::Srgb => "srgb",
+            Encoding::Gamma(_) => return None,
         }))
     }
 }

@@ -24,7 +24,6 @@ pub use paths::{check_outputs, check_paths};
 pub use plan::{PartOptions, PlanOptions};
 pub use render::{BatchOptions, RenderOptions, WindowOptions};
 pub use report::ReportOptions;
-pub use sources::DEFAULT_SCENE;
 pub use values::{DrawWith, ProgressChoice};
 
 use crate::job::recipe::Recipe;
@@ -64,9 +63,9 @@ struct Raw {
     #[arg(long = "log", id = "log", value_name = "FILE.log", value_parser = values::file_ending(".log"), global = true)]
     _log: Option<PathBuf>,
     #[command(flatten)]
-    render: render::RenderFlags,
+    _render: render::RenderFlags,
     #[command(subcommand)]
-    command: Option<Command>,
+    _command: Option<Command>,
 }
 
 /// A subcommand with its options.
@@ -147,22 +146,21 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Option<PathBuf
 /// # Errors
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
     let matches =
-        command().try_get_matches_from(&arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
+        command().try_get_matches_from(arguments).map_err(|error| Failure::CommandLine(hinted(error)))?;
     if matches.get_flag("version") {
         return Ok(Request::Version);
     }
-    let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
-    let matches = matches.subcommand().map_or(&matches, |(_, matches)| matches);
-    let line = Line { program: program(arguments.first()), command: recorded(&arguments), matches };
-    Ok(match raw.command {
-        None => render::request(raw.render, &line).map_err(Failure::Input)?,
-        Some(mut command) => {
-            command.complete(&line);
-            Request::Command(command)
-        }
-    })
+    // The flags of a subcommand alone: reading `--device auto` asks the system for its GPUs.
+    let Some((_, own)) = matches.subcommand() else {
+        let flags = render::RenderFlags::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+        return render::request(flags, &matches).map_err(Failure::Input);
+    };
+    let mut command = Command::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
+    if let Command::Plan(options) = &mut command {
+        options.flags = words(own, &[&backend::FLAGS[..], &["every"]].concat());
+    }
+    Ok(Request::Command(command))
 }
 
 /// Adds a tip if the value of a flag has a decimal comma.
@@ -176,53 +174,38 @@ fn hinted(mut error: clap::Error) -> clap::Error {
     error
 }
 
-impl Command {
-    /// Adds what options say of the command line as a whole.
-    fn complete(&mut self, line: &Line) {
-        match self {
-            Command::Plan(options) => options.complete(line),
-            Command::RenderPart(options) => options.command.clone_from(&line.command),
-            Command::Merge(options) => options.program.clone_from(&line.program),
-            Command::Report(options) => options.command.clone_from(&line.command),
-            _ => {}
-        }
-    }
+fn is_given(matches: &ArgMatches, flag: &str) -> bool {
+    matches.value_source(flag) == Some(ValueSource::CommandLine)
 }
 
-struct Line<'a> {
-    /// How commands call this program.
-    program: String,
-    /// The command as pictures record it.
-    command: String,
-    /// What clap found, of the subcommand if there is one.
-    matches: &'a ArgMatches,
-}
-
-impl Line<'_> {
-    fn is_given(&self, flag: &str) -> bool {
-        self.matches.value_source(flag) == Some(ValueSource::CommandLine)
-    }
-
-    /// Arguments for those of `flags` that are given.
-    fn words(&self, flags: &[&str]) -> Vec<String> {
-        let value = |flag: &str| self.matches.get_raw(flag).into_iter().flatten().next();
-        let given = flags.iter().filter(|flag| self.is_given(flag));
-        given.filter_map(|flag| Some(format!("--{flag}={}", value(flag)?.to_string_lossy()))).collect()
-    }
+/// Arguments for those of `flags` that are given.
+fn words(matches: &ArgMatches, flags: &[&str]) -> Vec<String> {
+    let value = |flag: &str| matches.get_raw(flag).into_iter().flatten().next();
+    let given = flags.iter().filter(|flag| is_given(matches, flag));
+    given.filter_map(|flag| Some(format!("--{flag}={}", value(flag)?.to_string_lossy()))).collect()
 }
 
 /// How commands call this program: by name if the shell found it, otherwise with its directory.
-fn program(first: Option<&OsString>) -> String {
+pub fn program() -> String {
+    called(wild::args_os().next())
+}
+
+fn called(first: Option<OsString>) -> String {
     const NAME: &str = "weekender";
-    let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
+    let is_path = first.is_some_and(|first| Path::new(&first).components().count() > 1);
     let path = if is_path { std::env::current_exe().ok() } else { None };
     path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
 }
 
+/// The command line of this run, as pictures record it.
+pub fn command_line() -> String {
+    recorded(wild::args_os())
+}
+
 /// The command line quoted for a shell, with file names instead of paths: pictures are shared, and the directories of
 /// their authors are private.
-fn recorded(arguments: &[OsString]) -> String {
-    let shortened = |word: &OsString| {
+fn recorded(arguments: impl Iterator<Item = OsString>) -> String {
+    let shortened = |word: OsString| {
         let word = word.to_string_lossy();
         let (flag, value) = word.split_once('=').filter(|_| word.starts_with("--")).unwrap_or(("", &word));
         let path = Path::new(value);
@@ -233,7 +216,7 @@ fn recorded(arguments: &[OsString]) -> String {
             None => word.into_owned(),
         }
     };
-    Shell::HERE.line(std::iter::once("weekender".to_owned()).chain(arguments.iter().skip(1).map(shortened)))
+    Shell::HERE.line(std::iter::once("weekender".to_owned()).chain(arguments.skip(1).map(shortened)))
 }
 
 #[cfg(test)]

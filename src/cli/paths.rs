@@ -1,9 +1,9 @@
 //! An output must not be an input of the same command, or another output.
 
-use crate::system::files::{FileIdentity, ShownPath, check_writable};
+use crate::system::files::{ShownPath, check_writable, identity};
 use anyhow::{Result, ensure};
 use std::collections::HashSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Refuses an output that would replace an input or another output. Devices may be shared.
 ///
@@ -13,10 +13,10 @@ pub fn check_paths<'a>(
     inputs: impl IntoIterator<Item = &'a Path>,
     outputs: impl IntoIterator<Item = &'a Path>,
 ) -> Result<()> {
-    let mut seen: HashSet<FileIdentity> = inputs.into_iter().filter_map(FileIdentity::of).collect();
+    let mut seen: HashSet<PathBuf> = inputs.into_iter().filter_map(identity).collect();
     for path in outputs {
         ensure!(
-            FileIdentity::of(path).is_none_or(|file| seen.insert(file)),
+            identity(path).is_none_or(|file| seen.insert(file)),
             "{} would replace an input or another output of this command; give each file a name of its own",
             path.shown()
         );

@@ -1,14 +1,14 @@
 //! Flags of `weekender plan` and `weekender render-part`.
 
+use super::command_line;
 use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{ProgressChoice, parse_duration, whole};
-use super::{Line, backend};
 use crate::backends::BackendChoice;
 use crate::job::plan::{Format, Manifest};
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderJob;
 use crate::system::files::ShownPath;
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -20,7 +20,7 @@ const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"
 #[derive(Debug, Args)]
 pub struct PlanOptions {
     /// Parts, 1 to 100000, each with some samples of the whole picture
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=100_000_u64, 10))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=100_000))]
     parts: u64,
     /// The directory of the plan, of its parts and of the merged film; it is created if necessary
     #[arg(long, value_name = "DIR")]
@@ -42,19 +42,10 @@ pub struct PlanOptions {
     backend: BackendChoice,
     /// Flags for the command of every part.
     #[arg(skip)]
-    flags: Vec<String>,
-    /// The command that makes the plan.
-    #[arg(skip)]
-    command: String,
+    pub(super) flags: Vec<String>,
 }
 
 impl PlanOptions {
-    pub(super) fn complete(&mut self, line: &Line) {
-        self.flags = line.words(&[&backend::FLAGS[..], &["every"]].concat());
-        self.command.clone_from(&line.command);
-        self.program.get_or_insert_with(|| line.program.clone());
-    }
-
     /// The picture, and the manifest of its parts.
     ///
     /// # Errors
@@ -73,7 +64,7 @@ impl PlanOptions {
             format!("--parts is {parts}, but there are {count} samples per pixel to divide; each part needs one at least")
         })?;
         let manifest = Manifest {
-            command: self.command.clone(),
+            command: command_line(),
             scene: recipe.name.clone(),
             stage: stage.map(|stage| stage.id.to_owned()),
             flags: self.flags.clone(),
@@ -103,9 +94,6 @@ pub struct PartOptions {
     pub progress: ProgressChoice,
     #[command(flatten)]
     pub backend: BackendChoice,
-    /// The command that renders it.
-    #[arg(skip)]
-    pub command: String,
 }
 
 impl PartOptions {
@@ -114,19 +102,16 @@ impl PartOptions {
     /// # Errors
     /// If neither a flag nor the environment says which part it is.
     pub fn part(&self) -> Result<u64> {
-        let of_environment =
-            || PART_VARIABLES.into_iter().find_map(|name| Some((name, std::env::var(name).ok()?)));
-        match (self.part, of_environment()) {
-            (Some(part), _) => Ok(part),
-            (None, Some((name, value))) => value.parse().with_context(|| {
-                format!(
-                    "{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER"
-                )
-            }),
-            (None, None) => bail!(
-                "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part \
-                 this task is to render"
-            ),
+        if let Some(part) = self.part {
+            return Ok(part);
         }
+        let found = PART_VARIABLES.into_iter().find_map(|name| Some((name, std::env::var(name).ok()?)));
+        let (name, value) = found.context(
+            "render-part needs --part NUMBER: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part this \
+             task is to render",
+        )?;
+        value.parse().with_context(|| {
+            format!("{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER")
+        })
     }
 }

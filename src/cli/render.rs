@@ -5,7 +5,7 @@ use super::sources::{self, ChosenRecipe, PictureFlags, SampleFlags};
 use super::values::{
     DrawWith, ProgressChoice, file_ending, parse_duration, parse_noise_target, parse_seconds,
 };
-use super::{Line, Request, backend};
+use super::{Request, backend, is_given};
 use crate::backends::BackendChoice;
 use crate::job::output::OutputFormat;
 use crate::job::recipe::{Recipe, plain_name};
@@ -15,7 +15,7 @@ use crate::progressive::{Plan, Stop};
 use crate::stages::Stage;
 use crate::system::files::{STANDARD, ShownPath};
 use anyhow::{Result, bail, ensure};
-use clap::Args;
+use clap::{ArgMatches, Args};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -174,35 +174,33 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
-    /// The command that renders it.
-    pub command: String,
 }
 
 /// Validates the flags without a subcommand.
-pub(super) fn request(mut flags: RenderFlags, line: &Line) -> Result<Request> {
+pub(super) fn request(mut flags: RenderFlags, matches: &ArgMatches) -> Result<Request> {
     if flags.list {
         return Ok(Request::List);
     }
     if flags.animation.is_given() {
-        return Ok(Request::Frames(Box::new(animation::frames(flags, line)?)));
+        return Ok(Request::Frames(Box::new(animation::frames(flags)?)));
     }
     let files = &mut flags.files;
     if files.go_on && files.checkpoint.as_ref().is_some_and(|film| film.exists()) {
         files.resume.clone_from(&files.checkpoint);
     }
     match (flags.batch, &flags.files.save_scene) {
-        (false, None) => Ok(Request::Window(Box::new(window(flags, line)?))),
+        (false, None) => Ok(Request::Window(Box::new(window(flags, matches)?))),
         (false, Some(path)) => {
             check_paths(&flags, None)?;
             let (chosen, _) =
                 sources::picture(&flags.picture, &flags.samples, flags.files.resume.as_deref())?;
             Ok(Request::SaveScene(Box::new(chosen.recipe), path.clone()))
         }
-        (true, _) => batch(flags, line),
+        (true, _) => batch(flags),
     }
 }
 
-fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
+fn window(flags: RenderFlags, matches: &ArgMatches) -> Result<WindowOptions> {
     let RenderFlags { picture, samples, stop, files, .. } = &flags;
     ensure!(
         samples.sample_range.is_none(),
@@ -223,7 +221,7 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
         file: file.map(PathBuf::from),
         is_size_given: picture.size.is_some(),
         is_picture_given: picture.is_given() || files.resume.is_some() || samples.estimate_error.is_some(),
-        is_device_given: backend::FLAGS.into_iter().any(|flag| line.is_given(flag)),
+        is_device_given: backend::FLAGS.into_iter().any(|flag| is_given(matches, flag)),
         resume: files.resume.clone(),
         is_fresh: flags.fresh,
         autosave_every: flags.autosave_every,
@@ -235,14 +233,14 @@ fn window(flags: RenderFlags, line: &Line) -> Result<WindowOptions> {
     })
 }
 
-fn batch(flags: RenderFlags, line: &Line) -> Result<Request> {
+fn batch(flags: RenderFlags) -> Result<Request> {
     let RenderFlags { picture, samples, files, .. } = &flags;
     let chosen = sources::picture(picture, samples, files.resume.as_deref())?;
     let name = chosen.0.stage.map_or(chosen.0.recipe.name.as_str(), |stage| stage.id);
     let out = files.out.clone().unwrap_or_else(|| format!("{}.png", plain_name(name)).into());
     check_paths(&flags, Some(&out))?;
     Ok(Request::Batch(Box::new(BatchOptions {
-        render: render(chosen, &flags, out, line)?,
+        render: render(chosen, &flags, out)?,
         backend: flags.backend,
         progress: flags.progress,
         save_scene: flags.files.save_scene,
@@ -255,7 +253,6 @@ fn render(
     (chosen, job): (ChosenRecipe, RenderJob),
     flags: &RenderFlags,
     out: PathBuf,
-    line: &Line,
 ) -> Result<RenderOptions> {
     let (files, named) = (&flags.files, OutputFormat::from_path(&out));
     let format = match (files.format, named) {
@@ -271,11 +268,11 @@ fn render(
         out != Path::new(STANDARD) || files.json.as_ref() != Some(&out),
         "--out - and --json - would both write to standard output; write one of them to a file"
     );
-    if flags.stop.noise_target.is_some() && !job.settings().estimate_error {
-        bail!("--noise-target needs --estimate-error on: the error is estimated from the film's two halves");
-    }
-    if files.denoise && !job.settings().estimate_error {
-        bail!("--denoise needs --estimate-error on: the filter compares the film's two halves");
+    let comparing = [("--noise-target", flags.stop.noise_target.is_some()), ("--denoise", files.denoise)];
+    if let Some((flag, _)) = comparing.into_iter().find(|(_, is_given)| *is_given)
+        && !job.settings().estimate_error
+    {
+        bail!("{flag} needs --estimate-error on: it compares the film's two halves");
     }
     Ok(RenderOptions {
         plan: plan(flags, &chosen.recipe),
@@ -287,7 +284,6 @@ fn render(
         checkpoint: files.checkpoint.clone(),
         every: files.every,
         resume: files.resume.clone(),
-        command: line.command.clone(),
     })
 }
 

@@ -38,13 +38,13 @@ pub struct ReportOptions {
     #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x90")]
     pub size: (u32, u32),
     /// Pictures per curve, which differ only in their random numbers, 1 to 1000
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_u32, 8), default_value = "8")]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u32>(1..=1000), default_value = "8")]
     pub seeds: u32,
     /// Seconds of tracing for all pictures of a curve; each picture ends with the last doubling that fits
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, default_value = "12")]
     pub time_limit: f64,
     /// Maximum samples per pixel, 2 to 4294967296
-    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
+    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = whole::<u64>(2..=SAMPLE_LIMIT),
           default_value = "1024")]
     pub max_samples: u64,
     /// Also report the seconds needed to reach this RMSE, and mark it in the plot
@@ -55,14 +55,11 @@ pub struct ReportOptions {
     #[arg(long, value_name = "BACKEND", default_value = "reference")]
     pub reference_backend: String,
     /// Samples per pixel of the references [default: 4 times --max-samples]
-    #[arg(long, value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(2..=SAMPLE_LIMIT))]
     reference_samples: Option<u64>,
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
-    /// The command as typed, with file names instead of paths.
-    #[arg(skip)]
-    pub command: String,
 }
 
 /// Name of the C program among the backends of a report.

@@ -15,7 +15,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// The scene that is rendered if none is named.
-pub const DEFAULT_SCENE: &str = "three-spheres";
+const DEFAULT_SCENE: &str = "three-spheres";
 
 /// What is rendered.
 #[derive(Debug, Default, PartialEq, Args)]
@@ -31,14 +31,14 @@ pub(super) struct PictureFlags {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Maximum number of rays per path, including the camera's, 1 to 10000 [default: the scene's]
-    #[arg(long, value_name = "RAYS", value_parser = whole(1..=DEPTH_LIMIT, 50))]
+    #[arg(long, value_name = "RAYS", value_parser = whole::<u32>(1..=DEPTH_LIMIT.into()))]
     pub depth: Option<u32>,
     /// Source of random numbers: scrambled Sobol points, or independent numbers as in the book
     /// [default: sobol, or the scene's]
     #[arg(long, value_enum)]
     pub sampler: Option<SamplerKind>,
     /// Seed: pictures with different seeds differ only in their noise, 0 to 4294967295 [default: 0, or the scene's]
-    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=u32::MAX, 7))]
+    #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(0..=u32::MAX.into()))]
     pub seed: Option<u32>,
     #[command(flatten)]
     pub camera: CameraFlags,
@@ -99,7 +99,7 @@ impl PictureFlags {
 #[command(next_help_heading = "Samples")]
 pub(super) struct SampleFlags {
     /// Samples per pixel, 1 to 4294967296 [default: the scene's; unlimited with --time-limit or --noise-target]
-    #[arg(long, value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100))]
+    #[arg(long, value_name = "COUNT", value_parser = whole::<u64>(1..=SAMPLE_LIMIT))]
     pub samples: Option<u64>,
     /// Only samples A to B - 1, for `weekender merge` or to add them to a picture that has the others
     #[arg(long, value_name = "A..B", value_parser = range(SAMPLE_LIMIT, "0..64"),

@@ -6,7 +6,7 @@ use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use anyhow::{Context, Result};
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, RangedU64ValueParser, TypedValueParser};
 use glam::DVec3;
 use std::fmt::Display;
 use std::ops::{Range, RangeBounds, RangeInclusive};
@@ -60,19 +60,13 @@ pub(super) fn parse_simd(text: &str) -> Result<Auto<usize>, String> {
 }
 
 pub(super) fn parse_isa(text: &str) -> Result<Auto<Isa>, String> {
-    if text == "auto" {
-        return Ok(None);
-    }
-    level_named(text).map(Some).ok_or_else(|| {
-        let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
-        format!("must be auto or one of {}", names.join(", "))
-    })
+    if text == "auto" { Ok(None) } else { parse_level(text).map(Some) }
 }
 
-/// The level of this name; `baseline` is another name of `portable`, which no list shows.
-fn level_named(name: &str) -> Option<Isa> {
-    let name = if name == "baseline" { Isa::Portable.name() } else { name };
-    Isa::ALL.into_iter().find(|isa| isa.name() == name)
+fn parse_level(name: &str) -> Result<Isa, String> {
+    Isa::ALL.into_iter().find(|isa| isa.name() == name).ok_or_else(|| {
+        format!("{name:?} is no level: choose auto or among {}", Isa::ALL.map(Isa::name).join(", "))
+    })
 }
 
 /// Instruction levels of this processor, the least capable first.
@@ -83,11 +77,8 @@ pub(super) fn parse_levels(text: &str) -> Result<Auto<Vec<Isa>>, String> {
         "all" => return Ok(Some(available)),
         _ => {}
     }
-    let named: Option<Vec<Isa>> = text.split(',').map(|name| level_named(name.trim())).collect();
-    let mut named = named.ok_or_else(|| {
-        let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
-        format!("must be auto, all, or some of {}, separated by commas", names.join(", "))
-    })?;
+    let mut named =
+        text.split(',').map(|name| parse_level(name.trim())).collect::<Result<Vec<Isa>, String>>()?;
     named.sort_unstable();
     named.dedup();
     match named.iter().find(|isa| !available.contains(isa)) {
@@ -103,20 +94,9 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| format!("must be WIDTHxHEIGHT, each from 1 to {SIZE_LIMIT} pixels, such as 800x450"))
 }
 
-/// A parser of whole numbers within `limits`, of which `example` is one.
-pub(super) fn whole<T>(
-    limits: RangeInclusive<T>,
-    example: T,
-) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
-where
-    T: Copy + Display + FromStr + PartialOrd + Send + Sync,
-{
-    move |text: &str| {
-        text.parse().ok().filter(|number| limits.contains(number)).ok_or_else(|| {
-            let (lowest, highest) = (limits.start(), limits.end());
-            format!("must be a whole number from {lowest} to {highest}, such as {example}")
-        })
-    }
+/// A parser of whole numbers within `limits`.
+pub(super) fn whole<T: TryFrom<u64>>(limits: RangeInclusive<u64>) -> RangedU64ValueParser<T> {
+    RangedU64ValueParser::new().range(limits)
 }
 
 /// A parser of numbers within `limits`, which messages describe as `allowed`.

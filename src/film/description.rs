@@ -23,6 +23,8 @@ pub mod key {
     pub const FRAME: &str = "Frame";
     pub const COMMAND: &str = "Command";
     pub const BACKEND: &str = "Backend";
+    /// The estimated error.
+    pub const ERROR: &str = "Error";
     /// That the picture is denoised, with its estimated error.
     pub const DENOISED: &str = "Denoised";
 }

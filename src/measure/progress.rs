@@ -2,15 +2,13 @@
 
 use crate::cli::ProgressChoice;
 use crate::cli::terminal::Display;
-use indicatif::HumanDuration;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const BAR_STEPS: f64 = 1000.0;
 
 /// Shows the current step, the share done and the remaining time.
 pub(super) struct Progress {
     display: Display,
-    begin: Instant,
     done: f64,
     total: f64,
 }
@@ -18,16 +16,15 @@ pub(super) struct Progress {
 impl Progress {
     /// `total` is the expected work, in any unit.
     pub fn new(choice: ProgressChoice, total: f64) -> Self {
-        let display = Display::new(choice, BAR_STEPS as u64, "[{bar:24}] {wide_msg}", "", Duration::ZERO);
-        Progress { display, begin: Instant::now(), done: 0.0, total: total.max(f64::MIN_POSITIVE) }
+        let template = "[{bar:24}] {eta} left, {wide_msg}";
+        let display = Display::new(choice, BAR_STEPS as u64, template, "", Duration::ZERO);
+        Progress { display, done: 0.0, total: total.max(f64::MIN_POSITIVE) }
     }
 
     /// Shows the step `what`.
     pub fn at(&mut self, what: &str) {
         let share = (self.done / self.total).min(1.0);
-        let left = time_left(share, self.begin.elapsed())
-            .map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        self.display.announce((share * BAR_STEPS) as u64, || format!("{:3.0} % {what}{left}", 100.0 * share));
+        self.display.announce((share * BAR_STEPS) as u64, || format!("{:3.0} % {what}", 100.0 * share));
     }
 
     pub fn finished(&mut self, amount: f64) {
@@ -42,21 +39,5 @@ impl Progress {
     /// Removes the bar.
     pub fn clear(&self) {
         self.display.clear();
-    }
-}
-
-/// `None` until there is enough progress to extrapolate.
-fn time_left(share: f64, elapsed: Duration) -> Option<Duration> {
-    (share > 0.02).then(|| elapsed.mul_f64((1.0 - share) / share))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn time_left_is_extrapolated() {
-        let left = |share| time_left(share, Duration::from_secs(10)).map(|left| left.as_secs());
-        assert_eq!([0.25, 0.5, 1.0, 0.02].map(left), [Some(30), Some(10), Some(0), None]);
     }
 }

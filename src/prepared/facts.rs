@@ -74,37 +74,26 @@ impl Facts {
         self.covered.binary_search(&index).is_ok()
     }
 
-    /// Warnings about what single precision cannot represent, for coordinates relative to `origin`.
-    pub fn warnings(&self, job: &RenderJob, origin: DVec3) -> Vec<String> {
+    /// A warning about what single precision cannot represent, for coordinates relative to `origin`.
+    pub fn warning(&self, job: &RenderJob, origin: DVec3) -> Option<String> {
         let unresolved: Vec<Unresolved> =
             self.layers.iter().filter_map(|layer| unresolved(*layer, job, origin)).collect();
-        let (thin, closing): (Vec<_>, Vec<_>) =
-            unresolved.into_iter().partition(|found| found.layer.thickness < found.limit);
-        let others =
-            |count: usize| if count > 1 { format!(" ({count} such layers in all)") } else { String::new() };
-        let thin_ones = worst(&thin).map(|Unresolved { layer, limit }| {
-            let ([a, b], others) = (layer.spheres, others(thin.len()));
-            format!(
-                "the surfaces of spheres {a} and {b} are at most {:.1e} apart, and single precision cannot tell them apart \
-                 where that is less than {limit:.1e}{others}; make the layer thicker, or render with --device reference",
-                layer.thickness,
-            )
-        });
-        let closing_ones = worst(&closing).map(|Unresolved { layer, limit }| {
-            let ([a, b], others) = (layer.spheres, others(closing.len()));
-            format!(
-                "the surfaces of spheres {a} and {b} touch or cross and are nowhere more than {:.1e} apart; up to {:.1e} \
-                 of them is closer than {limit:.1e}, where single precision cannot tell them apart{others}; move the \
-                 spheres apart, or render with --device reference",
-                layer.thickness,
-                limit / layer.thickness,
-            )
-        });
-        thin_ones.into_iter().chain(closing_ones).collect()
+        let share = |found: &Unresolved| found.layer.thickness / found.limit;
+        let Unresolved { layer, limit } =
+            unresolved.iter().min_by(|a, b| share(a).total_cmp(&share(b))).copied()?;
+        let ([a, b], thickness) = (layer.spheres, layer.thickness);
+        let others = match unresolved.len() {
+            1 => String::new(),
+            count => format!(" ({count} such pairs in all)"),
+        };
+        Some(format!(
+            "the surfaces of spheres {a} and {b} are at most {thickness:.1e} apart and, at least in places, closer than \
+             {limit:.1e}, where single precision cannot tell them apart{others}; move them apart, or render with --device \
+             reference"
+        ))
     }
 
     /// Compares spheres of similar size and place: within a cell, and across a border if one is close to it.
-    /// close to the border.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
         let mut cells: Vec<(u64, u32)> =
             spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
@@ -187,12 +176,6 @@ fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unreso
     let is_thin = layer.thickness < limit;
     let closes = layer.opening < limit && layer.thickness < ratio * limit;
     (is_thin || closes).then_some(Unresolved { layer, limit })
-}
-
-/// The layer that falls furthest short of the thickness it needs.
-fn worst(all: &[Unresolved]) -> Option<Unresolved> {
-    let share = |found: &Unresolved| found.layer.thickness / found.limit;
-    all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
 }
 
 fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {

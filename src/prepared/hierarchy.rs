@@ -163,76 +163,6 @@ fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
 }
 
 impl<R> Hierarchy<R> {
-    /// Calls `each` with the list place of every sphere that may touch the box from `low` to `high`, relative to the
-    /// hierarchy's origin.
-    pub fn near(&self, low: DVec3, high: DVec3, mut each: impl FnMut(usize))
-    where
-        R: Into<f64> + Copy,
-    {
-        let mut open = vec![0_u32];
-        while let Some(index) = open.pop() {
-            let node = &self.nodes[index as usize];
-            let is_apart = (0..3).any(|axis| {
-                let (from, to): (f64, f64) = (node.low[axis].into(), node.high[axis].into());
-                from > high[axis] || to < low[axis]
-            });
-            if is_apart {
-                continue;
-            }
-            match node.count & COUNT_MASK {
-                0 => open.extend([node.first, node.first + 1]),
-                count => {
-                    let leaf = node.first as usize..(node.first + count) as usize;
-                    self.ranks[leaf].iter().for_each(|rank| each(*rank as usize));
-                }
-            }
-        }
-    }
-
-    /// Calls `each` with the list place of every sphere that a ray may hit, near boxes first. `each` returns the
-    /// distance of the nearest hit so far, and boxes that begin beyond it are skipped. `origin` is relative to the
-    /// hierarchy's origin, and `direction` has length 1.
-    pub fn along(&self, origin: DVec3, direction: DVec3, mut each: impl FnMut(usize) -> f64)
-    where
-        R: Into<f64> + Copy,
-    {
-        let inverse = direction.recip();
-        // Where the ray enters a node's box; infinite for a miss.
-        let entry = |index: u32| {
-            let node = &self.nodes[index as usize];
-            let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
-            for axis in 0..3 {
-                let (low, high): (f64, f64) = (node.low[axis].into(), node.high[axis].into());
-                let [a, b] = [low, high].map(|side| (side - origin[axis]) * inverse[axis]);
-                // A ray in the plane of a side counts as a miss: boxes are wider than their spheres.
-                enters = enters.max(a.min(b));
-                leaves = leaves.min(a.max(b));
-            }
-            if enters <= leaves { enters } else { f64::INFINITY }
-        };
-        let mut nearest = f64::INFINITY;
-        let mut open = vec![(0_u32, entry(0))];
-        while let Some((index, enters)) = open.pop() {
-            if enters == f64::INFINITY || enters > nearest {
-                continue;
-            }
-            let node = &self.nodes[index as usize];
-            match node.count & COUNT_MASK {
-                0 => {
-                    let mut children = [node.first, node.first + 1].map(|child| (child, entry(child)));
-                    children.sort_by(|a, b| b.1.total_cmp(&a.1));
-                    open.extend(children);
-                }
-                count => {
-                    let leaf = node.first as usize..(node.first + count) as usize;
-                    for rank in &self.ranks[leaf] {
-                        nearest = each(*rank as usize);
-                    }
-                }
-            }
-        }
-    }
-
     /// Whether a thorough build is worth its time if this many spheres are traced for long.
     pub fn is_improvable(&self) -> bool {
         IMPROVABLE.contains(&self.ranks.len())
@@ -313,19 +243,5 @@ mod tests {
             next_sphere += node.count & COUNT_MASK;
         }
         assert_eq!(next_sphere as usize, spheres.len());
-    }
-
-    #[test]
-    fn ray_visits_only_entered_boxes() {
-        // A row along x, and a ray that leaves it at once.
-        let sphere = |place: i32| Sphere { center: f64::from(place) * DVec3::X, radius: 0.25, material: 0 };
-        let spheres: Vec<Sphere> = (0..100).map(sphere).collect();
-        let hierarchy = Hierarchy::<f64>::build(&spheres, DVec3::ZERO, Effort::Quick);
-        let mut met = Vec::new();
-        hierarchy.along(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0).normalize(), |place| {
-            met.push(place);
-            f64::INFINITY
-        });
-        assert!(met.contains(&0) && met.len() <= Leaves::SMALL.most as usize, "{met:?}");
     }
 }

@@ -62,7 +62,7 @@ pub struct PreparedScene<R> {
     pub origin: DVec3,
     groups: Groups,
     facts: Arc<Facts>,
-    warnings: Vec<String>,
+    warning: Option<String>,
 }
 
 impl<R: Real> PreparedScene<R> {
@@ -139,38 +139,23 @@ impl<R: Real> PreparedScene<R> {
             origin: groups.origin,
             groups: Groups::default(),
             facts,
-            warnings: Vec::new(),
+            warning: None,
         };
         prepared.see(job, groups);
         prepared
     }
 
-    /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings.
-    pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
-        PreparedScene::followed_or_built(old, job, &AtomicBool::new(false))
-    }
-
-    /// Like [`PreparedScene::renewed`], but returns `None` soon after `cancel` is set.
-    pub fn renewed_unless(
-        cancel: &AtomicBool,
-        old: Option<(Self, RenderJob)>,
-        job: &RenderJob,
-    ) -> Option<Self> {
+    /// Prepares `job`, reusing the hierarchy of `old` if the jobs differ only in camera and settings. Returns `None` soon
+    /// after `cancel` is set.
+    pub fn renewed(cancel: &AtomicBool, old: Option<(Self, RenderJob)>, job: &RenderJob) -> Option<Self> {
         let is_cancelled = || cancel.load(Ordering::Relaxed);
         if is_cancelled() {
             return None;
         }
-        let prepared = PreparedScene::followed_or_built(old, job, cancel);
+        let followed = old.and_then(|(mut old, before)| old.follow(&before, job).then_some(old));
+        let prepared = followed
+            .unwrap_or_else(|| Self::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel));
         (!is_cancelled()).then_some(prepared)
-    }
-
-    fn followed_or_built(old: Option<(Self, RenderJob)>, job: &RenderJob, cancel: &AtomicBool) -> Self {
-        if let Some((mut prepared, before)) = old
-            && prepared.follow(&before, job)
-        {
-            return prepared;
-        }
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel)
     }
 
     /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can
@@ -206,11 +191,8 @@ impl<R: Real> PreparedScene<R> {
             // A ray without a hit reads row 0 and ignores it.
             self.records.push(RecordColumns::default());
         }
-        self.warnings = if job.rules().surface == SurfaceRule::Exact {
-            self.facts.warnings(job, groups.origin)
-        } else {
-            Vec::new()
-        };
+        let is_exact = job.rules().surface == SurfaceRule::Exact;
+        self.warning = self.facts.warning(job, groups.origin).filter(|_| is_exact);
         self.groups = groups;
         self.features = Features::of(job, &self.sorted());
         #[cfg(test)]
@@ -227,9 +209,9 @@ impl<R: Real> PreparedScene<R> {
         }
     }
 
-    /// Warnings about what single precision cannot represent, with numbers and remedies.
-    pub fn warnings(&self) -> &[String] {
-        &self.warnings
+    /// A warning about what single precision cannot represent, with numbers and a remedy.
+    pub fn warning(&self) -> Option<&String> {
+        self.warning.as_ref()
     }
 
     /// Memory that grows with the number of spheres.

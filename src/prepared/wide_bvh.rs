@@ -48,7 +48,8 @@ impl WideBvh {
             build_tree(&bounded, Leaves::SINGLE, Effort::Quick, wide, fits, &AtomicBool::new(false));
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
-        debug_assert_eq!(built.validate(&bounded), Ok(()));
+        #[cfg(test)]
+        assert_eq!(built.validate(&bounded), Ok(()));
         built
     }
 
@@ -77,57 +78,6 @@ impl WideBvh {
             rows.extend(own);
         }
         rows
-    }
-
-    /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
-    /// leaf and inside all boxes around that leaf.
-    fn validate(&self, spheres: &[Bounded<'_, '_>]) -> Result<(), String> {
-        let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
-        // Every node, with the boxes that enclose it.
-        let mut open = vec![(0_u32, Vec::new())];
-        while let Some((index, around)) = open.pop() {
-            let Some(node) = self.nodes.get(index as usize) else {
-                return Err(format!("node {index} is named, but there are {}", self.nodes.len()));
-            };
-            if std::mem::replace(&mut is_reached[index as usize], true) {
-                return Err(format!("node {index} has two parents"));
-            }
-            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
-                let mut around: Vec<Aabb> = around.clone();
-                around.push(self.boxes[index as usize][child]);
-                if !node.is_leaf(child) {
-                    let child = node.child_node_index(child);
-                    if child <= index {
-                        return Err(format!("node {index} has the child {child}, which is not behind it"));
-                    }
-                    open.push((child, around));
-                    continue;
-                }
-                let (first, count) = node.child_primitives(child);
-                for place in first..first + count {
-                    let number = self.order.get(place as usize).copied().unwrap_or(u32::MAX);
-                    let Some(sphere) = spheres.get(number as usize) else {
-                        return Err(format!("node {index} names sphere {number} of {}", spheres.len()));
-                    };
-                    if std::mem::replace(&mut is_held[number as usize], true) {
-                        return Err(format!("sphere {number} is in two leaves"));
-                    }
-                    let (center, radius) = (sphere.center(), sphere.radius());
-                    let is_within = |around: &Aabb| {
-                        around.min.as_dvec3().cmplt(center - radius).all()
-                            && around.max.as_dvec3().cmpgt(center + radius).all()
-                    };
-                    if !around.iter().all(is_within) {
-                        return Err(format!("sphere {number} reaches out of a box around node {index}"));
-                    }
-                }
-            }
-        }
-        match (is_reached.iter().position(|is| !is), is_held.iter().position(|is| !is)) {
-            (Some(node), _) => Err(format!("node {node} has no parent")),
-            (_, Some(sphere)) => Err(format!("sphere {sphere} is in no leaf")),
-            (None, None) => Ok(()),
-        }
     }
 
     /// Computes all boxes from those of the spheres, given in leaf order.
@@ -171,6 +121,61 @@ fn united(boxes: &[Aabb]) -> Aabb {
 mod tests {
     use super::*;
     use crate::scene::builtin::field;
+
+    impl WideBvh {
+        /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
+        /// leaf and inside all boxes around that leaf.
+        pub(super) fn validate(&self, spheres: &[Bounded<'_, '_>]) -> Result<(), String> {
+            let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
+            // Every node, with the boxes that enclose it.
+            let mut open = vec![(0_u32, Vec::new())];
+            while let Some((index, around)) = open.pop() {
+                let Some(node) = self.nodes.get(index as usize) else {
+                    return Err(format!("node {index} is named, but there are {}", self.nodes.len()));
+                };
+                if std::mem::replace(&mut is_reached[index as usize], true) {
+                    return Err(format!("node {index} has two parents"));
+                }
+                for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+                    let mut around: Vec<Aabb> = around.clone();
+                    around.push(self.boxes[index as usize][child]);
+                    if !node.is_leaf(child) {
+                        let child = node.child_node_index(child);
+                        if child <= index {
+                            return Err(format!(
+                                "node {index} has the child {child}, which is not behind it"
+                            ));
+                        }
+                        open.push((child, around));
+                        continue;
+                    }
+                    let (first, count) = node.child_primitives(child);
+                    for place in first..first + count {
+                        let number = self.order.get(place as usize).copied().unwrap_or(u32::MAX);
+                        let Some(sphere) = spheres.get(number as usize) else {
+                            return Err(format!("node {index} names sphere {number} of {}", spheres.len()));
+                        };
+                        if std::mem::replace(&mut is_held[number as usize], true) {
+                            return Err(format!("sphere {number} is in two leaves"));
+                        }
+                        let (center, radius) = (sphere.center(), sphere.radius());
+                        let is_within = |around: &Aabb| {
+                            around.min.as_dvec3().cmplt(center - radius).all()
+                                && around.max.as_dvec3().cmpgt(center + radius).all()
+                        };
+                        if !around.iter().all(is_within) {
+                            return Err(format!("sphere {number} reaches out of a box around node {index}"));
+                        }
+                    }
+                }
+            }
+            match (is_reached.iter().position(|is| !is), is_held.iter().position(|is| !is)) {
+                (Some(node), _) => Err(format!("node {node} has no parent")),
+                (_, Some(sphere)) => Err(format!("sphere {sphere} is in no leaf")),
+                (None, None) => Ok(()),
+            }
+        }
+    }
 
     fn check(spheres: &[Sphere]) {
         let built = WideBvh::build(spheres, DVec3::ZERO);

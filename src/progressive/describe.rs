@@ -60,7 +60,7 @@ fn backend_text(film: &Film, status: &Status) -> Option<String> {
         |info: &BackendInfo| format!("{} {}, {}", info.name, info.device, counted(info.lanes as u64, "lane"));
     let samples = |count: u64| counted(count, "sample");
     let mut parts: Vec<&Contribution> = status.contributions.iter().collect();
-    let earlier = film.sample_count().saturating_sub(parts.iter().map(|part| part.samples_per_pixel).sum());
+    let earlier = film.sample_count().saturating_sub(status.added());
     match parts.as_slice() {
         [] => return status.backend.as_ref().map(text),
         [only] if earlier == 0 => return Some(text(&only.backend)),

@@ -13,6 +13,7 @@ use crate::kernel::Real;
 use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::prepared::PreparedScene;
 use fearless_simd::{Level, Simd};
+use std::sync::atomic::AtomicBool;
 
 /// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as `isa` traces it, or in `f64` if
 /// `isa` is `None`.
@@ -34,7 +35,9 @@ impl PathRecorder {
     /// Creates a recorder for paths as `isa` traces them. It reuses what it can of the `earlier` job's recorder.
     pub fn new(job: &RenderJob, isa: Isa, earlier: Option<PathRecorder>) -> Self {
         let old = earlier.map(|earlier| (earlier.prepared.prepared, earlier.job));
-        let prepared = BroadcastScene::new(PreparedScene::renewed(old, job));
+        // Never cancelled.
+        let renewed = PreparedScene::renewed(&AtomicBool::new(false), old, job);
+        let prepared = BroadcastScene::new(renewed.unwrap_or_else(|| PreparedScene::new(job)));
         PathRecorder { prepared, recorder: recorder(isa), job: job.clone() }
     }
 

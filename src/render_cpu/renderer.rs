@@ -139,9 +139,9 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
                 let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
-                self.messages = prepared.warnings().to_vec();
+                self.messages = prepared.warning().cloned().into_iter().collect();
                 self.rebuild.note_prepared(&prepared);
                 let wanted = self.wanted_parts(&prepared);
                 let kernel = kernels::kernel(isa, lanes, wanted).ok_or_else(|| RenderError::Backend {
@@ -156,7 +156,7 @@ impl Renderer for CpuRenderer {
                 } else {
                     None
                 };
-                let made = || PreparedScene::renewed_unless(cancel, old.zip(before), job);
+                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
                 let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
                 Prepared::Double(Box::new(BroadcastScene::new(prepared)), kernels::reference_kernel())
             }

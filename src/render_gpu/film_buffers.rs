@@ -5,11 +5,11 @@ use super::arrival::{PIXEL_WORDS, add_rows, view};
 use super::device::Gpu;
 use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
+use super::readback::{Mapping, asked, check_mapped};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
 use std::ops::Range;
-use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
 /// Size of a pixel's sums in bytes.
@@ -35,7 +35,7 @@ struct Leaving {
     samples: SampleRanges,
     trace: Duration,
     submission: wgpu::SubmissionIndex,
-    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    mappings: Vec<Mapping>,
 }
 
 /// The buffers of a film, and which samples they contain.
@@ -209,14 +209,9 @@ impl FilmBuffers {
         encoder.copy_buffer_to_buffer(&self.counters, 0, &self.counters_staging, 0, self.counters.size());
         self.clear(&mut encoder);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let (sender, mapped) = mpsc::channel();
-        for staging in self.stagings() {
-            let sender = sender.clone();
-            // If the samples have been discarded, nobody receives the result.
-            staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
-        }
-        let samples = std::mem::take(&mut self.traced);
-        self.leaving = Some(Leaving { samples, trace: std::mem::take(&mut self.trace), submission, mapped });
+        let mappings = self.stagings().map(|staging| asked(staging, staging.size())).collect();
+        let (samples, trace) = (std::mem::take(&mut self.traced), std::mem::take(&mut self.trace));
+        self.leaving = Some(Leaving { samples, trace, submission, mappings });
     }
 
     /// Waits for the transfer in progress and adds its samples to the film.
@@ -226,13 +221,7 @@ impl FilmBuffers {
     pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
         gpu.wait(&leaving.submission).map_err(failed)?;
-        for _ in self.stagings() {
-            let mapped = leaving
-                .mapped
-                .try_recv()
-                .map_err(|_| failed("the device did not return its results".to_owned()))?;
-            mapped.map_err(|error| failed(format!("reading results: {error}")))?;
-        }
+        leaving.mappings.iter().try_for_each(check_mapped).map_err(failed)?;
         if let Some(range) = leaving.samples.iter().find_map(|range| film.samples().overlap(&range)) {
             self.stagings().for_each(wgpu::Buffer::unmap);
             return Err(crate::film::FilmError::Overlap { range }.into());

@@ -78,7 +78,7 @@ impl GpuRenderer {
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &features, 0);
-        self.messages.extend(scene.prepared.warnings().iter().cloned());
+        self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &features, 0, cancel)?;
@@ -110,7 +110,7 @@ impl GpuRenderer {
         job: &RenderJob,
         cancel: &AtomicBool,
     ) -> Result<SceneOnDevice, RenderError> {
-        let made = PreparedScene::<f32>::renewed_unless(cancel, None, job);
+        let made = PreparedScene::<f32>::renewed(cancel, None, job);
         let prepared = made.ok_or(RenderError::Cancelled)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
         let begin = Instant::now();

@@ -152,35 +152,57 @@ impl GpuRenderer {
         Some(injection.fault)
     }
 
+    /// Adds samples to the film, or leaves them on the device unless they `are_collected`.
+    fn add(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+        are_collected: bool,
+    ) -> Result<Stats, RenderError> {
+        self.with_loaded(job, cancel, |this, loaded| {
+            let traced = this.traced(loaded, &range, film, cancel, are_collected);
+            this.completed(traced, loaded, range, film, cancel)
+        })
+    }
+
     fn traced(
         &mut self,
         loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
+        are_collected: bool,
     ) -> Result<Stats, Broken> {
         let begin = Instant::now();
-        let stats = self.trace_range(loaded, range, film, cancel)?;
+        let mut stats = self.trace_range(loaded, range, film, cancel)?;
+        if are_collected {
+            self.dispatches.drain(&self.gpu, Some(cancel))?;
+        }
         loaded.film.note(range.clone(), begin.elapsed())?;
-        if loaded.film.is_due() {
+        if are_collected {
+            stats.add(&self.collect_all(loaded, film)?);
+        } else if loaded.film.is_due() {
             self.send_for_film(loaded)?;
         }
         Ok(stats)
     }
 
-    fn traced_and_collected(
+    /// Traces missing samples again.
+    fn completed(
         &mut self,
+        traced: Result<Stats, Broken>,
         loaded: &mut Loaded,
-        range: &Range<u64>,
+        range: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, Broken> {
-        let begin = Instant::now();
-        let mut stats = self.trace_range(loaded, range, film, cancel)?;
-        self.dispatches.drain(&self.gpu, Some(cancel))?;
-        loaded.film.note(range.clone(), begin.elapsed())?;
-        stats.add(&self.collect_all(loaded, film)?);
-        Ok(stats)
+    ) -> Result<Stats, RenderError> {
+        match traced {
+            Ok(stats) => Ok(stats),
+            Err(Broken::Ended(error)) => Err(error),
+            Err(Broken::Short(reason)) => self.trace_again(loaded, reason, range, film, cancel),
+        }
     }
 }
 
@@ -229,13 +251,7 @@ impl Renderer for GpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.with_loaded(job, cancel, |this, loaded| {
-            match this.traced_and_collected(loaded, &range, film, cancel) {
-                Ok(stats) => Ok(stats),
-                Err(Broken::Ended(error)) => Err(error),
-                Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
-            }
-        })
+        self.add(job, range, film, cancel, true)
     }
 
     fn advance(
@@ -245,11 +261,7 @@ impl Renderer for GpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.with_loaded(job, cancel, |this, loaded| match this.traced(loaded, &range, film, cancel) {
-            Ok(stats) => Ok(stats),
-            Err(Broken::Ended(error)) => Err(error),
-            Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
-        })
+        self.add(job, range, film, cancel, false)
     }
 
     fn fetch(&mut self) -> Result<(), RenderError> {
@@ -261,12 +273,9 @@ impl Renderer for GpuRenderer {
     }
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        self.with_present(|this, loaded| match this.collect_all(loaded, film) {
-            Ok(stats) => Ok(stats),
-            Err(Broken::Ended(error)) => Err(error),
-            Err(Broken::Short(reason)) => {
-                this.trace_again(loaded, reason, 0..0, film, &AtomicBool::new(false))
-            }
+        self.with_present(|this, loaded| {
+            let collected = this.collect_all(loaded, film);
+            this.completed(collected, loaded, 0..0, film, &AtomicBool::new(false))
         })
     }
 }

@@ -25,28 +25,32 @@ pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, S
 }
 
 /// Requests the first `length` bytes of a staging buffer, which become available once the submitted work is done.
-fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
+pub fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, 0..length, move |result| {
-        // The receiver is gone only after an error that has already been reported.
+        // Nobody receives this if the samples were discarded, or after an error that was reported.
         let _ = sender.send(result);
     });
     receiver
 }
 
-type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
+/// Tells when a staging buffer is available.
+pub type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
 
-/// Maps the first `length` bytes of a staging buffer that was requested and is available.
+/// Checks that a staging buffer is available, after the submitted work is done.
+pub fn check_mapped(mapping: &Mapping) -> Result<(), String> {
+    let mapped = mapping.try_recv().map_err(|_| "the device did not return its results".to_owned())?;
+    mapped.map_err(|error| format!("reading results: {error}"))
+}
+
+/// Shows the first `length` bytes of a staging buffer that was requested and is available.
 fn shown(
     staging: &wgpu::Buffer,
     length: u64,
     mapping: &Mapping,
     take: impl FnOnce(&[u8]),
 ) -> Result<(), String> {
-    mapping
-        .try_recv()
-        .map_err(|_| "the device did not return its results".to_owned())?
-        .map_err(|error| format!("reading results: {error}"))?;
+    check_mapped(mapping)?;
     {
         let view = staging.get_mapped_range(0..length).map_err(|error| format!("reading: {error}"))?;
         take(&view);

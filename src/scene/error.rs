@@ -1,6 +1,5 @@
 //! Errors in scenes, worded so that the reader can fix them.
 
-use crate::system::number::{Number, Numbers};
 use glam::DVec3;
 use std::borrow::Cow;
 use thiserror::Error;
@@ -9,7 +8,7 @@ use thiserror::Error;
 pub enum SceneError {
     #[error("{what} is {value}, but must be a finite number")]
     NotFinite { what: String, value: f64 },
-    #[error("{what} is {}, but must be {limit}; {remedy}", Number(*value))]
+    #[error("{what} is {value:?}, but must be {limit}; {remedy}")]
     OutOfRange {
         what: String,
         value: f64,
@@ -18,7 +17,7 @@ pub enum SceneError {
         /// What the user should change.
         remedy: &'static str,
     },
-    #[error("{what} is {}, but each component must be within 0 and {limit}", Numbers(value.to_array()))]
+    #[error("{what} is {:?}, but each component must be within 0 and {limit}", value.to_array())]
     Colour {
         what: String,
         /// Linear RGB.
@@ -39,8 +38,8 @@ pub enum SceneError {
     #[error("two materials are called {name:?}; rename one")]
     DuplicateMaterial { name: String },
     #[error(
-        "look_from and look_at are both {}, so there is no direction to look in; move one of them",
-        Numbers(at.to_array())
+        "look_from and look_at are both {:?}, so there is no direction to look in; move one of them",
+        at.to_array()
     )]
     NoDirection {
         /// Scene units.
@@ -48,10 +47,10 @@ pub enum SceneError {
     },
     /// The up vector has no direction, or the view's.
     #[error(
-        "vup is {}, {}; use another, such as {}",
-        Numbers(vup.to_array()),
+        "vup is {:?}, {}; use another, such as {:?}",
+        vup.to_array(),
         if *vup == DVec3::ZERO { "which has no direction" } else { "which is parallel to the view, so nothing is up in the picture" },
-        Numbers(remedy.to_array())
+        remedy.to_array()
     )]
     NoUp {
         vup: DVec3,

@@ -39,7 +39,6 @@ impl Sphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::number::Number;
 
     fn refusal(center: DVec3, radius: f64, material: usize) -> String {
         let sphere = Sphere { center, radius, material };
@@ -51,9 +50,7 @@ mod tests {
     fn radii_are_positive_and_fit_f32() {
         for radius in [0.0, -0.0, -1.0, 1e-30, 1e30] {
             let refused = refusal(DVec3::ZERO, radius, 0);
-            assert!(
-                refused.starts_with(&format!("spheres[3].radius is {}, but must be within", Number(radius)))
-            );
+            assert!(refused.starts_with(&format!("spheres[3].radius is {radius:?}, but must be within")));
         }
         assert!(refusal(DVec3::ZERO, -0.4, 0).contains("for a hollow glass sphere"));
         for radius in [1e-18, 0.5, 1e18] {

@@ -3,6 +3,7 @@
 //! Text on standard error is informational: a closed pipe or a full device never ends a run. Text on standard output is
 //! a result: if it cannot be written, the caller gets an error.
 
+use anyhow::{Result, anyhow};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
@@ -17,7 +18,7 @@ pub fn note(text: &str) {
 ///
 /// # Errors
 /// If the reader has gone away or the device is full.
-pub fn print(text: &str) -> io::Result<()> {
+pub fn print(text: &str) -> Result<()> {
     write_out(&harmless(text))
 }
 
@@ -26,10 +27,13 @@ pub fn print(text: &str) -> io::Result<()> {
 ///
 /// # Errors
 /// As for [`print()`].
-pub fn write_out(text: &str) -> io::Result<()> {
+pub fn write_out(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
-    stdout.flush()
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| {
+        anyhow!(
+            "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
+        )
+    })
 }
 
 /// Makes a name from outside safe to print as part of one line: control characters, line ends and marks that change the

@@ -56,9 +56,7 @@ impl Failure {
         let code = match self {
             Failure::CommandLine(help) if !help.use_stderr() => {
                 let printed = console::print(&help.render().to_string());
-                let Err(error) = printed else { return ExitCode::SUCCESS };
-                console::note(&format!("error: {}", output_failure(&error)));
-                return ExitCode::from(FAILED);
+                return printed.map_or_else(|error| Failure::Run(error).report(), |()| ExitCode::SUCCESS);
             }
             Failure::CommandLine(_) | Failure::Input(_) => BAD_INPUT,
             Failure::Run(_) => FAILED,
@@ -78,11 +76,4 @@ impl fmt::Display for Failure {
             }
         }
     }
-}
-
-/// The message for a result that cannot be written to standard output.
-pub fn output_failure(error: &std::io::Error) -> String {
-    format!(
-        "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
-    )
 }

@@ -4,6 +4,7 @@
 //! Code that needs memory in proportion to a number from outside (films, pictures, scenes) first calls [`check`], or
 //! allocates with [`zeroed`].
 
+use indicatif::DecimalBytes;
 use std::fs;
 
 /// Something needs more memory than this machine has.
@@ -20,11 +21,7 @@ pub struct MemoryError {
 
 /// A number of bytes with a unit.
 pub fn words(bytes: u64) -> String {
-    match bytes {
-        0..100_000 => format!("{bytes} bytes"),
-        100_000..1_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
-        _ => format!("{:.1} GB", bytes as f64 / 1e9),
-    }
+    DecimalBytes(bytes).to_string()
 }
 
 /// Everything else: program, threads, files.
@@ -130,7 +127,7 @@ mod tests {
     fn too_much_is_refused_with_the_numbers_and_a_remedy() {
         let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, free, "do less");
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
-        assert_eq!(message, "a film needs 14.1 GB of memory, but only 8.0 GB is free; do less");
+        assert_eq!(message, "a film needs 14.07 GB of memory, but only 8.00 GB is free; do less");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
         let rest = (9 << 30) - BASE_BYTES;
         assert_eq!(check(rest, 9 << 30), Ok(()));

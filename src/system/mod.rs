@@ -7,7 +7,6 @@ pub mod files;
 pub mod interrupt;
 pub mod journal;
 pub mod memory;
-pub mod number;
 pub mod shell;
 pub mod suggest;
 pub mod threads;

@@ -11,14 +11,6 @@ pub(crate) fn shared<T: Send, R: Send>(
     items: Vec<T>,
     work: impl Fn(T) -> R + Sync,
 ) -> Vec<thread::Result<R>> {
-    shared_by(items, work, Builder::new)
-}
-
-fn shared_by<T: Send, R: Send>(
-    items: Vec<T>,
-    work: impl Fn(T) -> R + Sync,
-    builder: impl Fn() -> Builder,
-) -> Vec<thread::Result<R>> {
     let count = items.len();
     let left = Mutex::new(items.into_iter().enumerate());
     let work_off = || {
@@ -32,7 +24,7 @@ fn shared_by<T: Send, R: Send>(
     let mut results: Vec<thread::Result<R>> = Vec::with_capacity(count);
     results.resize_with(count, || Err(Box::new("its thread has failed")));
     thread::scope(|scope| {
-        let start = |_| builder().spawn_scoped(scope, work_off).ok();
+        let start = |_| Builder::new().spawn_scoped(scope, work_off).ok();
         let helpers: Vec<_> = (1..count).map_while(start).collect();
         let mut done = work_off();
         for helper in helpers {
@@ -48,29 +40,13 @@ fn shared_by<T: Send, R: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::thread::ThreadId;
-
-    /// Larger than any address space, so no thread starts.
-    const TOO_LARGE: usize = 1 << 50;
-
-    fn threads_of(builder: impl Fn() -> Builder) -> Vec<(u32, ThreadId)> {
-        let done = shared_by((0..9).collect(), |item: u32| (2 * item, thread::current().id()), builder);
-        done.into_iter().map(Result::unwrap).collect()
-    }
 
     #[test]
     fn results_come_in_the_order_of_the_items() {
-        let doubled: Vec<u32> = threads_of(Builder::new).into_iter().map(|(result, _)| result).collect();
+        let doubled = shared((0..9).collect(), |item: u32| 2 * item);
+        let doubled: Vec<u32> = doubled.into_iter().map(Result::unwrap).collect();
         assert_eq!(doubled, [0, 2, 4, 6, 8, 10, 12, 14, 16]);
         assert!(shared(Vec::<u32>::new(), |item| item).is_empty());
-    }
-
-    #[test]
-    fn work_without_threads_runs_on_the_caller() {
-        let own = thread::current().id();
-        let done = threads_of(|| Builder::new().stack_size(TOO_LARGE));
-        assert!(done.iter().enumerate().all(|(index, (result, _))| *result as usize == 2 * index));
-        assert!(done.iter().all(|(_, thread)| *thread == own), "no thread could be started");
     }
 
     #[test]

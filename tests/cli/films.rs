@@ -72,9 +72,9 @@ fn films_of_other_pictures_are_not_resumed() {
     for way in [&["--batch"][..], &[]] {
         let with = |film: &'static str, more: &[&'static str]| [way, &["--resume", film], more].concat();
         for (flags, parts) in [
-            (&["--size", "16x9"][..], &["16x9", "32x18"][..]),
+            (&["--size", "16x9"][..], &["height is 9 here, 18 there"][..]),
             (&["--seed", "5"], &["seed is 5"]),
-            (&["--estimate-error", "off"], &["estimate-error is off"]),
+            (&["--estimate-error", "off"], &["estimate_error is false"]),
             (&["--scene", "book", "--size", "32x18"], &["another picture"]),
         ] {
             refused_in(&directory, &with("film.exr", flags), parts);

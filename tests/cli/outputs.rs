@@ -124,3 +124,19 @@ fn json_has_the_figures() {
     assert!(json["rmse_estimate"].is_null());
     assert!(text(&output.stderr).contains("three-spheres"), "the summary makes way for the JSON");
 }
+
+/// Its loader takes time, and some of its libraries print messages of their own.
+#[test]
+fn only_what_may_need_a_gpu_looks_for_one() {
+    let directory = temp();
+    let log = |arguments: &[&str]| {
+        let output = run(directory.path(), &[arguments, &["--log", "run.log"]].concat());
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        std::fs::read_to_string(directory.path().join("run.log")).unwrap()
+    };
+    let picture = ["--batch", "--device", "cpu", "--size", "16x9", "--samples", "1", "--out", "a.png"];
+    for arguments in [&picture[..], &["info", "a.png"], &["compare", "a.png", "a.png"]] {
+        let log = log(arguments);
+        assert!(!log.contains("found "), "{arguments:?}: {log}");
+    }
+}

@@ -107,6 +107,11 @@ same_bits 'the merged film is the whole' merged.exr whole.exr
 mkdir 'Köln und Umgebung' "$WINEPREFIX/drive_c/films"
 case_of 'umlauts and spaces' 0 'ein Bild.exr' --batch "${tiny[@]}" --out 'Köln und Umgebung/ein Bild.exr'
 exists 'that file' 'Köln und Umgebung/ein Bild.exr'
+case_of 'a command that is recorded' 0 'ein Bild.exr"' info 'Köln und Umgebung/ein Bild.exr'
+command=$(sed -n 's/^command *weekender//p' "$work/out" | tr -d '\r')
+printf '@..\\weekender.exe%s\r\n' "$command" > again.bat
+windows cmd /c again.bat
+exists 'it can be run by cmd' 'ein Bild.exr'
 case_of 'a drive' 0 'C:\films\a.exr' --batch "${tiny[@]}" --out 'C:\films\a.exr'
 case_of 'both kinds of slashes' 0 '8 (4 of them new)' --batch "${small[@]}" --samples 8 --resume 'C:\films/a.exr' --out 'C:/films\b.exr'
 exists 'that file' "$WINEPREFIX/drive_c/films/b.exr"

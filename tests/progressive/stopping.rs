@@ -230,6 +230,26 @@ fn stop_during_a_pass_keeps_the_earlier_film() {
     stopped(progressive);
 }
 
+/// The length of the first pass is a guess, which can be far too long on a busy machine.
+#[test]
+fn a_stop_during_the_first_pass_leaves_the_fewest_samples() {
+    let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
+    let plan = Plan { preview: Some(64), ..Plan::endless() };
+    let progressive = started_with(CPU, plan, move |_| {
+        let (begun, ended) = (begun.clone(), ended.clone());
+        scripted("cpu", move |fake, range, film, cancel| {
+            if range != (0..64) {
+                return fake.accumulate(&job(2), range, film, cancel);
+            }
+            film.halves_mut()[0][0].add(PixelSum([1; 3]));
+            Err(until_cancelled(&begun, &ended, cancel))
+        })
+    });
+    has_begun.recv_timeout(PATIENCE).unwrap();
+    let status = stopped(progressive);
+    assert_eq!((has_ended.recv_timeout(PATIENCE), status.samples_per_pixel), (Ok(true), 2));
+}
+
 #[test]
 fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     let mut progressive = idle(|_| Box::new(Fake { pause: Duration::from_millis(1), ..Fake::new("cpu") }));

@@ -73,7 +73,7 @@ fn bad_materials_are_refused() {
     for (new, parts) in [
         ("material = \"bell\"".to_owned(), &["\"bell\"", "add [materials.bell]"][..]),
         ("material = 3".to_owned(), &["spheres[0].material is 3", "a material's name or a table"]),
-        (table("kind = \"metal\", albedo = [1, 2, 1]"), &["spheres[0].material.albedo is [1, 2, 1]"]),
+        (table("kind = \"metal\", albedo = [1, 2, 1]"), &["spheres[0].material.albedo is [1.0, 2.0, 1.0]"]),
     ] {
         refuse_with(material, &new, 8, parts);
     }
@@ -82,9 +82,14 @@ fn bad_materials_are_refused() {
 #[test]
 fn bad_cameras_are_refused() {
     let vfov = "vfov_degrees = 40";
-    refuse_with(vfov, "vfov_degrees = 180", 1, &["vfov_degrees is 180, but must be within 0.01 and 179"]);
+    refuse_with(vfov, "vfov_degrees = 180", 1, &["vfov_degrees is 180.0, but must be within 0.01 and 179"]);
     refuse_with(vfov, "", 1, &["missing key `vfov_degrees`"]);
-    refuse_with(vfov, "vfov_degrees = 40\nvup = [0, 0, 1]", 1, &["vup is [0, 0, 1], which is parallel"]);
+    refuse_with(
+        vfov,
+        "vfov_degrees = 40\nvup = [0, 0, 1]",
+        1,
+        &["vup is [0.0, 0.0, 1.0], which is parallel"],
+    );
     refuse_with(vfov, "vfov_degrees = 40\nroll = 3", 5, &["unknown key `roll`"]);
 }
 
@@ -105,7 +110,7 @@ fn bad_settings_are_refused() {
         assert!(message.contains(expected), "{expected:?} is not in {message:?}");
     }
     for (line, expected) in [
-        ("top = [0, 0, 101]", "sky.top is [0, 0, 101], but each component must be within 0 and 100"),
+        ("top = [0, 0, 101]", "sky.top is [0.0, 0.0, 101.0], but each component must be within 0 and 100"),
         ("bottom = [nan, 0, 0]", "sky.bottom.x is NaN"),
     ] {
         let message = refusal(&format!("{CAMERA}[sky]\n{line}\n"), 5);
@@ -141,7 +146,7 @@ fn files_that_cannot_be_read_are_refused() {
     assert!(message(folder.path()).contains("is a directory"), "{}", message(folder.path()));
     let huge = folder.path().join("huge.toml");
     std::fs::File::create(&huge).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
-    assert!(message(&huge).contains("has 1099.5 GB, but a scene file of more than"), "{}", message(&huge));
+    assert!(message(&huge).contains("has 1.10 TB, but a scene file of more than"), "{}", message(&huge));
 
     let binary = folder.path().join("binary.toml");
     let wide: Vec<u8> = ONE_SPHERE.encode_utf16().flat_map(u16::to_le_bytes).collect();

@@ -1,8 +1,8 @@
 //! Merges the existing parts of a plan, and says what is missing.
 
 use super::{check_outputs, warn_of_loss, write, wrote};
-use crate::cli::MergeOptions;
 use crate::cli::terminal::print;
+use crate::cli::{MergeOptions, program};
 use crate::film::{Film, FilmSum, MergeError, checkpoint, key};
 use crate::job::plan::{Commands, Part, Plan};
 use crate::job::saved::same_job;
@@ -24,7 +24,7 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failu
         added.filter_map(|(index, state)| Some((index, state.err()?))).collect();
     let mut lines: Vec<String> =
         lacking.iter().map(|(index, what)| format!("part {index}: {what}")).collect();
-    lines.extend(remedy(plan, &lacking, &options.program));
+    lines.extend(remedy(plan, &lacking, &program()));
     let (film, [start, end]) = (sum.film(), plan.manifest.samples);
     let (samples, count, of) = (film.samples(), film.sample_count(), end - start);
     let (whole, all) = (parts.len() - lacking.len(), parts.len());

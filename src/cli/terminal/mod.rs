@@ -4,21 +4,13 @@ mod display;
 
 pub use display::Display;
 
-use crate::system::console;
-use crate::system::failure::output_failure;
-use crate::system::files::{STANDARD, write_text};
-use anyhow::{Context, Result, anyhow};
-use serde::Serialize;
-use std::io;
-use std::path::Path;
+pub use crate::system::console::print;
 
-/// Prints a result as text to standard output.
-///
-/// # Errors
-/// If standard output cannot be written, for instance because its reader has gone away.
-pub fn print(text: &str) -> Result<()> {
-    checked(console::print(text))
-}
+use crate::system::console;
+use crate::system::files::{STANDARD, write_text};
+use anyhow::{Context, Result};
+use serde::Serialize;
+use std::path::Path;
 
 /// Prints text to standard output, or to standard error if JSON goes to standard output.
 ///
@@ -57,11 +49,7 @@ pub fn write_figures(schema: u32, figures: &impl Serialize, target: &Path) -> Re
 pub fn write_json(value: &impl Serialize, target: &Path) -> Result<()> {
     let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
     if target == Path::new(STANDARD) {
-        return checked(console::write_out(&text));
+        return console::write_out(&text);
     }
     Ok(write_text(target, &text)?)
-}
-
-fn checked(written: io::Result<()>) -> Result<()> {
-    written.map_err(|error| anyhow!(output_failure(&error)))
 }

@@ -8,13 +8,12 @@ fn values_are_read_up_to_their_limits() {
     assert_eq!([parse_size("16384x1"), parse_size("1x16384")], [Ok((16384, 1)), Ok((1, 16384))]);
     assert_eq!(parse_vector("-2, 2,1e3"), Ok(DVec3::new(-2.0, 2.0, 1000.0)));
     assert_eq!(range(128_u64, "")("64 .. 128"), Ok(64..128));
-    assert_eq!([whole(1..=10, 7)("1"), whole(1..=10, 7)("10")], [Ok(1), Ok(10)]);
     assert_eq!(number(.., "")("-2.5"), Ok(-2.5));
     let lanes = ["auto", "off", "1", "4", "8", "16"].map(parse_simd);
     assert_eq!(lanes, [None, Some(1), Some(1), Some(4), Some(8), Some(16)].map(Ok));
-    assert_eq!([parse_isa("auto"), parse_isa("baseline")], [Ok(None), Ok(Some(Isa::Portable))]);
+    assert_eq!([parse_isa("auto"), parse_isa("portable")], [Ok(None), Ok(Some(Isa::Portable))]);
     assert_eq!([parse_levels("auto"), parse_levels("all")], [None, Some(Isa::available())].map(Ok));
-    assert_eq!(parse_levels("baseline, portable"), Ok(Some(vec![Isa::Portable])));
+    assert_eq!(parse_levels("portable, portable"), Ok(Some(vec![Isa::Portable])));
     assert_eq!(parse_pixel("3, 4"), Ok([3, 4]));
     assert_eq!(["0", "1"].map(number(0.0..=1.0, "")), [Ok(0.0), Ok(1.0)]);
     assert_eq!([parse_seconds("1e9"), parse_noise_target("3.1e-8")], [Ok(1e9), Ok(3.1e-8)]);
@@ -65,9 +64,6 @@ fn nonsense_is_refused_with_what_is_allowed() {
     }
     for text in ["", "auto,avx2", "avx2,", "mmx"] {
         assert!(parse_levels(text).unwrap_err().contains("sse4.2"), "{text}");
-    }
-    for text in ["", "1e3", "0", "11", "-1", "2.5", "99999999999999999999"] {
-        assert!(whole(1..=10_u64, 7)(text).unwrap_err().contains("from 1 to 10"), "{text}");
     }
     for text in ["", "0", "1e-9", "101", "nan"] {
         assert!(parse_noise_target(text).unwrap_err().contains("above 3e-8"), "{text}");

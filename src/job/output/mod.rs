@@ -7,9 +7,7 @@ mod png;
 mod ppm;
 mod read;
 
-pub use read::{
-    Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture, srgb_to_linear,
-};
+pub use read::{Damage, Encoding, Linear, ReadPicture, Values, decode_picture, displayed, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 
@@ -17,14 +15,15 @@ use crate::film::{Film, checkpoint};
 use crate::stages::Transfer;
 use crate::system::files::{self, ShownPath, replace_file};
 use anyhow::{Context, Result, anyhow};
+use clap::ValueEnum;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::Path;
 
 /// Longest recipe that is read from a PNG file, bytes: about two million listed spheres.
 const RECIPE_LIMIT: usize = 256 << 20;
 
-/// File format of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+/// File format of a picture, named as files end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 pub enum OutputFormat {
     /// 8-bit RGB.
     Png,
@@ -56,16 +55,14 @@ impl OutputFormat {
     /// # Errors
     /// If it has none of the known extensions.
     pub fn from_path(path: &Path) -> Result<Self> {
-        let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy().to_lowercase()));
-        OutputFormat::ALL.into_iter().find(|format| Some(format.ending()) == ending.as_deref()).with_context(
-            || {
-                format!(
-                    "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
-                    path.shown(),
-                    OutputFormat::ALL.map(OutputFormat::ending).join(", ")
-                )
-            },
-        )
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        OutputFormat::from_str(&ending, true).map_err(|_| {
+            anyhow!(
+                "cannot tell the picture format of {}; let the name end in one of {}, or add --format",
+                path.shown(),
+                OutputFormat::ALL.map(OutputFormat::ending).join(", ")
+            )
+        })
     }
 }
 

@@ -63,17 +63,18 @@ enum Found {
 }
 
 fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
-    let kind = file[1];
     let mut words = Words { file, at: 2 };
-    match kind {
-        b'2' | b'3' => return text(file, kind, damages),
-        b'F' | b'f' => return floats(words, if kind == b'F' { 3 } else { 1 }).map(Found::Picture),
-        _ => {}
-    }
+    let (format, channels) = match file[1] {
+        b'2' => return text(file, "P2", 1, damages),
+        b'3' => return text(file, "P3", 3, damages),
+        b'f' => return floats(words, 1).map(Found::Picture),
+        b'F' => return floats(words, 3).map(Found::Picture),
+        b'5' => ("P5", 1),
+        _ => ("P6", 3),
+    };
     let size = [words.number("width")?, words.number("height")?];
     let most = words.number("largest value")?;
     let ((width, height, count), most) = (checked(size)?, checked_most(most)?);
-    let channels = if kind == b'6' { 3 } else { 1 };
     let bytes_per_value = if most > 255 { 2 } else { 1 };
     let needed = count * channels * bytes_per_value;
     let mut data = Cow::Borrowed(words.payload(needed));
@@ -101,43 +102,37 @@ fn read_at(file: &[u8], damages: &mut Vec<Damage>) -> Result<Found> {
     }
     check_memory(width, height, 0)?;
     let data = &data[..needed];
-    let values: Vec<u16> = match bytes_per_value {
-        1 => data.iter().copied().map(u16::from).collect(),
-        _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect(),
+    let values: Vec<i64> = match bytes_per_value {
+        1 => data.iter().copied().map(i64::from).collect(),
+        _ => data.as_chunks::<2>().0.iter().map(|pair| u16::from_be_bytes(*pair).into()).collect(),
     };
-    let format = if kind == b'6' { "P6" } else { "P5" };
-    Ok(Found::Picture(integers([width, height], format, most, channels, values, notes, damages)))
+    Ok(Found::Picture(integers([width, height], format, most, channels, &values, notes, damages)))
 }
 
-/// The picture of values that may exceed the largest one.
+/// The picture of values that may be outside of their range.
 fn integers(
     [width, height]: [u32; 2],
     format: &'static str,
     most: u16,
     channels: usize,
-    values: Vec<u16>,
+    values: &[i64],
     notes: Vec<String>,
     damages: &mut Vec<Damage>,
 ) -> ReadPicture {
-    outside(values.iter().filter(|value| **value > most).count(), most, damages);
-    let rgb = values
-        .chunks_exact(channels)
-        .map(|pixel| [0, 1, 2].map(|channel: usize| pixel[channel.min(channels - 1)].min(most)))
-        .collect();
-    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
-}
-
-fn outside(count: usize, most: u16, damages: &mut Vec<Damage>) {
-    if count > 0 {
+    let outside = values.iter().filter(|value| !(0..=most.into()).contains(*value)).count();
+    if outside > 0 {
         damages.push(Damage::new(
-            format!("{count} numbers are below 0 or above {most}"),
+            format!("{outside} numbers are below 0 or above {most}"),
             "clamp each channel before it is scaled: int(256 * clamp(x, 0, 0.999)); negative ones often were NaN",
         ));
     }
+    let value = |pixel: &[i64], channel: usize| pixel[channel.min(channels - 1)].clamp(0, most.into()) as u16;
+    let rgb = values.chunks_exact(channels).map(|pixel| [0, 1, 2].map(|c| value(pixel, c))).collect();
+    ReadPicture { width, height, format, values: Values::Integers { most, rgb }, damages: Vec::new(), notes }
 }
 
 /// Reads numbers written as text, leaving out what does not belong.
-fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
+fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Damage>) -> Result<Found> {
     let (mut messages, mut lines, mut at) = (0, Vec::new(), 0);
     for line in file.split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
         if at > 0 && is_header(line) {
@@ -160,13 +155,11 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
         ));
     }
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
-    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
+    let head: Vec<u64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
     let [width, height, most] = *head.as_slice() else {
         bail!("its header is not complete; {HEADER}");
     };
-    let size = [width, height].map(|side| u64::try_from(side).unwrap_or(0));
-    let ((width, height, count), most) = (checked(size)?, checked_most(most.try_into().unwrap_or(0))?);
-    let channels = if kind == b'3' { 3 } else { 1 };
+    let ((width, height, count), most) = (checked([width, height])?, checked_most(most)?);
     let needed = count * channels;
     let words = || words().skip(3);
     let has_commas = words().any(|word| word.trim_end_matches(',').contains(','));
@@ -215,10 +208,7 @@ fn text(file: &[u8], kind: u8, damages: &mut Vec<Damage>) -> Result<Found> {
         ));
     }
     check_memory(width, height, 0)?;
-    values.truncate(needed);
-    outside(values.iter().filter(|value| !(0..=most.into()).contains(*value)).count(), most, damages);
-    let values = values.iter().map(|value| (*value).clamp(0, most.into()) as u16).collect();
-    let format = if kind == b'3' { "P3" } else { "P2" };
+    let values = &values[..needed];
     Ok(Found::Picture(integers([width, height], format, most, channels, values, Vec::new(), damages)))
 }
 
@@ -352,14 +342,12 @@ fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
 
 /// Whether a picture of one of these formats begins here.
 fn is_header(bytes: &[u8]) -> bool {
-    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', next, ..] if next.is_ascii_whitespace() || *next == b'#')
+    let is_end = |next: &u8| next.is_ascii_whitespace() || *next == b'#';
+    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', rest @ ..] if rest.first().is_none_or(is_end))
 }
 
 /// Where the picture begins: at once, or at a line after some text.
 fn header(file: &[u8]) -> Option<usize> {
-    if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
-        return Some(0);
-    }
     let mut at = 0;
     for line in file.split_inclusive(|byte| *byte == b'\n') {
         if is_header(line) {

@@ -12,12 +12,14 @@ use std::io::{BufRead, BufReader, Read, Seek};
 use std::path::Path;
 
 /// What integer values mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
     /// As Weekender and the book write them: the transfer, then `floor(256 v)`. Values of another largest one than 255 or
     /// 65535 may also be rounded.
     Book(Transfer),
-    /// The sRGB curve, rounded, as most other programs write pictures.
+    /// As in the book, but with this exponent.
+    Gamma(f64),
+    /// The curve of sRGB (IEC 61966-2-1), rounded, as most other programs write pictures.
     Srgb,
 }
 
@@ -205,14 +207,29 @@ impl Encoding {
 
     /// The least and the largest linear value that are stored as `value` of up to `most`, if nothing is brighter.
     fn ends(self, value: u16, most: u16, row: usize, height: usize) -> [f64; 2] {
+        let ends = if self == Encoding::Srgb { rounded(value, most) } else { displayed(value, most) };
+        ends.map(|end| self.linear(end.max(0.0), row, height))
+    }
+
+    /// The linear value of a displayed one, within `0..=1`.
+    pub fn linear(self, displayed: f64, row: usize, height: usize) -> f64 {
         match self {
-            Encoding::Book(transfer) => {
-                let is_gamma = transfer.is_gamma(row, height);
-                displayed(value, most)
-                    .map(|end| end.max(0.0))
-                    .map(|end| if is_gamma { end * end } else { end })
-            }
-            Encoding::Srgb => rounded(value, most).map(|end| srgb_to_linear(end.max(0.0))),
+            Encoding::Book(transfer) if transfer.is_gamma(row, height) => displayed * displayed,
+            Encoding::Book(_) => displayed,
+            Encoding::Gamma(exponent) => displayed.powf(exponent),
+            Encoding::Srgb if displayed <= 0.04045 => displayed / 12.92,
+            Encoding::Srgb => ((displayed + 0.055) / 1.055).powf(2.4),
+        }
+    }
+
+    /// The displayed value of a linear one.
+    pub fn displayed(self, linear: f64, row: usize, height: usize) -> f64 {
+        match self {
+            Encoding::Book(transfer) if transfer.is_gamma(row, height) => linear.sqrt(),
+            Encoding::Book(_) => linear,
+            Encoding::Gamma(exponent) => linear.powf(1.0 / exponent),
+            Encoding::Srgb if linear <= 0.003_130_8 => 12.92 * linear,
+            Encoding::Srgb => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
         }
     }
 }
@@ -231,11 +248,6 @@ pub fn displayed(value: u16, most: u16) -> [f64; 2] {
 
 fn rounded(value: u16, most: u16) -> [f64; 2] {
     [-0.5, 0.5].map(|part| (f64::from(value) + part) / f64::from(most))
-}
-
-/// IEC 61966-2-1.
-pub fn srgb_to_linear(v: f64) -> f64 {
-    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 
 #[cfg(test)]
@@ -286,8 +298,7 @@ mod tests {
 
         #[test]
         fn srgb_is_read_within_its_steps(x in 0.0..0.99_f64) {
-            let v = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-            let byte = (255.0 * v).round() as u16;
+            let byte = (255.0 * Encoding::Srgb.displayed(x, 0, 1)).round() as u16;
             if byte < 255 {
                 let [low, high] = Encoding::Srgb.interval(byte, 255, 0, 1);
                 prop_assert!(low - 1e-9 <= x && x <= high + 1e-9, "{x}: {low} to {high}");

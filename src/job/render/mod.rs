@@ -69,19 +69,15 @@ impl RenderJob {
     /// The first invalid value of the camera or the settings.
     pub fn seen_by(&self, camera: Camera, settings: RenderSettings) -> Result<Self, JobError> {
         camera.validate()?;
-        for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
-            if !(1..=SIZE_LIMIT).contains(&pixels) {
-                return Err(JobError::Settings(format!(
-                    "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller \
-                     picture or stitch several"
-                )));
+        for (what, value, limit, remedy) in [
+            ("width", settings.width, SIZE_LIMIT, "choose a smaller picture or stitch several"),
+            ("height", settings.height, SIZE_LIMIT, "choose a smaller picture or stitch several"),
+            ("max_depth", settings.max_depth, DEPTH_LIMIT, "50 rays a path are the book's"),
+        ] {
+            if !(1..=limit).contains(&value) {
+                let reason = format!("{what} is {value}, but must be within 1 and {limit}; {remedy}");
+                return Err(JobError::Settings(reason));
             }
-        }
-        let depth = settings.max_depth;
-        if !(1..=DEPTH_LIMIT).contains(&depth) {
-            return Err(JobError::Settings(format!(
-                "max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's"
-            )));
         }
         Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
     }

@@ -61,9 +61,7 @@ impl RenderSettings {
     pub fn half_count(&self) -> usize {
         if self.estimate_error { 2 } else { 1 }
     }
-}
 
-impl RenderSettings {
     /// All settings except the picture's size, by the names of their flags.
     pub fn flags(&self) -> [(&'static str, String); 4] {
         [

@@ -23,7 +23,7 @@ fn a_picture_may_be_as_large_and_as_deep_as_the_limits() {
         (2, SIZE_LIMIT + 1, "height", SIZE_LIMIT + 1),
     ] {
         let message = job(width, height, 1).unwrap_err().to_string();
-        assert!(message.contains(what) && message.contains(&format!("is {pixels} pixels")), "{message}");
+        assert!(message.contains(what) && message.contains(&format!("is {pixels},")), "{message}");
     }
     for depth in [0, DEPTH_LIMIT + 1] {
         let message = job(2, 1, depth).unwrap_err().to_string();

@@ -2,6 +2,7 @@
 
 use crate::job::recipe::file;
 use crate::job::render::RenderJob;
+use serde_json::{Value, to_value};
 
 /// Checks whether two recipes, given as text, describe the same samples.
 ///
@@ -31,28 +32,12 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     ))
 }
 
-/// What a user chooses of a job, by flag name; then the stage's rules.
-fn named_values(job: &RenderJob) -> Vec<(String, String)> {
-    let (settings, camera) = (job.settings(), job.camera());
-    let mut values = vec![("size", format!("{}x{}", settings.width, settings.height))];
-    values.extend(settings.flags());
-    let distance = camera.focus_distance.map_or("that to the point looked at".to_owned(), |d| d.to_string());
-    values.extend([
-        ("look-from", camera.look_from.to_string()),
-        ("look-at", camera.look_at.to_string()),
-        ("vup", camera.vup.to_string()),
-        ("vfov", camera.vfov_degrees.to_string()),
-        ("defocus-angle", camera.defocus_angle_degrees.to_string()),
-        ("focus-distance", distance),
-        ("number of spheres", job.scene().spheres.len().to_string()),
-    ]);
-    let mut values: Vec<_> = values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect();
-    // By their names in scene files.
-    if let Ok(serde_json::Value::Object(rules)) = serde_json::to_value(job.rules()) {
-        let text = |(name, value)| (format!("the stage's rule {name}"), format!("{value}"));
-        values.extend(rules.into_iter().map(text));
-    }
-    values
+/// All of a job but its scene, by the names of scene files.
+fn named_values(job: &RenderJob) -> Vec<(String, Value)> {
+    let tables = [to_value(job.settings()), to_value(job.camera()), to_value(job.rules())];
+    let tables = tables.into_iter().filter_map(|table| table.ok()?.as_object().cloned());
+    let spheres = ("number of spheres".to_owned(), job.scene().spheres.len().into());
+    tables.flatten().chain([spheres]).collect()
 }
 
 #[cfg(test)]
@@ -74,18 +59,15 @@ mod tests {
         assert_eq!(difference_with(|recipe| recipe.camera.look_from.x = -0.0), None);
         type Change = fn(&mut Recipe);
         let cases: [(Change, &str); 8] = [
-            (|recipe| recipe.settings.width = 7, "size is 800x450 here, 7x450 there"),
+            (|recipe| recipe.settings.width = 7, "width is 800 here, 7 there"),
             (|recipe| recipe.settings.seed = 5, "seed is 0 here, 5 there"),
-            (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov is 90 here, 20 there"),
-            (|recipe| recipe.camera.look_from.y = -2.5, "look-from is [0, 0, 0] here, [0, -2.5, 0] there"),
+            (|recipe| recipe.camera.vfov_degrees = 20.0, "vfov_degrees is 90.0 here, 20.0 there"),
             (
-                |recipe| recipe.camera.focus_distance = Some(3.4),
-                "focus-distance is that to the point looked at here, 3.4 there",
+                |recipe| recipe.camera.look_from.y = -2.5,
+                "look_from is [0.0,0.0,0.0] here, [0.0,-2.5,0.0] there",
             ),
-            (
-                |recipe| recipe.rules.antialiasing = false,
-                "the stage's rule antialiasing is true here, false there",
-            ),
+            (|recipe| recipe.camera.focus_distance = Some(3.4), "focus_distance is null here, 3.4 there"),
+            (|recipe| recipe.rules.antialiasing = false, "antialiasing is true here, false there"),
             (
                 |recipe| Arc::make_mut(&mut recipe.scene).spheres.truncate(4),
                 "number of spheres is 5 here, 4 there",

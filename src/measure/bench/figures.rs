@@ -9,8 +9,6 @@ use serde::Serialize;
 pub struct BenchFigures {
     /// Scenes, with one row per candidate.
     pub scenes: Vec<SceneFigures>,
-    /// Gain of specialised kernels, by device.
-    pub features: Vec<DeviceFigures>,
     /// Reasons to doubt the figures.
     pub warnings: Vec<String>,
     pub interrupted: bool,
@@ -41,8 +39,11 @@ pub struct Denoising {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
+    /// The C program.
     #[default]
     Baseline,
+    /// The kernel with code for everything, on the device of the row below it.
+    General,
     /// One ray at a time.
     Scalar,
     /// Packets on one thread.
@@ -66,10 +67,12 @@ pub struct Row {
     pub rays_per_second: Option<Spread>,
     /// Share of the lanes that traced a ray; `None` for the C program and a GPU.
     pub lanes_in_use: Option<f64>,
-    /// Paths per second relative to the C program in the same scene.
+    /// Paths per second relative to the C program in the same scene, or to the general kernel on the same device.
     pub ratio_to_baseline: Option<f64>,
     /// `1 / (MSE seconds)`; `None` if the error is unknown.
     pub efficiency: Option<f64>,
+    /// What its kernel leaves out.
+    pub left_out: Vec<&'static str>,
     /// Why it was not measured.
     pub skipped: Option<String>,
 }
@@ -88,40 +91,6 @@ pub struct Run {
     pub offered_lanes: u64,
     /// RMSE that the film estimates.
     pub rmse: Option<f64>,
-}
-
-/// Gain of specialised kernels on one device.
-#[derive(Serialize)]
-pub struct DeviceFigures {
-    /// The device, with the lanes and threads of a CPU.
-    pub device: String,
-    pub rows: Vec<GainRow>,
-    /// Why it was not measured.
-    pub skipped: Option<String>,
-}
-
-/// A stage or scene, rendered alternately with its own kernel and with the general one.
-#[derive(Default, Serialize)]
-pub struct GainRow {
-    /// Stage id or scene name.
-    pub name: String,
-    pub width: u32,
-    pub height: u32,
-    pub samples_per_pixel: u64,
-    /// What its own kernel supports.
-    pub kernel: String,
-    /// What its own kernel leaves out of the general one.
-    pub left_out: Vec<&'static str>,
-    pub own_runs: Vec<Run>,
-    pub general_runs: Vec<Run>,
-    pub own_paths_per_second: Option<Spread>,
-    pub general_paths_per_second: Option<Spread>,
-    /// Time of the general kernel relative to its own, by pair of runs.
-    pub gain: Option<Spread>,
-    /// Whether both films are equal bit for bit.
-    pub same_bits: Option<bool>,
-    /// Why it was not measured.
-    pub skipped: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -178,21 +147,15 @@ impl Row {
     }
 }
 
-impl GainRow {
-    pub fn sum_up(&mut self) {
-        self.own_paths_per_second = Spread::of_speeds(&self.own_runs, |run| run.paths);
-        self.general_paths_per_second = Spread::of_speeds(&self.general_runs, |run| run.paths);
-        let pairs = self.own_runs.iter().zip(&self.general_runs);
-        self.gain = Spread::of(pairs.map(|(own, general)| general.seconds / own.seconds));
-    }
-}
-
 impl SceneFigures {
-    /// Relates the rows to the C program.
+    /// Relates the rows to what they are compared with, which comes before them.
     pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>) -> Self {
         let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
-        let baseline = rows.iter().find(|row| row.kind == Kind::Baseline).and_then(speed);
+        let mut baseline = None;
         for row in &mut rows {
+            if matches!(row.kind, Kind::Baseline | Kind::General) {
+                baseline = speed(row);
+            }
             row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
         let (scene, spheres) = (scene.to_owned(), job.scene().spheres.len());

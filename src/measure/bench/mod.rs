@@ -1,6 +1,6 @@
-//! `weekender bench`: how fast this machine renders, compared with a plain C program.
+//! `weekender bench`: how fast this machine renders, compared with a plain C program, and what kernels gain by leaving
+//! out code that a scene does not need.
 
-mod features;
 mod figures;
 mod text;
 
@@ -14,6 +14,7 @@ use crate::cli::{BenchOptions, BenchScene};
 use crate::denoise;
 use crate::job::render::RenderJob;
 use crate::render_cpu::{CpuOptions, Isa};
+use crate::render_gpu::GpuOptions;
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
 use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
@@ -45,12 +46,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let progress = Progress::new(options.progress, 1.0);
     let figures = BenchFigures::default();
     let mut bench = Bench { options, levels, cancel: interrupt.flag(), progress, figures };
-    let measured = if options.features {
-        bench.features(&scenes)
-    } else {
-        bench.scenes(&scenes);
-        Ok(())
-    };
+    bench.scenes(&scenes);
     bench.progress.clear();
     let mut figures = bench.figures;
     figures.interrupted = interrupt.is_set();
@@ -59,8 +55,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
             "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
         )
     }));
-    let written = write(json, &machine, &figures);
-    measured.and(written).map_err(Failure::Run)?;
+    write(json, &machine, &figures).map_err(Failure::Run)?;
     Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
@@ -91,17 +86,14 @@ impl Bench<'_> {
         self.levels.last().copied().unwrap_or(Isa::Portable)
     }
 
-    fn expect_runs(&mut self, count: usize) {
-        self.progress = Progress::new(self.options.progress, count as f64);
-    }
-
     fn scenes(&mut self, scenes: &[BenchScene]) {
-        let mut candidates = self.candidates();
-        self.expect_runs(scenes.len() * candidates.len() * (1 + self.options.runs));
+        let mut candidates = if self.options.features { self.kernels() } else { self.candidates() };
+        let runs = scenes.len() * candidates.len() * (1 + self.options.runs);
+        self.progress = Progress::new(self.options.progress, runs as f64);
         for BenchScene { name, job, samples, .. } in scenes {
             let rows = self.rows(name, job, *samples, &mut candidates);
             let mut figures = SceneFigures::new(name, job, rows);
-            figures.denoising = self.denoising(job);
+            figures.denoising = if self.options.features { None } else { self.denoising(job) };
             self.figures.scenes.push(figures);
             if self.is_cancelled() {
                 break;
@@ -145,14 +137,33 @@ impl Bench<'_> {
                 found.push((Kind::Threads, cpu(best, best.native_lanes(), threads)));
             }
         }
-        if let Some(choice) = BackendChoice::gpu_if_present(self.options.adapter.as_deref()) {
-            let mut gpu = Candidate::backend("GPU", choice);
-            if let Ok(renderer) = gpu.start() {
-                gpu.name = renderer.info().device;
-            }
-            found.push((Kind::Gpu, gpu));
+        found.extend(self.gpu().map(|options| (Kind::Gpu, gpu(options))));
+        found
+    }
+
+    /// For each device, the general kernel and then the scene's own.
+    fn kernels(&self) -> Vec<(Kind, Candidate)> {
+        let mut found = Vec::new();
+        for isa in &self.levels {
+            let general =
+                CpuOptions { isa: Some(*isa), threads: Some(1), general: true, ..CpuOptions::default() };
+            let name = format!("{isa}, general kernel");
+            found.push((Kind::General, Candidate::backend(name, BackendChoice::Cpu(general))));
+            found.push((Kind::Packets, cpu(*isa, isa.native_lanes(), 1)));
+        }
+        if let Some(own) = self.gpu() {
+            let general = BackendChoice::Gpu(GpuOptions { specialise: false, ..own.clone() });
+            found.push((Kind::General, Candidate::backend("GPU, general kernel", general)));
+            found.push((Kind::Gpu, gpu(own)));
         }
         found
+    }
+
+    fn gpu(&self) -> Option<GpuOptions> {
+        match BackendChoice::gpu_if_present(self.options.adapter.as_deref())? {
+            BackendChoice::Gpu(options) => Some(options),
+            _ => None,
+        }
     }
 
     /// Runs all candidates in turn, so that drift affects all alike.
@@ -170,9 +181,7 @@ impl Bench<'_> {
                 if row.skipped.is_none() {
                     self.progress.at(&format!("{scene}: {}", row.name));
                     let outcome = match turn {
-                        0 => self
-                            .affordable_samples(candidate, job, samples)
-                            .map(|n| row.samples_per_pixel = n),
+                        0 => self.warm_up(candidate, job, samples, row),
                         _ => self.run(candidate, job, row),
                     };
                     match outcome {
@@ -186,6 +195,18 @@ impl Bench<'_> {
         }
         rows.iter_mut().for_each(Row::sum_up);
         rows
+    }
+
+    fn warm_up(
+        &self,
+        candidate: &mut Candidate,
+        job: &RenderJob,
+        samples: u64,
+        row: &mut Row,
+    ) -> Result<(), Stop> {
+        row.samples_per_pixel = self.affordable_samples(candidate, job, samples)?;
+        row.left_out = candidate.start()?.kernel().left_out;
+        Ok(())
     }
 
     fn run(&self, candidate: &mut Candidate, job: &RenderJob, row: &mut Row) -> Result<(), Stop> {
@@ -223,6 +244,14 @@ fn cpu(isa: Isa, lanes: usize, threads: usize) -> Candidate {
         CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads), ..CpuOptions::default() };
     let name = format!("{isa}, {}, {}", counted(lanes, "lane"), counted(threads, "thread"));
     Candidate::backend(name, BackendChoice::Cpu(options))
+}
+
+fn gpu(options: GpuOptions) -> Candidate {
+    let mut gpu = Candidate::backend("GPU", BackendChoice::Gpu(options));
+    if let Ok(renderer) = gpu.start() {
+        gpu.name = renderer.info().device;
+    }
+    gpu
 }
 
 /// How many samples fit into `limit_seconds`, between `least` and `samples`.

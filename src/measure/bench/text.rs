@@ -2,19 +2,17 @@
 
 use super::super::machine::Machine;
 use super::super::table::{counted, or_dash, text_row};
-use super::figures::{BenchFigures, Denoising, DeviceFigures, GainRow, Row, SceneFigures, Spread};
+use super::figures::{BenchFigures, Denoising, Kind, Row, SceneFigures, Spread};
 use crate::job::render::RenderSettings;
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
 
 const SCENE_WIDTHS: [i32; 9] = [-33, 5, 8, 7, 7, 6, 7, 7, 9];
-const GAIN_WIDTHS: [i32; 8] = [-33, 10, 10, 10, 9, 7, 7, 7];
 
 pub fn text(machine: &Machine, figures: &BenchFigures) -> String {
     let mut parts = vec![machine.words() + "\n"];
     parts.extend(figures.scenes.iter().map(scene));
-    parts.extend(figures.features.iter().map(device));
     if figures.interrupted {
         parts.push("Interrupted: only the runs finished so far are shown.\n".to_owned());
     }
@@ -29,11 +27,17 @@ fn scene(scene: &SceneFigures) -> String {
     let RenderSettings { width, height, max_depth, sampler, .. } = settings;
     let (sampler, spheres) = (sampler.name(), counted(*spheres, "sphere"));
     let runs = counted(rows.iter().map(|row| row.runs.len()).max().unwrap_or(0), "run");
-    let heads = ["", "spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
+    let compares_kernels = rows.iter().any(|row| row.kind == Kind::General);
+    let ratio = if compares_kernels { "gain" } else { "x C89" };
+    let heads = ["", "spp", "Mpaths/s", "min", "max", ratio, "Mrays/s", "lanes %", "1/(MSE s)"];
+    let left_out = |row: &Row| match row.left_out.join(", ") {
+        parts if compares_kernels && !parts.is_empty() => format!("    left out: {parts}\n"),
+        _ => String::new(),
+    };
     format!(
         "{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres}; medians of {runs}\n{}{}{}",
         text_row(&SCENE_WIDTHS, &heads),
-        rows.iter().map(scene_row).collect::<String>(),
+        rows.iter().map(|row| scene_row(row) + &left_out(row)).collect::<String>(),
         denoising.as_ref().map(denoising_line).unwrap_or_default()
     )
 }
@@ -62,44 +66,6 @@ fn scene_row(row: &Row) -> String {
         or_dash(row.efficiency, |efficiency| format!("{efficiency:.2e}")),
     ];
     text_row(&SCENE_WIDTHS, &cells)
-}
-
-fn device(device: &DeviceFigures) -> String {
-    let DeviceFigures { device: name, rows, skipped } = device;
-    if let Some(reason) = skipped {
-        return format!("{name} skipped: {reason}\n");
-    }
-    let pairs = counted(rows.iter().map(|row| row.own_runs.len()).max().unwrap_or(0), "pair");
-    let heads = ["", "size", "spp", "Mpaths/s", "general", "gain", "min", "max"];
-    format!(
-        "Each scene's own kernel and the general one, {name}; {pairs} of runs\n{}{}",
-        text_row(&GAIN_WIDTHS, &heads),
-        rows.iter().map(gain_row).collect::<String>()
-    )
-}
-
-fn gain_row(row: &GainRow) -> String {
-    if let Some(reason) = &row.skipped {
-        return format!("{} skipped: {reason}\n", row.name);
-    }
-    let gain = |part: fn(Spread) -> f64| or_dash(row.gain, |spread| format!("{:.2}", part(spread)));
-    let cells = [
-        shortened(&row.name),
-        format!("{}x{}", row.width, row.height),
-        row.samples_per_pixel.to_string(),
-        millions(row.own_paths_per_second, |spread| spread.median),
-        millions(row.general_paths_per_second, |spread| spread.median),
-        gain(|spread| spread.median),
-        gain(|spread| spread.min),
-        gain(|spread| spread.max),
-    ];
-    let left_out = if row.left_out.is_empty() { "nothing".to_owned() } else { row.left_out.join(", ") };
-    let differ = if row.same_bits == Some(false) { "    the films differ\n" } else { "" };
-    format!(
-        "{}    kernel: {}\n    left out: {left_out}\n{differ}",
-        text_row(&GAIN_WIDTHS, &cells),
-        row.kernel
-    )
 }
 
 fn millions(spread: Option<Spread>, part: fn(Spread) -> f64) -> String {

@@ -1,25 +1,15 @@
 //! The measurements of a report, as stored in `report.json`.
 
-use crate::measure::SCHEMA;
 use serde::{Deserialize, Serialize};
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Data {
-    /// See [`SCHEMA`].
-    #[serde(skip_serializing)]
-    pub schema: u32,
     /// Settings that determine the figures.
     pub settings: Settings,
     /// One entry per scene that has runs.
     pub references: Vec<ReferenceUsed>,
     /// One entry per curve and seed.
     pub runs: Vec<Run>,
-}
-
-impl Data {
-    pub fn new(settings: Settings) -> Self {
-        Data { schema: SCHEMA, settings, references: Vec::new(), runs: Vec::new() }
-    }
 }
 
 /// Settings common to all runs.

@@ -12,8 +12,8 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 use super::machine::Machine;
 use super::progress::Progress;
 use super::{Candidate, Source, Stop, write_json};
-use crate::cli::ReportOptions;
 use crate::cli::terminal::print;
+use crate::cli::{ReportOptions, command_line};
 use crate::denoise;
 use crate::film::{Film, SOFTWARE};
 use crate::job::recipe::Recipe;
@@ -70,7 +70,7 @@ impl<'a> Report<'a> {
         let (scenes, candidates) = (options.scenes()?, candidates(options)?);
         make_directory(&options.out)?;
         check_writable(&options.out.join("report.json"))?;
-        let data = Data::new(settings(options));
+        let data = Data { settings: settings(options), references: Vec::new(), runs: Vec::new() };
         let per_scene: usize = candidates.iter().map(|c| samplers(c, options).len()).sum();
         let per_scene = per_scene as f64 * options.time_limit + EXPECTED_SECONDS;
         let progress = Progress::new(options.progress, scenes.len() as f64 * per_scene);
@@ -137,7 +137,7 @@ impl<'a> Report<'a> {
         let (out, targets) = (&self.options.out, self.options.targets());
         let findings = Findings::of(&self.data, &targets);
         write_json(&out.join("report.json"), &self.machine, &findings)?;
-        write_text(&out.join("report.md"), &text::markdown(&findings, &self.options.command))?;
+        write_text(&out.join("report.md"), &text::markdown(&findings, &command_line()))?;
         let figure = figure::figure(&self.data, &findings.curves, targets[0]);
         write_text(&out.join("error-vs-time.svg"), &chart::svg(&figure)?)?;
         print(&format!("wrote report.md, report.json and error-vs-time.svg to {}\n", out.display()))
@@ -234,11 +234,6 @@ fn measured(
     Ok((about, prepare_seconds, [raw, denoised]))
 }
 
-/// Parses a `report.json`.
-pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
-    serde_json::from_slice(json)
-}
-
 /// The chart of a report, with the times to an error of `target` marked.
 pub fn chart(data: &Data, target: f64) -> chart::Figure {
     figure::figure(data, &curves(data, &[target]), target)
@@ -255,7 +250,7 @@ mod tests {
     }
 
     pub fn data() -> Data {
-        Data::new(Settings {
+        let settings = Settings {
             software: "Weekender 1.2.3".to_owned(),
             size: (48, 27),
             seeds: 4,
@@ -263,7 +258,8 @@ mod tests {
             max_samples: 64,
             reference_samples: 512,
             reference: "cpu".to_owned(),
-        })
+        };
+        Data { settings, references: Vec::new(), runs: Vec::new() }
     }
 
     fn small() -> Recipe {

@@ -25,9 +25,9 @@ pub use section::excerpts_between;
 use crate::cli::CompanionOptions;
 use crate::page::gallery::{self, Order, Quality};
 use crate::system::failure::Failure;
-use crate::system::files::{check_page, write_text};
+use crate::system::files::{check_page, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
-use anyhow::{Context, Result};
+use anyhow::Result;
 use library::Library;
 use site::Site;
 use std::process::ExitCode;
@@ -72,9 +72,7 @@ fn library(options: &CompanionOptions) -> Library {
 pub fn write(options: &CompanionOptions, interrupt: &Interrupt) -> Result<gallery::Outcome, Failure> {
     let page = Site::read(&library(options)).and_then(|site| page::render(&site)).map_err(Failure::Input)?;
     let out = &options.out;
-    std::fs::create_dir_all(out.join(pictures::FOLDER))
-        .with_context(|| format!("cannot create the directory {}; choose another with --out", out.display()))
-        .map_err(Failure::Input)?;
+    make_directory(&out.join(pictures::FOLDER)).map_err(Failure::Input)?;
     let index = out.join("index.html");
     check_page(&index).map_err(Failure::input)?;
     // Write the page first, so that it can be read while its figures are rendered.

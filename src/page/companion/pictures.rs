@@ -4,9 +4,10 @@
 use super::directive::typographic;
 use super::site::Uses;
 use crate::denoise;
-use crate::job::recipe::Recipe;
+use crate::film::Checksum;
+use crate::film::checkpoint::SAMPLE_VERSION;
+use crate::job::recipe::{Recipe, file::to_toml};
 use crate::job::render::Renderer;
-use crate::page::gallery::fingerprint;
 use crate::pictures::check::{Hypothesis, MISTAKES, Mistake, Studio};
 use crate::progressive::describe::counted;
 use crate::render_cpu::{CpuOptions, CpuRenderer};
@@ -42,6 +43,14 @@ enum Subject {
     Limit(u32),
     Noisy(u64),
     Denoised(u64),
+}
+
+/// Identifies the picture that this program renders of a recipe.
+fn fingerprint(recipe: &Recipe) -> String {
+    let mut checksum = Checksum::default();
+    checksum.text(to_toml(recipe).as_bytes());
+    checksum.word(SAMPLE_VERSION.into());
+    checksum.finish()
 }
 
 impl Picture {

@@ -8,7 +8,6 @@ mod still;
 
 pub use quality::{Quality, is_about_pixels};
 pub use rendering::{Order, Outcome, render};
-pub use still::{Still, Stills, fingerprint};
 
 use crate::cli::GalleryOptions;
 use crate::stages::Stage;
@@ -21,6 +20,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::LazyLock;
+use still::Stills;
 
 /// One or more pictures with a caption.
 #[derive(Debug, Deserialize)]
@@ -95,7 +95,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
         prints_stills: true,
     };
     let outcome = render(&order, &interrupt)?;
-    write_text(&index, &page::page(&outcome.stills)).map_err(Failure::run)?;
+    write_text(&index, &page::page(&Stills::read(&options.out))).map_err(Failure::run)?;
     outcome.report(&index, &interrupt)
 }
 

@@ -1,7 +1,7 @@
 //! Renders missing or outdated stills.
 
 use super::quality::Quality;
-use super::still::{self, INDEX, Still, Stills, fingerprint};
+use super::still::{Still, file_name, is_fresh};
 use crate::backends::BackendChoice;
 use crate::batch::{Event, Studio};
 use crate::cli::ProgressChoice;
@@ -14,10 +14,10 @@ use crate::progressive::describe::{counted, describe};
 use crate::stages::Stage;
 use crate::system::console;
 use crate::system::failure::Failure;
-use crate::system::files::check_writable;
+use crate::system::files::{check_writable, make_directory};
 use crate::system::interrupt::Interrupt;
-use anyhow::{Context, Result, bail};
-use std::path::Path;
+use anyhow::{Result, bail};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -37,8 +37,6 @@ pub struct Order<'a> {
 
 #[derive(Debug)]
 pub struct Outcome {
-    /// All stills of the directory.
-    pub stills: Stills,
     /// How many were rendered.
     pub rendered: usize,
     /// How many of the ordered ones were up to date.
@@ -77,16 +75,10 @@ const TEMPLATE: &str = "[{bar:24}] {eta} left, {wide_msg}";
 /// [`Failure::Input`] if nothing was rendered, otherwise [`Failure::BrokeOff`] or [`Failure::Run`]. Finished stills are
 /// kept.
 pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failure> {
-    let directory = order.directory;
-    std::fs::create_dir_all(directory)
-        .with_context(|| {
-            format!("cannot create the directory {}; choose another with --out", directory.display())
-        })
-        .map_err(Failure::Input)?;
-    let mut stills = Stills::read(directory);
-    let tasks = tasks(order, &stills).map_err(Failure::Input)?;
-    for file in tasks.iter().map(|(stage, _)| Still::file_name(stage)).chain([INDEX.to_owned()]) {
-        check_writable(&directory.join(file)).map_err(Failure::input)?;
+    make_directory(order.directory).map_err(Failure::Input)?;
+    let tasks = tasks(order).map_err(Failure::Input)?;
+    for (stage, _) in &tasks {
+        check_writable(&order.path(stage)).map_err(Failure::input)?;
     }
     let kept = order.stages.len() - tasks.len();
     let mut rendered = 0;
@@ -94,7 +86,7 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
         let studio = Studio::open(order.backend, interrupt)?;
         let display = Display::new(order.progress, paths(&tasks), TEMPLATE, "", LINE_INTERVAL);
         let mut work = Work { order, interrupt, studio, display };
-        let outcome = work.render_all(&tasks, &mut stills, &mut rendered);
+        let outcome = work.render_all(&tasks, &mut rendered);
         work.display.clear();
         outcome.map_err(|error| match rendered {
             0 => Failure::Run(error),
@@ -104,19 +96,26 @@ pub fn render(order: &Order<'_>, interrupt: &Interrupt) -> Result<Outcome, Failu
             }
         })?;
     }
-    Ok(Outcome { stills, rendered, kept, missing: tasks.len() - rendered })
+    Ok(Outcome { rendered, kept, missing: tasks.len() - rendered })
 }
 
-fn tasks(order: &Order<'_>, stills: &Stills) -> Result<Vec<Task>> {
+fn tasks(order: &Order<'_>) -> Result<Vec<Task>> {
     let mut tasks = Vec::new();
     for stage in order.stages {
-        let [recipe, full] = [order.quality, Quality::Full].map(|quality| quality.recipe(stage));
-        if !stills.is_fresh(stage, &[fingerprint(&recipe), fingerprint(&full)]) {
+        let recipes = [order.quality, Quality::Full].map(|quality| quality.recipe(stage));
+        if !is_fresh(&order.path(stage), &recipes) {
+            let [recipe, _] = recipes;
             recipe.job()?.check_memory(1)?;
             tasks.push((*stage, recipe));
         }
     }
     Ok(tasks)
+}
+
+impl Order<'_> {
+    fn path(&self, stage: &Stage) -> PathBuf {
+        self.directory.join(file_name(stage))
+    }
 }
 
 struct Work<'a> {
@@ -128,24 +127,21 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// Counts the finished stills in `rendered`. A signal ends it early.
-    fn render_all(&mut self, tasks: &[Task], stills: &mut Stills, rendered: &mut usize) -> Result<()> {
-        while *rendered < tasks.len() && !self.interrupt.is_set() {
-            let Some(still) = self.render(tasks, *rendered)? else { break };
-            let line = still.line();
-            stills.set(still);
-            stills.write()?;
+    fn render_all(&mut self, tasks: &[Task], rendered: &mut usize) -> Result<()> {
+        while *rendered < tasks.len() && !self.interrupt.is_set() && self.render(tasks, *rendered)? {
+            let (stage, _) = &tasks[*rendered];
             *rendered += 1;
-            if self.order.prints_stills {
-                self.display.above(|| print(&line))?;
+            if let Some(still) = Still::read(&self.order.path(stage)).filter(|_| self.order.prints_stills) {
+                self.display.above(|| print(&still.line(stage)))?;
             }
         }
         Ok(())
     }
 
-    /// Renders and writes the still of task `number`; `None` after a signal.
-    fn render(&mut self, tasks: &[Task], number: usize) -> Result<Option<Still>> {
+    /// Renders and writes the still of task `number`; `false` after a signal.
+    fn render(&mut self, tasks: &[Task], number: usize) -> Result<bool> {
         let (stage, recipe) = &tasks[number];
-        let (settings, planned) = (&recipe.settings, recipe.samples_per_pixel);
+        let planned = recipe.samples_per_pixel;
         let display = &mut self.display;
         let (status, film) =
             self.studio.render(recipe.job()?, Studio::plan(planned), None, |event| match event {
@@ -169,29 +165,16 @@ impl Work<'_> {
         if let Phase::Failed(reason) = &status.phase {
             bail!("{}: {reason}", stage.id);
         }
-        let Some(film) = film.filter(|film| film.sample_count() >= planned) else { return Ok(None) };
-
-        let path = self.order.directory.join(Still::file_name(stage));
+        let Some(film) = film.filter(|film| film.sample_count() >= planned) else { return Ok(false) };
+        let path = self.order.path(stage);
         let _writing = self.interrupt.while_writing(path.display().to_string());
-        let description = describe(recipe, Some(stage), &film, &status, Some(0.0));
+        let mut description = describe(recipe, Some(stage), &film, &status, Some(0.0));
+        if let Some(error) = film.error().filter(|error| error.rmse > 0.0) {
+            let share = (100.0 * error.rmse_deviation / error.rmse).max(0.1);
+            description.set(key::ERROR, format!("{:.1e} ± {share:.1} %", error.rmse));
+        }
         write_small_png(&path, &film, recipe.rules.transfer, &description)?;
-        let error = film.error();
-        Ok(Some(Still {
-            stage: stage.id.to_owned(),
-            file: Still::file_name(stage),
-            width: settings.width,
-            height: settings.height,
-            max_depth: settings.max_depth,
-            sampler: settings.sampler.name().to_owned(),
-            seed: settings.seed,
-            samples_per_pixel: planned,
-            trace_seconds: status.trace.as_secs_f64(),
-            rmse_estimate: error.map(|error| error.rmse),
-            rmse_deviation: error.map(|error| error.rmse_deviation),
-            backend: description.get(key::BACKEND).unwrap_or_default().to_owned(),
-            fingerprint: fingerprint(recipe),
-            checksum: still::checksum(&path)?,
-        }))
+        Ok(true)
     }
 }
 

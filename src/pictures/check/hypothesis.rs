@@ -2,16 +2,13 @@
 
 use super::Mine;
 use super::tracer::{Steps, Tracer};
-use crate::job::output::srgb_to_linear;
+use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::{RenderSettings, Renderer, SamplerKind};
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::render_cpu::{CpuOptions, CpuRenderer};
-use crate::scene::Material;
-use crate::stages::Transfer;
 use anyhow::Result;
 use std::ops::Range;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Deviations by which a right picture's sum of squares may exceed noise. Noise alone stays below 4; the rest allows
@@ -41,7 +38,6 @@ pub enum Change {
     Written(fn(&mut Written)),
     /// Changes the recipe of the program's own tracer.
     Recipe(fn(&mut Recipe)),
-    Materials(fn(&mut Material)),
     /// Changes a step of the plain tracer.
     Steps(fn(&mut Steps)),
     /// Any of several variants.
@@ -91,10 +87,6 @@ impl Change {
                 return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
             }
             Change::Recipe(change) => change(&mut changed),
-            Change::Materials(change) => {
-                let materials = &mut Arc::make_mut(&mut changed.scene).materials;
-                materials.iter_mut().for_each(|named| change(&mut named.material));
-            }
         }
         vec![Hypothesis { making: Making::Fast(Box::new(changed)), ..picture }]
     }
@@ -127,47 +119,17 @@ pub struct Written {
     pub is_mirrored: bool,
     /// Source channels of the written red, green and blue.
     pub channels: [usize; 3],
-    pub curve: Curve,
+    /// The curve from linear to displayed values.
+    pub curve: Encoding,
     /// Factor from displayed values to bytes.
     pub levels: f64,
     /// Whether 256 becomes 0 instead of 255.
     pub wraps: bool,
 }
 
-/// The curve from linear to displayed values.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Curve {
-    /// The stage's own.
-    Transfer(Transfer),
-    /// A power with this exponent.
-    Gamma(f64),
-    Srgb,
-}
-
-impl Curve {
-    fn linear(self, displayed: f64, row: usize, height: usize) -> f64 {
-        match self {
-            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => displayed * displayed,
-            Curve::Transfer(_) => displayed,
-            Curve::Gamma(exponent) => displayed.powf(exponent),
-            Curve::Srgb => srgb_to_linear(displayed),
-        }
-    }
-
-    fn displayed(self, linear: f64, row: usize, height: usize) -> f64 {
-        match self {
-            Curve::Transfer(transfer) if transfer.is_gamma(row, height) => linear.sqrt(),
-            Curve::Transfer(_) => linear,
-            Curve::Gamma(exponent) => linear.powf(1.0 / exponent),
-            Curve::Srgb if linear <= 0.003_130_8 => 12.92 * linear,
-            Curve::Srgb => 1.055 * linear.powf(1.0 / 2.4) - 0.055,
-        }
-    }
-}
-
 impl Hypothesis {
     pub fn right(recipe: &Recipe) -> Hypothesis {
-        let curve = Curve::Transfer(recipe.rules.transfer);
+        let curve = Encoding::Book(recipe.rules.transfer);
         let (is_flipped, is_mirrored, wraps) = (false, false, false);
         let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, levels: 256.0, wraps };
         Hypothesis { mistake: None, note: None, making: Making::Right, written }

@@ -2,8 +2,9 @@
 //! render it.
 
 use super::bytes::{is_same_seed, is_times_255, is_truncated};
-use super::hypothesis::{Change, Curve, Hypothesis, Making, Mistake};
+use super::hypothesis::{Change, Hypothesis, Making, Mistake};
 use super::tracer::Random;
+use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::job::render::RenderSettings;
 use crate::scene::{Material, Scene};
@@ -39,19 +40,19 @@ mistakes! {
         });
     "no-gamma", "9.5", "gamma is missing",
         "take the square root of each channel in write_color, after dividing by the samples",
-        has_gamma, Change::Written(|written| written.curve = Curve::Gamma(1.0));
+        has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(1.0));
     "gamma-early", "9.5", "gamma is applied, though this section does not have it yet",
         "nothing is wrong if you have read on; section 9.5 adds the square root",
         |recipe| recipe.rules.transfer == Transfer::Linear,
-        Change::Written(|written| written.curve = Curve::Gamma(2.0));
+        Change::Written(|written| written.curve = Encoding::Gamma(2.0));
     "gamma-twice", "9.5", "gamma is applied twice",
         "take the square root once: either in write_color or in your picture library, which may write sRGB from \
          linear values",
-        has_gamma, Change::Written(|written| written.curve = Curve::Gamma(4.0));
+        has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(4.0));
     "gamma-2.2", "9.5", "the curve is gamma 2.2, not the square root",
-        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Curve::Gamma(2.2));
+        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Encoding::Gamma(2.2));
     "gamma-srgb", "9.5", "the curve is that of sRGB, not the square root",
-        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Curve::Srgb);
+        BRIGHTER, has_gamma, Change::Written(|written| written.curve = Encoding::Srgb);
     "wraps-to-0", "8.2", "the brightest values become 0",
         "clamp before the conversion: int(256 * clamp(x, 0, 0.999)); 256 does not fit into a byte, where it becomes 0",
         always, Change::Written(|written| written.wraps = true);
@@ -128,11 +129,11 @@ mistakes! {
         });
     "fuzz-missing", "10.6", "fuzz has no effect",
         "add fuzz * random_unit_vector() to the reflected direction, and store fuzz in the constructor",
-        has_fuzz, Change::Materials(|material| {
+        has_fuzz, Change::Recipe(|recipe| materials(recipe, |material| {
             if let Material::Metal { fuzz, .. } = material {
                 *fuzz = 0.0;
             }
-        });
+        }));
     "fuzz-unnormalised", "10.6", "fuzz is added to a reflected direction of another length than 1",
         "normalise first: reflected = unit_vector(reflected) + (fuzz * random_unit_vector())",
         has_fuzz, Change::Steps(|steps| steps.before_fuzz = |direction| direction);
@@ -141,14 +142,14 @@ mistakes! {
         has_glass, Change::Steps(|steps| steps.before_glass = |direction| direction);
     "index-inverted", "11.2", "the refraction index is inverted",
         "write ri = rec.front_face ? (1.0 / refraction_index) : refraction_index",
-        has_glass, Change::Materials(invert);
+        has_glass, Change::Recipe(|recipe| materials(recipe, invert));
     "glass-black", "11.2", "glass is black",
         "set attenuation = color(1.0, 1.0, 1.0) in dielectric::scatter, and return true",
-        has_glass, Change::Materials(|material| {
+        has_glass, Change::Recipe(|recipe| materials(recipe, |material| {
             if let Material::Dielectric { .. } = material {
                 *material = Material::Lambertian { albedo: DVec3::ZERO };
             }
-        });
+        }));
     "glass-swapped", "11.3", "glass reflects where it should refract, and refracts where it should reflect",
         "if (cannot_refract || reflectance(cos_theta, ri) > random_double()) reflect, else refract",
         |recipe| has_glass(recipe) && recipe.rules.dielectric != DielectricLaws::RefractOnly,
@@ -212,6 +213,10 @@ fn limited(recipe: &Recipe, limit: u32) -> Option<Hypothesis> {
     let making = Making::Fast(Box::new(Recipe { settings, ..recipe.clone() }));
     let note = Some(format!("it looks as with max_depth = {limit}"));
     (limit < recipe.settings.max_depth).then(|| Hypothesis { making, note, ..Hypothesis::right(recipe) })
+}
+
+fn materials(recipe: &mut Recipe, change: fn(&mut Material)) {
+    Arc::make_mut(&mut recipe.scene).materials.iter_mut().for_each(|named| change(&mut named.material));
 }
 
 fn invert(material: &mut Material) {

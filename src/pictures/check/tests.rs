@@ -1,11 +1,12 @@
 //! Mistakes and their pictures, mistakes that blocks cannot show, and the report.
 
 use super::bytes::{is_times_255, is_truncated};
-use super::hypothesis::{Compared, Curve, Hypothesis, Making, Mistake, Studio, compare};
+use super::hypothesis::{Compared, Hypothesis, Making, Mistake, Studio, compare};
 use super::judge::at_edges;
 use super::mistakes::{MISTAKES, bubble};
 use super::tracer::Steps;
 use super::*;
+use crate::job::output::Encoding;
 use crate::job::recipe::Recipe;
 use crate::numbers::statistics::blocks::{BlockTest, Differences, Noise};
 use crate::scene::Material;
@@ -123,7 +124,7 @@ fn bytes_and_linear_values_correspond() {
         }
     }
     let right = Hypothesis::right(&recipe("metal")).written;
-    let other = hypothesis::Written { curve: Curve::Gamma(2.2), ..right };
+    let other = hypothesis::Written { curve: Encoding::Gamma(2.2), ..right };
     assert_eq!(
         [right.byte_of(0.25, 0, 1), other.byte_of(0.25, 0, 1)],
         [128, (256.0 * 0.25_f64.powf(1.0 / 2.2)) as u8]

@@ -10,10 +10,11 @@ use super::{
 };
 use crate::backends::BackendChoice;
 use crate::denoise;
-use crate::film::{Film, SampleRanges};
+use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderJob, Renderer, Stats};
 use crate::system::clock::Instant;
 use backends::Pending;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -26,7 +27,7 @@ const ERROR_ESTIMATE_SHARE: u32 = 20;
 pub struct Cancel {
     /// Ends a pass, which spoils the film.
     pub pass: AtomicBool,
-    /// Ends preparing, which can begin again, and passes that are quicker to undo than to finish.
+    /// Ends preparing and the first pass, which can begin again, and passes that are quicker to undo than to finish.
     pub stop: AtomicBool,
 }
 
@@ -168,7 +169,7 @@ impl Render {
     }
 
     /// The next samples; `None` if none are missing or no time is left for them.
-    fn next_pass(&self) -> Option<std::ops::Range<u64>> {
+    fn next_pass(&self) -> Option<Range<u64>> {
         let time_left = match self.plan.stop.time_limit() {
             // A picture without samples is of no use.
             Some(limit) if self.requested.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
@@ -190,21 +191,19 @@ impl Render {
         if self.sizer.is_new() {
             self.plan_first_pass(renderer)?;
         }
-        let Some(range) = self.next_pass() else {
+        let Some(mut range) = self.next_pass() else {
             self.collect(renderer)?;
             self.end_of_plan();
             return Ok(());
         };
-        // A stop should not leave a film without samples.
-        let is_first = self.requested.count() == 0;
         let (samples, begin) = (range.clone(), Instant::now());
-        let outcome = self.add(renderer, |renderer, job, film, cancel| {
-            if is_first {
-                renderer.advance(job, samples, film, &cancel.pass).map(Some)
-            } else {
+        let outcome = if self.requested.count() == 0 {
+            self.first_pass(renderer, &mut range)
+        } else {
+            self.add(renderer, |renderer, job, film, cancel| {
                 renderer.advance_unless(job, samples, film, &cancel.pass, &cancel.stop)
-            }
-        });
+            })
+        };
         let took = begin.elapsed();
         log::debug!("samples {range:?} in {:.3} ms: {outcome:?}", took.as_secs_f64() * 1e3);
         if outcome?.is_none() {
@@ -226,6 +225,31 @@ impl Render {
             guarded(self.choice.name(), || renderer.fetch())?;
         }
         Ok(())
+    }
+
+    /// A stop should not leave a film without samples, but the first pass can be far longer than predicted, on a busy
+    /// machine for instance. So a stop shortens `range` to the fewest samples.
+    fn first_pass(
+        &mut self,
+        renderer: &mut dyn Renderer,
+        range: &mut Range<u64>,
+    ) -> Result<Option<Stats>, RenderError> {
+        let fewest = range.start..range.start + self.film.halves().len() as u64;
+        if range.end > fewest.end {
+            let samples = range.clone();
+            let outcome = self.add(renderer, |renderer, job, film, cancel| {
+                renderer.advance(job, samples, film, &cancel.stop).map(Some)
+            });
+            if self.cancel.is_abandoned() || !matches!(outcome, Err(RenderError::Cancelled)) {
+                return outcome;
+            }
+            // The cancelled pass has spoiled them.
+            self.film.halves_mut().iter_mut().for_each(|sums| sums.fill(PixelSum::default()));
+            range.clone_from(&fewest);
+        }
+        self.add(renderer, |renderer, job, film, cancel| {
+            renderer.advance(job, range.clone(), film, &cancel.pass).map(Some)
+        })
     }
 
     /// Makes the first pass as long as the others if nobody watches and the renderer can predict its time.

@@ -12,12 +12,15 @@ pub(super) const PREFIX: &str = ".weekender-";
 const PART: &str = ".part";
 pub(super) const LOCK: &str = ".lock";
 
-/// Creates a new unfinished file in `directory` and locks it. Dropping it deletes the file.
+/// Creates a new unfinished file in `directory`, with the usual permissions, and locks it. Dropping it deletes the file.
 ///
 /// # Errors
 /// Errors of the file system.
-pub(super) fn create_in(directory: &Path, builder: &mut Builder<'_, '_>) -> io::Result<NamedTempFile> {
+pub(super) fn create_in(directory: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(PART);
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let file = builder.tempfile_in(directory)?;
         let is_taken = matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
@@ -60,7 +63,7 @@ mod tests {
             fs::write(at(name), "x").unwrap();
         }
         fs::create_dir(at(".weekender-d.part")).unwrap();
-        let used = create_in(directory.path(), &mut Builder::new()).unwrap();
+        let used = create_in(directory.path()).unwrap();
         remove_from(directory.path());
         assert!(!at(".weekender-a1b2c3.part").exists() && !at(".weekender-g.exr.lock").exists());
         assert!(used.path().exists());
@@ -80,7 +83,7 @@ mod tests {
             for writer in 0..2 {
                 scope.spawn(move || {
                     for turn in 0..200 {
-                        let file = create_in(path, &mut Builder::new()).unwrap();
+                        let file = create_in(path).unwrap();
                         file.persist(path.join(format!("{writer}-{turn}"))).unwrap();
                     }
                 });

@@ -1,8 +1,7 @@
 //! Locks between programs. The system releases them however a program ends.
 
-use super::identity::resolved;
 use super::leftovers::{LOCK, PREFIX};
-use super::paths::ShownPath;
+use super::paths::{ShownPath, resolved};
 use super::replace::is_busy;
 use same_file::Handle;
 use std::ffi::OsString;

@@ -1,6 +1,5 @@
 //! File access: inputs are checked for kind and length before they are read; outputs are written whole or not at all.
 
-mod identity;
 mod leftovers;
 mod lock;
 mod pages;
@@ -8,12 +7,11 @@ mod paths;
 mod read;
 mod replace;
 
-pub use identity::FileIdentity;
 pub use lock::{FileLock, LockedError, lock_path};
 pub use pages::{GENERATOR, check_page};
 pub use paths::{
-    NAME_LIMIT, STANDARD, ShownPath, cache_directory, free_name, home_directory, make_directory,
-    pictures_directory, state_directory,
+    STANDARD, ShownPath, cache_directory, home_directory, identity, make_directory, pictures_directory,
+    state_directory,
 };
 pub use read::{InputError, open, read};
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};

@@ -1,10 +1,11 @@
-//! Paths: as text in messages and JSON, free names, and the user's directories.
+//! Paths: as text in messages and JSON, what they lead to, and the user's directories.
 
 use crate::system::console::printable;
 use anyhow::{Context, Result};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fs;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// The path that stands for standard input or output.
@@ -23,6 +24,34 @@ impl<P: AsRef<OsStr> + ?Sized> ShownPath for P {
     }
 }
 
+/// The file that a path leads to through any links, whether or not it exists yet. `None` for devices, pipes and standard
+/// input or output, which any number of writers may share.
+pub fn identity(path: &Path) -> Option<PathBuf> {
+    let is_device = || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    if path == Path::new(STANDARD) || is_device() {
+        return None;
+    }
+    Some(resolved(path).unwrap_or_else(|_| path.to_owned()))
+}
+
+/// Resolves the links of a path. Components that do not exist yet stay as they are.
+///
+/// # Errors
+/// If a link leads back to itself.
+pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
+    match fs::canonicalize(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        // Some drivers of Windows disks cannot tell the whole name of a file.
+        Err(_) if cfg!(windows) => return std::path::absolute(path),
+        known => return known,
+    }
+    match (path.parent(), path.file_name()) {
+        (Some(parent), Some(name)) if parent.as_os_str().is_empty() => Ok(fs::canonicalize(".")?.join(name)),
+        (Some(parent), Some(name)) => Ok(resolved(parent)?.join(name)),
+        _ => std::path::absolute(path),
+    }
+}
+
 /// Creates the directory of `--out`.
 ///
 /// # Errors
@@ -32,15 +61,6 @@ pub fn make_directory(directory: &Path) -> Result<()> {
     // A file's parent may be empty.
     let created = if directory.as_os_str().is_empty() { Ok(()) } else { fs::create_dir_all(directory) };
     created.with_context(context)
-}
-
-/// How many names are tried.
-pub const NAME_LIMIT: u32 = 1000;
-
-/// The first of the paths `name(1)`, `name(2)`, ... that is free; even a dangling link takes a name. `None` if all
-/// [`NAME_LIMIT`] are taken.
-pub fn free_name(name: impl Fn(u32) -> PathBuf) -> Option<PathBuf> {
-    (1..=NAME_LIMIT).map(name).find(|path| path.symlink_metadata().is_err())
 }
 
 /// For state and for what can be recreated: the variable that names the system's directory, and where in the home
@@ -106,22 +126,6 @@ mod tests {
     }
 
     #[test]
-    fn the_first_free_name_is_taken() {
-        let directory = tempfile::tempdir().unwrap();
-        let name = |number: u32| directory.path().join(number.to_string());
-        std::fs::write(name(1), "").unwrap();
-        std::fs::create_dir(name(2)).unwrap();
-        std::fs::write(name(4), "").unwrap();
-        assert_eq!(free_name(name), Some(name(3)));
-        assert_eq!(free_name(|_| name(1)), None);
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink("missing", name(3)).unwrap();
-            assert_eq!(free_name(name), Some(name(5)));
-        }
-    }
-
-    #[test]
     fn a_variable_chooses_the_directory_only_if_it_is_absolute() {
         let here = env::current_dir().unwrap();
         let [state, home] = ["state", "home"].map(|name| here.join(name));
@@ -133,5 +137,44 @@ mod tests {
         assert_eq!(found(Some("state".as_ref()), Some(&home)), usual);
         assert_eq!(found(None, Some(&home)), usual);
         assert_eq!(found(Some("state".as_ref()), None), None);
+    }
+
+    fn same(a: &Path, b: &Path) -> bool {
+        identity(a).unwrap() == identity(b).unwrap()
+    }
+
+    #[test]
+    fn one_file_by_many_names() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("d")).unwrap();
+        for is_there in [false, true] {
+            assert!(same(&at("new"), &at("./d/../new")) && same(&at("d/x"), &at("d/./x")));
+            assert!(same(&at("gone/deeper/x"), &at("./gone/deeper/x")));
+            assert!(
+                !same(&at("new"), &at("other")) && !same(&at("d/x"), &at("x")) && !same(&at("new"), &at("d"))
+            );
+            if !is_there {
+                fs::write(at("new"), "").unwrap();
+            }
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("d")).unwrap();
+        symlink("d/target", at("link")).unwrap();
+        symlink(at("link"), at("second")).unwrap();
+        symlink("d", at("e")).unwrap();
+        assert!(same(&at("e/new"), &at("d/new")));
+        fs::write(at("d/target"), "").unwrap();
+        assert!(same(&at("link"), &at("d/target")) && same(&at("second"), &at("e/target")));
+        assert!(identity(Path::new("/dev/null")).is_none());
+        symlink("circle", at("circle")).unwrap();
+        assert!(resolved(&at("circle")).is_err());
     }
 }

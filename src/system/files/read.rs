@@ -31,18 +31,13 @@ pub fn open(path: &Path) -> Result<(File, u64), InputError> {
         copied(path).map_err(unreadable)?
     } else {
         let found = fs::metadata(path).map_err(unreadable)?;
-        match () {
-            () if found.is_file() => File::open(path),
-            () if is_pipe(&found) => copied(path),
-            () => {
-                let kind = if found.is_dir() { "a directory" } else { "a device or a socket" };
-                let path = path.shown();
-                return Err(InputError(format!(
-                    "{path} is {kind}, but a file is needed; name a regular file"
-                )));
-            }
+        let is_pipe = is_pipe(&found);
+        if !found.is_file() && !is_pipe {
+            let kind = if found.is_dir() { "a directory" } else { "a device or a socket" };
+            let path = path.shown();
+            return Err(InputError(format!("{path} is {kind}, but a file is needed; name a regular file")));
         }
-        .map_err(unreadable)?
+        if is_pipe { copied(path) } else { File::open(path) }.map_err(unreadable)?
     };
     let length = file.metadata().map_err(unreadable)?.len();
     Ok((file, length))
@@ -117,7 +112,7 @@ mod tests {
         fs::write(&path, [7; 10]).unwrap();
         assert_eq!(read(&path, "a list", 10).unwrap(), [7; 10]);
         let message = read(&path, "a list", 9).unwrap_err().to_string();
-        assert!(message.contains("has 10 bytes, but a list of more than 9 bytes is not read"), "{message}");
+        assert!(message.contains("has 10 B, but a list of more than 9 B is not read"), "{message}");
         assert!(read(&directory.path().join("x"), "a list", 1).is_err());
     }
 

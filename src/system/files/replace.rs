@@ -1,8 +1,7 @@
 //! Output files written whole or not at all: first beside their destination, then renamed.
 
-use super::identity::resolved;
 use super::leftovers;
-use super::paths::{STANDARD, ShownPath};
+use super::paths::{STANDARD, ShownPath, resolved};
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Component, Path, PathBuf, Prefix};
@@ -202,13 +201,7 @@ pub(super) fn is_pipe(_: &Metadata) -> bool {
 }
 
 fn new_file_in(directory: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let file = leftovers::create_in(directory, &mut builder)?;
+    let file = leftovers::create_in(directory)?;
     if let Some(old) = old {
         file.as_file().set_permissions(old.permissions())?;
     }

@@ -8,7 +8,7 @@ mod panic;
 pub use panic::{watched, write_report};
 
 use crate::system::console;
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Result, anyhow};
 use env_filter::Filter;
 use log::{Level, LevelFilter, Log, Metadata, Record};
 use std::collections::VecDeque;
@@ -45,13 +45,10 @@ pub fn start(file: Option<&Path>) -> Result<()> {
     let value = env::var_os(VARIABLE).map(|value| value.to_string_lossy().trim().to_owned());
     let default = if file.is_some() { FILTER_OF_FILE } else { "off" };
     let filter = filter_of(value.as_deref().filter(|value| !value.is_empty()).unwrap_or(default))?;
-    let create = |path: &Path| {
-        let file = File::create(path).map_err(|error| {
-            anyhow!("--log {}: {error}; choose a file in a directory that you can write to", path.display())
-        })?;
-        anyhow::Ok(Mutex::new(file))
-    };
-    let file = file.map(create).transpose()?;
+    let failed = "cannot be created; choose a file in a directory that you can write to";
+    let create =
+        |path: &Path| File::create(path).with_context(|| format!("--log {} {failed}", path.display()));
+    let file = file.map(create).transpose()?.map(Mutex::new);
     let most = filter.filter().max(LevelFilter::Info);
     if log::set_boxed_logger(Box::new(Journal { filter, file, began: Instant::now() })).is_ok() {
         log::set_max_level(most);

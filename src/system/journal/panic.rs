@@ -40,27 +40,16 @@ pub fn write_report() {
         &kept_text(),
     );
     let name = format!("weekender-report-{}.txt", std::process::id());
-    let mut reasons = Vec::new();
-    for place in places() {
-        let path = place.join(&name);
-        match write_text(&path, &text) {
-            Ok(()) => {
-                let path = path.display();
-                console::note(&format!(
-                    "a report is in {path}: read it, then send it with the scene file if there was one"
-                ));
-                return;
-            }
-            Err(error) => reasons.push(error.to_string()),
-        }
-    }
-    console::note(&format!("no report could be written: {}", reasons.join("; ")));
-}
-
-/// Directories to try in turn.
-fn places() -> Vec<PathBuf> {
     let state = state_directory().filter(|state| std::fs::create_dir_all(state).is_ok());
-    [Some(env::temp_dir()), state, Some(PathBuf::from("."))].into_iter().flatten().collect()
+    let places = [Some(env::temp_dir()), state, Some(PathBuf::from("."))];
+    let mut paths = places.iter().flatten().map(|place| place.join(&name));
+    match paths.find(|path| write_text(path, &text).is_ok()) {
+        Some(path) => console::note(&format!(
+            "a report is in {}: read it, then send it with the scene file if there was one",
+            path.display()
+        )),
+        None => console::note(&format!("no report could be written to any of {places:?}")),
+    }
 }
 
 fn report(version: &str, command: &str, message: &str, log: &str) -> String {

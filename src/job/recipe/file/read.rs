@@ -322,24 +322,26 @@ fn material_of(
 /// The camera. `base` has the values of missing keys; without it, some must be there.
 fn camera_of(raw: &Spanned<RawCamera>, base: Option<&Camera>) -> Result<Camera, Refusal> {
     let (place, raw) = (raw.span(), raw.get_ref());
-    let missing = |key: &str| refuse(place.clone(), format!("missing key `{key}`"));
-    let vector = |key, own: Option<&Triple>, base: Option<DVec3>| {
-        own.map(|Triple(vector)| *vector).or(base).ok_or_else(|| missing(key))
-    };
+    let required = [
+        ("look_from", raw.look_from.is_some()),
+        ("look_at", raw.look_at.is_some()),
+        ("vfov_degrees", raw.vfov_degrees.is_some()),
+    ];
+    let missing = required.into_iter().find(|(_, is_given)| !is_given && base.is_none());
+    if let Some((key, _)) = missing {
+        return Err(refuse(place, format!("missing key `{key}`")));
+    }
+    let base = base.unwrap_or(&Camera::BOOK);
+    let vector = |own: &Option<Triple>, base: DVec3| own.as_ref().map_or(base, |Triple(vector)| *vector);
     let camera = Camera {
-        look_from: vector("look_from", raw.look_from.as_ref(), base.map(|base| base.look_from))?,
-        look_at: vector("look_at", raw.look_at.as_ref(), base.map(|base| base.look_at))?,
-        vup: vector("vup", raw.vup.as_ref(), Some(base.map_or(Camera::BOOK.vup, |base| base.vup)))?,
-        vfov_degrees: raw
-            .vfov_degrees
-            .or(base.map(|base| base.vfov_degrees))
-            .ok_or_else(|| missing("vfov_degrees"))?,
-        defocus_angle_degrees: raw
-            .defocus_angle_degrees
-            .unwrap_or(base.map_or(0.0, |base| base.defocus_angle_degrees)),
+        look_from: vector(&raw.look_from, base.look_from),
+        look_at: vector(&raw.look_at, base.look_at),
+        vup: vector(&raw.vup, base.vup),
+        vfov_degrees: raw.vfov_degrees.unwrap_or(base.vfov_degrees),
+        defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(base.defocus_angle_degrees),
         focus_distance: raw.focus_distance,
     };
-    camera.validate().map_err(|error| refuse(place.clone(), error))?;
+    camera.validate().map_err(|error| refuse(place, error))?;
     Ok(camera)
 }
 
@@ -350,12 +352,12 @@ fn keyframes_of(raw: Vec<Spanned<RawCamera>>, camera: &Camera) -> Result<Vec<Key
         let Some(Whole(frame)) = raw.get_ref().frame else {
             return Err(refuse(raw.span(), "missing key `frame`"));
         };
-        let (frame, before) = (frame as u32, keyframes.last().map(|before| before.frame));
-        if before.is_some_and(|before| before >= frame) {
+        let frame = frame as u32;
+        if let Some(before) = keyframes.last().filter(|before| before.frame >= frame) {
             let reason = format!(
                 "frame is {frame}, but the keyframe before it has {}; list keyframes by rising frame number, each number \
                  once",
-                before.unwrap_or_default()
+                before.frame
             );
             return Err(refuse(raw.span(), reason));
         }
