@@ -5,8 +5,10 @@ use crate::job::render::panic_text;
 use eframe::egui::Context;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
+use std::time::Duration;
 
 /// Does work that may panic.
 ///
@@ -18,20 +20,25 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 }
 
 /// The slot in which answers of one kind arrive.
-pub struct Answers<T>(Vec<Receiver<Result<T, String>>>);
+pub struct Answers<T> {
+    sender: Sender<Result<T, String>>,
+    receiver: Receiver<Result<T, String>>,
+    /// Each open question holds another one.
+    token: Arc<()>,
+}
 
 impl<T> Default for Answers<T> {
     fn default() -> Self {
-        Answers(Vec::new())
+        let (sender, receiver) = channel();
+        Answers { sender, receiver, token: Arc::default() }
     }
 }
 
 impl<T: Send + 'static> Answers<T> {
     /// Makes a handle that gives answers from any thread, or none.
     pub fn answer(&mut self, context: &Context) -> Answer<T> {
-        let (sender, receiver) = channel();
-        self.0.push(receiver);
-        Answer { sender: Some(sender), context: context.clone(), is_promised: Cell::new(false) }
+        let (sender, token) = (self.sender.clone(), Some(Arc::clone(&self.token)));
+        Answer { sender, token, context: context.clone(), is_promised: Cell::new(false) }
     }
 
     /// Makes a handle that gives an answer from any thread. If it is dropped before, the answer is an error.
@@ -53,36 +60,28 @@ impl<T: Send + 'static> Answers<T> {
 
     /// Whether a question is open.
     pub fn is_open(&self) -> bool {
-        !self.0.is_empty()
+        Arc::strong_count(&self.token) > 1
     }
 
     /// Waits for the open questions, and returns the first answer.
     pub fn wait(&mut self) -> Option<Result<T, String>> {
-        let waited: Vec<_> = self.0.drain(..).map(|receiver| receiver.recv()).collect();
-        waited.into_iter().flatten().next()
+        while self.is_open() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        self.take()
     }
 
     /// The oldest answer that has not been taken yet.
     pub fn take(&mut self) -> Option<Result<T, String>> {
-        let mut found = None;
-        self.0.retain(|receiver| {
-            found.is_some()
-                || match receiver.try_recv() {
-                    Ok(answer) => {
-                        found = Some(answer);
-                        true
-                    }
-                    Err(error) => error == TryRecvError::Empty,
-                }
-        });
-        found
+        self.receiver.try_recv().ok()
     }
 }
 
 /// The right to give an answer, which wakes the window.
 pub struct Answer<T> {
+    sender: Sender<Result<T, String>>,
     /// Until it is dropped.
-    sender: Option<Sender<Result<T, String>>>,
+    token: Option<Arc<()>>,
     context: Context,
     /// An answer was promised and not yet given.
     is_promised: Cell<bool>,
@@ -98,7 +97,7 @@ impl<T> Answer<T> {
     pub fn give_one(&self, value: Result<T, String>) {
         self.is_promised.set(false);
         // If the window was closed, nobody receives it.
-        let _ = self.sender.as_ref().map(|sender| sender.send(value));
+        let _ = self.sender.send(value);
         self.context.request_repaint();
     }
 }
@@ -123,7 +122,7 @@ impl<T> Drop for Answer<T> {
             self.give_one(Err(reason.to_owned()));
         }
         // The question is over before the window looks.
-        drop(self.sender.take());
+        drop(self.token.take());
         self.context.request_repaint();
     }
 }
@@ -132,7 +131,6 @@ impl<T> Drop for Answer<T> {
 mod tests {
     use super::*;
     use eframe::egui::RawInput;
-    use std::sync::Arc;
     use std::sync::atomic::{AtomicU32, Ordering};
 
     #[test]
@@ -153,7 +151,7 @@ mod tests {
             act(answers.promise(&context));
             assert!(wakes.load(Ordering::Relaxed) > before, "{name}");
         }
-        assert!(answers.is_open());
+        assert!(!answers.is_open());
         let taken = [answers.take(), answers.take(), answers.take()];
         assert_eq!(taken, [Some(Ok(1)), Some(Ok(2)), None]);
         assert!(!answers.is_open());

@@ -178,7 +178,8 @@ impl Autosave {
         let place = self.place.as_ref()?;
         let status = tracing.main.status();
         let now = (status.run, status.samples_per_pixel);
-        let is_long = tracing.main.has_samples(document) && tracing.seconds() >= self.every.as_secs_f64();
+        let is_long = tracing.main.has_samples(document)
+            && tracing.seconds().is_none_or(|seconds| seconds >= self.every.as_secs_f64());
         if !is_long || self.outcomes.is_open() || now == self.written {
             return told;
         }

@@ -3,15 +3,15 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::menu::menus;
-use super::model::{Device, Document, Source};
-use super::stage_list;
+use super::model::{Device, Document};
 use super::theme;
-use super::widgets::{add_command, command_switch, named, tip, with_keys};
-use eframe::egui::{
-    self, Align, Atom, Button, Layout, Margin, PopupCloseBehavior, Rect, RichText, Ui, ViewportCommand, vec2,
-};
+use super::widgets::{add_command, command_switch, named};
+use eframe::egui::{self, Align, Atom, Button, Layout, Margin, Rect, RichText, Ui, ViewportCommand, vec2};
 
 const HEIGHT: f32 = 48.0;
+
+/// Height of its tallest button.
+const ROW: f32 = 26.0;
 
 /// Narrower windows have a second row, points.
 const ONE_ROW: f32 = 780.0;
@@ -19,19 +19,21 @@ const ONE_ROW: f32 = 780.0;
 /// Narrower windows show only the section of the stage, points.
 const WITH_TITLE: f32 = 1000.0;
 
-/// Widths of the stage, of a device, and of the button that pauses: "Resume", "Go on" and "Pause" have the same, so that
-/// nothing moves.
+/// Widths of the stage, a device, and the buttons that pause and save. They do not depend on the words, so that nothing
+/// moves.
 const STAGE: f32 = 288.0;
-const DEVICE: f32 = 45.0;
+const DEVICE: f32 = 48.0;
 const PAUSE: f32 = 72.0;
+const SAVE: f32 = 64.0;
 
 /// Draws the bar.
 pub fn ui(ui: &mut Ui, facts: &Facts) {
     let has_one_row = ui.available_width() >= ONE_ROW;
-    let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 16.0 };
-    let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 12)));
+    let height = if has_one_row { HEIGHT } else { 2.0 * HEIGHT - 14.0 };
+    let panel = egui::Panel::top("bar").exact_size(height).frame(theme::panel(Margin::symmetric(8, 11)));
     panel.show(ui, |ui| {
         ui.horizontal(|ui| {
+            ui.set_min_height(ROW);
             ui.scope(|ui| {
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 0.0;
@@ -43,50 +45,41 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
             }
         });
         if !has_one_row {
-            ui.horizontal(|ui| actions(ui, facts));
+            ui.horizontal(|ui| {
+                ui.set_min_height(ROW);
+                actions(ui, facts);
+            });
         }
     });
 }
 
 /// The stage in the middle of the window; device, pause and save at the right.
 fn actions(ui: &mut Ui, facts: &Facts) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        ui.add_space(8.0);
-        add_command(ui, facts, Command::Save, Button::new("Save…"));
-        pause(ui, facts);
-        ui.add_space(8.0);
-        device(ui, facts);
-        ui.add_space(8.0);
-        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            let window = ui.ctx().content_rect();
-            let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
-            let width = wanted.min(ui.available_width() - 8.0).max(96.0);
-            let indent = window.center().x - 0.5 * width - ui.cursor().left();
-            ui.add_space(indent.min(ui.available_width() - width).max(8.0));
-            let layout = Layout::left_to_right(Align::Center);
-            ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
-        });
-    });
+    let gap = ui.spacing().item_spacing.x;
+    let at_right = 3.0 * DEVICE + PAUSE + SAVE + 4.0 * gap;
+    let window = ui.ctx().content_rect();
+    let wanted = if window.width() < WITH_TITLE { 100.0 } else { STAGE } + 56.0;
+    let room = ui.available_width() - at_right;
+    let width = wanted.min(room - gap).max(96.0);
+    let indent = window.center().x - 0.5 * width - ui.cursor().left();
+    ui.add_space(indent.min(room - width).max(gap));
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(width, 24.0), layout, |ui| stage(ui, facts));
+    ui.add_space((ui.available_width() - at_right).max(0.0));
+    device(ui, facts);
+    ui.add_space(gap);
+    pause(ui, facts);
+    add_command(ui, facts, Command::Save, Button::new("Save…").min_size(vec2(SAVE, 0.0)));
 }
 
 /// Names the window after its picture.
 pub fn name_window(context: &egui::Context, document: &Document) {
     let changed = if document.is_changed() { ", changed" } else { "" };
-    let title = format!("{}{changed} – Weekender", title_of(document).replace("  ", " "));
+    let title = format!("{}{changed} – Weekender", document.heading());
     let place = egui::Id::unique("title of the window");
     if context.data(|data| data.get_temp::<String>(place)).as_ref() != Some(&title) {
         context.data_mut(|data| data.insert_temp(place, title.clone()));
         context.send_viewport_cmd(ViewportCommand::Title(title));
-    }
-}
-
-/// The name of the picture without a word about changes.
-fn title_of(document: &Document) -> String {
-    match &document.origin.source {
-        Source::Stage(stage) => format!("{}  {}", stage.section, stage.title),
-        Source::Extreme(case) => case.title().to_owned(),
-        Source::File(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
-        _ => document.origin.recipe.name.clone(),
     }
 }
 
@@ -98,7 +91,7 @@ fn stage(ui: &mut Ui, facts: &Facts) {
     let document = facts.document();
     let title = match document.stage() {
         Some(stage) if width < 140.0 => stage.section.to_owned(),
-        _ => title_of(document),
+        _ => document.heading(),
     };
     let changed = if document.is_changed() && width >= 140.0 { " · changed" } else { "" };
     // The title is cut before "changed" is.
@@ -107,27 +100,13 @@ fn stage(ui: &mut Ui, facts: &Facts) {
     let button = Button::new(atoms).gap(0.0).min_size(vec2(width, 24.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
-        ui.add(button)
+        add_command(ui, facts, Command::Stages, button)
     });
     let response = sized.inner;
     let corner = response.rect.right_center() - vec2(14.0, 0.0);
     let icon = Rect::from_center_size(corner, vec2(9.0, 9.0));
     egui::collapsing_header::paint_default_icon(ui, 1.0, &response.clone().with_new_rect(icon));
     named(&response, "Choose a stage");
-    if let Some(is_at_end) = stage_list::take_open(ui) {
-        stage_list::begin(ui.ctx(), facts, is_at_end);
-        egui::Popup::open_id(ui.ctx(), egui::Popup::default_response_id(&response));
-        ui.ctx().request_repaint();
-    } else if response.clicked() {
-        stage_list::begin(ui.ctx(), facts, false);
-    }
-    egui::Popup::from_toggle_button_response(&response)
-        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
-        .width(stage_list::WIDTH)
-        .align(egui::RectAlign::BOTTOM)
-        .gap(4.0)
-        .show(|ui| stage_list::ui(ui, facts));
-    tip(ui, response, &with_keys(ui, Command::Stages.help(), Command::Stages), None);
     step(ui, facts, Command::NextStage, "›");
 }
 

@@ -120,41 +120,6 @@ mod tests {
         assert!(changes.earlier(&document).is_none());
     }
 
-    /// A document of which something was changed, so that its film is another one.
-    fn change(document: &mut Document) {
-        document.camera.vfov_degrees += 1.0;
-    }
-
-    #[test]
-    fn changes_are_taken_back_and_made_again() {
-        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
-        let mut changes = Changes::new(document.clone());
-        assert!(!changes.follow(&context, &document), "nothing has changed");
-        let cameras: Vec<_> = (0..3)
-            .map(|_| {
-                let before = document.camera;
-                change(&mut document);
-                assert!(changes.follow(&context, &document));
-                assert!(!changes.follow(&context, &document), "not again");
-                before
-            })
-            .collect();
-        let last = document.camera;
-        assert!(changes.earlier(&document).is_some() && changes.later(&document).is_none());
-        for camera in cameras.into_iter().rev() {
-            changes.undo(&mut document);
-            assert_eq!(document.camera, camera);
-            assert!(changes.follow(&context, &document));
-        }
-        assert!(changes.earlier(&document).is_none() && changes.later(&document).is_some());
-        for _ in 0..3 {
-            changes.redo(&mut document);
-            changes.follow(&context, &document);
-        }
-        assert_eq!(document.camera, last);
-        assert!(changes.later(&document).is_none());
-    }
-
     #[test]
     fn a_change_that_needs_no_other_film_can_be_taken_back_too() {
         let (context, mut document) = (Context::default(), Document::new(Origin::usual()));

@@ -52,8 +52,8 @@ impl Check {
         self.close();
         let checked = path.to_owned();
         let work = move || {
-            let mine = Mine::read(&checked).map_err(|error| unreadable(&checked, error));
-            let found = mine.and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
+            let found = Mine::read(&checked)
+                .and_then(|mine| judge(&mine, stage, |_| {}).map(|finding| (mine, finding)));
             let (mine, finding) = match found {
                 Ok(found) => found,
                 Err(error) => return Ok((Answer::cannot_check(&error), None)),
@@ -123,11 +123,12 @@ impl Check {
             });
             return;
         };
-        let mut is_again = false;
+        let (mut is_again, mut is_closed) = (false, false);
         super::right::foot(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_height(32.0);
                 is_again = ui.button("Check again").clicked();
+                is_closed = ui.button("Close").clicked();
                 if ui.button("Another picture…").clicked() {
                     facts.send(Command::CheckPicture);
                 }
@@ -168,6 +169,8 @@ impl Check {
         });
         if let Some(path) = self.path.clone().filter(|_| is_again) {
             self.begin(ui.ctx(), &path, None);
+        } else if is_closed {
+            self.close();
         }
     }
 
@@ -200,7 +203,7 @@ impl Check {
                 if let Some(pointer) = response.interact_pointer_pos() {
                     self.divider = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
                 }
-                let left = yours.id(ui.ctx(), options);
+                let left = (yours.id(ui.ctx(), options), rect);
                 paint::wipe(ui, &painter, rect, self.divider, left, [&your_title, &our_title]);
             }
             Side::Yours => paint::title(ui, &painter, rect, Align2::LEFT_TOP, &your_title),
@@ -209,18 +212,6 @@ impl Check {
         }
         Some(room)
     }
-}
-
-/// Why a file cannot be read as a picture. By its name, it may have been meant as a file of another kind.
-fn unreadable(path: &Path, reason: anyhow::Error) -> anyhow::Error {
-    let is_ending = |ending: &std::ffi::OsStr| {
-        ["png", "ppm", "pnm"].iter().any(|known| ending.eq_ignore_ascii_case(known))
-    };
-    if path.extension().is_some_and(is_ending) || !path.is_file() {
-        return reason;
-    }
-    let path = path.display();
-    anyhow::anyhow!("{path} is neither a PNG nor a PPM; scene files end in .toml and films in .exr")
 }
 
 /// The verdict, and one sentence.
@@ -242,13 +233,13 @@ fn links(ui: &mut Ui, answer: &Answer, facts: &Facts) {
     ui.horizontal_wrapped(|ui| {
         let next = answer.stage.and_then(Stage::next).filter(|_| answer.kind == AnswerKind::Right);
         if let Some(next) = next
-            && primary(ui, format!("Next: {}", next.section)).clicked()
+            && ui.add(primary(format!("Next: {}", next.section))).clicked()
         {
             facts.send(Command::Stage(next));
         }
         if let Some(section) = &answer.section {
             let stage = section.stage;
-            let go = primary(ui, format!("Go to {}", stage.section));
+            let go = ui.add(primary(format!("Go to {}", stage.section)));
             if tip(ui, go, stage.title, None).clicked() {
                 facts.send(Command::Stage(stage));
             }
@@ -280,7 +271,7 @@ mod tests {
         assert!(remembered.recent.is_empty());
         let (answer, _) = check.shown.as_ref().unwrap();
         assert_eq!(answer.kind, AnswerKind::CannotCheck);
-        assert!(answer.explanation.contains("neither a PNG nor a PPM"), "{}", answer.explanation);
+        assert!(answer.explanation.contains("notes.txt"), "{}", answer.explanation);
     }
 
     #[test]

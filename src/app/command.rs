@@ -1,11 +1,12 @@
 //! Everything that a menu entry, a key, a button or the palette can do: one table, one row a command.
 
-use super::dialogs::{Dialog, Keys, Purpose};
+use super::dialogs::{Dialog, Purpose};
 use super::facts::Facts;
 use super::finder::Finder;
 use super::layout::NARROW;
-use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Sizing, Tab, Tone, With};
+use super::model::{Channel, Device, Dock, Edit, Mode, Origin, Show, Tab, Tone, ViewState, With};
 use super::spheres::neighbour;
+use super::stage_list;
 use super::window::Window;
 use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
@@ -15,132 +16,8 @@ use eframe::egui::{
 };
 use std::sync::LazyLock;
 
-/// A thing that can be done. Its row in [`ROWS`] says all about it; stages, files, bookmarks and kept pictures have none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    Open,
-    CheckPicture,
-    Save,
-    /// Opens the dialog of `Save` with this format.
-    SaveAs(OutputFormat),
-    ShowInFolder,
-    StopSaving,
-    /// Goes on with the film of a window that ended early.
-    Recover,
-    NotNow,
-    CopyPicture,
-    CopyCommand,
-    Fresh,
-    Quit,
-    Undo,
-    Redo,
-    ResetAll,
-    AddSphere,
-    DuplicateSphere,
-    DeleteSphere,
-    SkyColours,
-    Home,
-    Show(Show),
-    Fit,
-    ActualSize,
-    AddBookmark,
-    Controls,
-    Info,
-    Dock(Dock),
-    Panels,
-    Present,
-    FullScreen,
-    Theme(ThemePreference),
-    Pause,
-    Restart,
-    SwitchDevice,
-    Device(Device),
-    Keep,
-    Stages,
-    PreviousStage,
-    NextStage,
-    ShowMe,
-    Wipe,
-    Difference,
-    BookArithmetic,
-    ListPaths,
-    Code,
-    Book,
-    Companion,
-    WholeCompanion,
-    StopCompanion,
-    ExtremeScenes,
-    FirstSteps,
-    Help,
-    Palette,
-    About,
-    Brighter,
-    Darker,
-    NoExposure,
-    ZoomIn,
-    ZoomOut,
-    Channel(Channel),
-    Denoise,
-    NextSphere,
-    PreviousSphere,
-    Deselect,
-    FocusSphere,
-    Flip,
-    KeptWipe,
-    KeptDifference,
-    OnlyNoise,
-    DeleteKept,
-    NextRay,
-    PreviousRay,
-    ClearPaths,
-    FocusControls,
-    Blank,
-    /// Gives the picture the size of the viewport or of the book.
-    Size(Sizing),
-    Stage(&'static Stage),
-    Extreme(&'static Case),
-    /// Opens a recent file.
-    Recent(usize),
-    Bookmark(usize),
-    /// Looks at a kept picture, counted from 0.
-    Kept(usize),
-    /// Goes to the field of this name in the left panel.
-    Field(&'static str),
-}
-
-/// The menus, and the submenus of View.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    File,
-    Edit,
-    View,
-    Show,
-    Bookmarks,
-    Theme,
-    Render,
-    Stage,
-    Help,
-}
-
-impl Menu {
-    /// The menus of the bar.
-    pub const BAR: [Menu; 6] = [Menu::File, Menu::Edit, Menu::View, Menu::Render, Menu::Stage, Menu::Help];
-
-    /// As the bar or the menu above shows it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Menu::File => "File",
-            Menu::Edit => "Edit",
-            Menu::View => "View",
-            Menu::Show => "Show",
-            Menu::Bookmarks => "Bookmarks",
-            Menu::Theme => "Theme",
-            Menu::Render => "Render",
-            Menu::Stage => "Stage",
-            Menu::Help => "Help",
-        }
-    }
-}
+/// The menus of the bar.
+pub const MENUS: [&str; 6] = ["File", "Edit", "View", "Render", "Stage", "Help"];
 
 type Off = Box<dyn Fn(&Facts) -> Option<String> + Send + Sync>;
 type On = Box<dyn Fn(&Facts) -> bool + Send + Sync>;
@@ -152,8 +29,8 @@ pub struct Row {
     pub name: &'static str,
     pub help: &'static str,
     pub keys: Option<KeyboardShortcut>,
-    /// The menu in which it stands, in the order of the table.
-    pub menu: Option<Menu>,
+    /// The menu or submenu in which it stands, in the order of the table.
+    pub menu: Option<&'static str>,
     /// A line separates it from the entry above.
     pub has_line: bool,
     /// The palette lists it.
@@ -168,6 +45,27 @@ pub struct Row {
 }
 
 impl Row {
+    fn new(
+        menu: Option<&'static str>,
+        command: Command,
+        [name, help]: [&'static str; 2],
+        run: impl Fn(&mut Window, &Context) + Send + Sync + 'static,
+    ) -> Self {
+        Row {
+            command,
+            name,
+            help,
+            keys: None,
+            menu,
+            has_line: false,
+            is_listed: true,
+            synonyms: "",
+            off: Box::new(|_| None),
+            on: None,
+            run: Box::new(run),
+        }
+    }
+
     fn keys(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.keys = Some(KeyboardShortcut::new(modifiers, key));
         self
@@ -222,184 +120,182 @@ pub const DIGITS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 /// All commands but places, menu by menu in the order of the menus.
-pub static ROWS: LazyLock<Vec<Row>> = LazyLock::new(rows);
+pub static ROWS: LazyLock<Vec<Row>> =
+    LazyLock::new(|| plain_rows().into_iter().chain(family_rows()).collect());
 
-// A row of the table takes a few lines; rustfmt would give each argument one.
+/// Makes the commands and their rows. A row has the command, its name, one sentence about it, what it does, and more.
+macro_rules! table {
+    (
+        families { $($(#[$about:meta])* $family:ident($value:ty),)* }
+        $([$menu:expr] $($command:ident $name:expr, $help:expr, $run:expr
+            $(, $method:ident($($argument:expr),*))*;)*)*
+    ) => {
+        /// A thing that can be done. Its row in [`ROWS`] says all about it; places, such as stages and files, have none.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Command {
+            $($(#[$about])* $family($value),)*
+            $($($command,)*)*
+        }
+
+        fn plain_rows() -> Vec<Row> {
+            vec![$($(
+                Row::new($menu, Command::$command, [$name, $help], $run)$(.$method($($argument),*))*,
+            )*)*]
+        }
+    };
+}
+
+// A row takes a few lines; rustfmt would give each argument one.
 #[rustfmt::skip]
-fn rows() -> Vec<Row> {
-    use Command as C;
-    let mut rows = Vec::new();
-    let mut menu;
-    macro_rules! row {
-        ($command:expr, $name:expr, $help:expr, $run:expr $(, $method:ident($($argument:expr),*))*) => {
-            rows.push(Row {
-                command: $command,
-                name: $name,
-                help: $help,
-                keys: None,
-                menu,
-                has_line: false,
-                is_listed: true,
-                synonyms: "",
-                off: Box::new(|_| None),
-                on: None,
-                run: Box::new($run),
-            }$(.$method($($argument),*))*)
-        };
+table! {
+    families {
+        /// Opens the dialog of `Save` with this format.
+        SaveAs(OutputFormat),
+        Show(Show),
+        Theme(ThemePreference),
+        Device(Device),
+        Channel(Channel),
+        Stage(&'static Stage),
+        Extreme(&'static Case),
+        /// Opens a recent file.
+        Recent(usize),
+        Bookmark(usize),
+        /// Looks at a kept picture, counted from 0.
+        Kept(usize),
+        /// Goes to the field of this name in the left panel.
+        Field(&'static str),
     }
 
-    menu = Some(Menu::File);
-    row! {C::Open, "Open…", "Opens a scene, a picture or a film, and goes on with it", 
+    [Some("File")]
+    Open "Open…", "Opens a scene, a picture or a film, and goes on with it",
         |w, c| w.ask_path(c, Purpose::Open),
-        keys(CTRL, Key::O), also("load import resume")}
-    row! {C::CheckPicture, "Check my picture…",
-        "Finds the mistake in a picture that your own program has rendered", 
+        keys(CTRL, Key::O), also("load import resume");
+    CheckPicture "Check my picture…",
+        "Finds the mistake in a picture that your own program has rendered",
         |w, c| w.ask_path(c, Purpose::Check),
-        also("wrong mistake homework verify compare")}
-    row! {C::Save, "Save…", "Saves the picture, the film or the scene",
+        also("wrong mistake homework verify compare");
+    Save "Save…", "Saves the picture, the film or the scene",
         |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
-        also("export png ppm exr toml download film scene")}
-    row! {C::ShowInFolder, "Show in folder", "Opens the folder of the file that was saved or opened last",
+        also("export png ppm exr toml download film scene");
+    ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         |w, c| w.show_in_folder(c),
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
-        also("directory explorer finder")}
-    row! {C::CopyPicture, "Copy picture", "Copies the picture at full size",
-        |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), also("clipboard")}
-    row! {C::CopyCommand, "Copy as command", "Copies the command line that renders this picture",
-        |w, c| w.copy_command(c), keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard")}
-    row! {C::Fresh, "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns",
-        |w, _| w.start_fresh(), line()}
-    row! {C::Quit, "Quit", "Closes the window; the next one begins where this one ends",
-        |_, c| c.send_viewport_cmd(ViewportCommand::Close), keys(CTRL, Key::Q), also("close exit")}
+        also("directory explorer finder");
+    CopyPicture "Copy picture", "Copies the picture at full size",
+        |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), also("clipboard");
+    CopyCommand "Copy as command", "Copies the command line that renders this picture",
+        |w, c| w.copy_command(c), keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
+    Fresh "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns",
+        |w, _| w.start_fresh(), line();
+    Quit "Quit", "Closes the window; the next one begins where this one ends",
+        |_, c| c.send_viewport_cmd(ViewportCommand::Close), keys(CTRL, Key::Q), also("close exit");
 
-    menu = Some(Menu::Edit);
-    row! {C::Undo, "Undo", "Takes back the last change", |w, _| w.undo(), keys(CTRL, Key::Z),
-        needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost")}
-    row! {C::Redo, "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
-        needs(|f| f.redo.is_some(), "Nothing has been undone")}
-    row! {C::ResetAll, "Reset everything",
-        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.keep_selection_after(|w| w.model.document.reset()),
+    [Some("Edit")]
+    Undo "Undo", "Takes back the last change", |w, _| w.undo(), keys(CTRL, Key::Z),
+        needs(|f| f.undo.is_some(), "Nothing has been changed yet"), also("back lost");
+    Redo "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
+        needs(|f| f.redo.is_some(), "Nothing has been undone");
+    ResetAll "Reset everything",
+        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.change(|w| w.model.document.reset()),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
-        also("original lost back")}
-    row! {C::AddSphere, "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
-        key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball")}
-    row! {C::DuplicateSphere, "Duplicate the sphere", "Puts a copy beside the selected sphere",
-        |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball")}
-    row! {C::DeleteSphere, "Delete the sphere", "Removes the selected sphere", |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
-        key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball")}
-    row! {C::SkyColours, "Sky colours…", "Changes the two colours that the sky fades between",
+        also("original lost back");
+    AddSphere "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
+        key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball");
+    DuplicateSphere "Duplicate the sphere", "Puts a copy beside the selected sphere",
+        |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball");
+    DeleteSphere "Delete the sphere", "Removes the selected sphere", |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
+        key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball");
+    SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
         |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
-        also("background light gradient")}
-    row! {C::Home, "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.model.document.camera = w.document().origin.recipe.camera,
+        also("background light gradient");
+    Home "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.model.document.camera = w.document().origin.recipe.camera,
         key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
-        also("home lost back original")}
+        also("home lost back original");
 
-    menu = Some(Menu::Show);
-    for (place, show) in Show::ALL.into_iter().enumerate() {
-        let [name, help, synonyms] = show.words();
-        row! {C::Show(show), name, help, move |w, _| w.model.view.choose(show),
-            keys(CTRL, DIGITS[place]), off(move |f| f.useless_show(show)),
-            on(move |f| f.model.view.show() == show && (show != Show::Picture || f.model.view.mode().is_none())),
-            also(synonyms)}
-    }
-    menu = Some(Menu::View);
-    row! {C::Fit, "Fit in the window", "Shows the whole picture as large as possible",
-        |w, _| w.display.viewport.placement.fit(), key(Key::F), line()}
-    row! {C::ActualSize, "Actual size", "One pixel of the picture per pixel of the screen",
-        |w, _| w.display.viewport.placement.actual_size(), key(Key::Num1), also("100 % zoom")}
-    menu = Some(Menu::Bookmarks);
-    row! {C::AddBookmark, "Bookmark this camera", "Keeps this camera and lens to jump back to",
-        |w, _| w.add_bookmark(), keys(CTRL, Key::B), off(|f| f.no_rays().map(str::to_owned)),
-        also("view position")}
-    menu = Some(Menu::View);
-    row! {C::Controls, "Controls", "Shows or hides camera, lens and sphere at the left",
+    [Some("View")]
+    Fit "Fit in the window", "Shows the whole picture as large as possible",
+        |w, _| w.display.viewport.placement.fit(), key(Key::F), line();
+    ActualSize "Actual size", "One pixel of the picture per pixel of the screen",
+        |w, _| w.display.viewport.placement.actual_size(), key(Key::Num1), also("100 % zoom");
+    Controls "Controls", "Shows or hides camera, lens and sphere at the left",
         |w, _| w.toggle(|r| &mut r.has_controls), key(Key::L), line(), off(no_presentation),
-        on(|f| f.model.remembered.has_controls), also("left panel camera lens")}
-    row! {C::Info, "Stage and pixel", "Shows or hides the text and the numbers at the right",
+        on(|f| f.model.remembered.has_controls), also("left panel camera lens");
+    Info "Stage and pixel", "Shows or hides the text and the numbers at the right",
         |w, _| w.toggle(|r| &mut r.has_info), key(Key::I), off(no_presentation),
-        on(|f| f.model.remembered.has_info), also("right panel text")}
-    row! {C::Dock(Dock::Kept), "Kept pictures", "Opens the dock with the pictures that you have kept",
+        on(|f| f.model.remembered.has_info), also("right panel text");
+    KeptDock "Kept pictures", "Opens the dock with the pictures that you have kept",
         |w, _| w.toggle_dock(Dock::Kept), keys(SHIFT, Key::M), off(no_presentation),
-        on(|f| f.model.remembered.dock == Some(Dock::Kept)), also("slot snapshot compare")}
-    row! {C::Dock(Dock::Lanes), "Lanes", "Opens the dock with what each lane does, step by step",
+        on(|f| f.model.remembered.dock == Some(Dock::Kept)), also("slot snapshot compare");
+    LanesDock "Lanes", "Opens the dock with what each lane does, step by step",
         |w, _| w.toggle_dock(Dock::Lanes), key(Key::N), off(no_presentation),
-        on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet")}
-    row! {C::Dock(Dock::Error), "Error", "Opens the dock with the error over time",
+        on(|f| f.model.remembered.dock == Some(Dock::Lanes)), also("simd avx packet");
+    ErrorDock "Error", "Opens the dock with the error over time",
         |w, _| w.toggle_dock(Dock::Error), key(Key::P), off(no_presentation),
-        on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality")}
-    row! {C::Panels, "Only the picture", "Hides all panels; again shows them", |w, _| w.toggle_panels(),
-        key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels")}
-    row! {C::Present, "Present", "Full screen with large captions, for a lecture; Escape ends it",
+        on(|f| f.model.remembered.dock == Some(Dock::Error)), also("plot convergence noise quality");
+    Panels "Only the picture", "Hides all panels; again shows them", |w, _| w.toggle_panels(),
+        key(Key::Tab), on(|f| !f.model.remembered.has_panels), also("hide panels");
+    Present "Present", "Full screen with large captions, for a lecture; Escape ends it",
         |w, c| w.toggle_presentation(c), key(Key::F5), line(), on(|f| f.model.presentation.is_some()),
-        also("lecture slides projector beamer")}
-    row! {C::FullScreen, "Full screen", "Fills the screen with the window", 
+        also("lecture slides projector beamer");
+    FullScreen "Full screen", "Fills the screen with the window",
         |w, c| w.fill_screen(c, !w.model.is_full_screen),
-        key(Key::F11), on(|f| f.model.is_full_screen)}
-    menu = Some(Menu::Theme);
-    for (theme, name, help, synonyms) in [
-        (ThemePreference::System, "As the system", "Follows the system", "theme"),
-        (ThemePreference::Dark, "Dark", "Light text on dark panels", "theme night"),
-        (ThemePreference::Light, "Light", "Dark text on light panels", "theme bright"),
-    ] {
-        row! {C::Theme(theme), name, help,
-            move |w, c| (w.model.remembered.theme, _) = (theme, c.set_theme(theme)),
-            on(move |f| f.model.remembered.theme == theme), also(synonyms)}
-    }
+        key(Key::F11), on(|f| f.model.is_full_screen);
 
-    menu = Some(Menu::Render);
-    row! {C::Pause, "Pause or go on",
+    [Some("Bookmarks")]
+    AddBookmark "Bookmark this camera", "Keeps this camera and lens to jump back to",
+        |w, _| w.add_bookmark(), keys(CTRL, Key::B), off(|f| f.no_rays().map(str::to_owned)),
+        also("view position");
+
+    [Some("Render")]
+    Pause "Pause or go on",
         "Stops and continues; when done, goes on to half the error. No sample is lost",
         |w, c| w.pause_or_go_on(c), key(Key::Space),
         needs(
             |f| f.is_working() || f.model.is_paused || f.further().is_some(),
             "More samples would change nothing"
         ),
-        on(|f| f.model.is_paused), also("stop resume continue")}
-    row! {C::Restart, "Start again", "Throws the samples away and begins anew", |w, _| {
+        on(|f| f.model.is_paused), also("stop resume continue");
+    Restart "Start again", "Throws the samples away and begins anew", |w, _| {
             if std::mem::take(&mut w.model.is_paused) {
                 w.tracing.resume();
             }
             w.tracing.restart();
         },
-        key(Key::R)}
-    row! {C::SwitchDevice, "Switch CPU and GPU", "The same picture goes on with the other device",
-        |w, _| w.model.remembered.device.toggle(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable())}
-    row! {C::Device(Device::Reference), "Reference (f64)",
-        "Traces with twice the digits, slowly, to show rounding errors", 
+        key(Key::R);
+    SwitchDevice "Switch CPU and GPU", "The same picture goes on with the other device",
+        |w, _| w.model.remembered.device.toggle(Device::Gpu), key(Key::G), line(), off(|_| Device::Gpu.unavailable());
+    Reference "Reference (f64)",
+        "Traces with twice the digits, slowly, to show rounding errors",
         |w, _| w.model.remembered.device.toggle(Device::Reference),
-        on(|f| f.model.remembered.device == Device::Reference), also("double precision")}
-    row! {C::Keep, "Keep this picture", "Keeps a copy with all its samples, to compare with",
+        on(|f| f.model.remembered.device == Device::Reference), also("double precision");
+    Keep "Keep this picture", "Keeps a copy with all its samples, to compare with",
         |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
-        needs(
-            |f| f.model.view.kept.looked().is_none(),
-            "This picture is kept already; Escape returns to the one that is traced"
-        ),
-        also("slot snapshot compare")}
+        also("slot snapshot compare");
 
-    menu = Some(Menu::Stage);
-    row! {C::Stages, "All stages…", "Every picture of the book, with a small image; type to search",
-        |w, c| w.open_stage_list(c, false), key(Key::O), off(no_presentation), also("list section chapter")}
-    row! {C::PreviousStage, "Previous stage", "One step back in the book", |w, _| w.step_stage(false),
-        key(Key::PageUp), needs(|f| f.neighbour(false).is_some(), "This is the first stage")}
-    row! {C::NextStage, "Next stage", "One step forward in the book", |w, _| w.step_stage(true),
-        key(Key::PageDown), needs(|f| f.neighbour(true).is_some(), "This is the last stage")}
-    row! {C::ShowMe, "Show me", "Sets zoom, view or wipe so that you see what to look for; again returns",
+    [Some("Stage")]
+    Stages "All stages…", "Every picture of the book, with a small image; type to search",
+        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), false))), key(Key::O), also("list section chapter");
+    PreviousStage "Previous stage", "One step back in the book", |w, _| w.step_stage(false),
+        key(Key::PageUp), needs(|f| f.neighbour(false).is_some(), "This is the first stage");
+    NextStage "Next stage", "One step forward in the book", |w, _| w.step_stage(true),
+        key(Key::PageDown), needs(|f| f.neighbour(true).is_some(), "This is the last stage");
+    ShowMe "Show me", "Sets zoom, view or wipe so that you see what to look for; again returns",
         |w, _| w.toggle_sight(), key(Key::H), line(),
         off(|f| match f.document().stage() {
             Some(stage) => f.useless_show(Show::of_means(stage.sight.means)),
             None => Some("Only stages of the book name something to look for".to_owned()),
         }),
-        on(|f| f.has_sight)}
-    row! {C::Wipe, "Wipe", "Drag a divider between this stage and the one that it is compared with",
+        on(|f| f.has_sight);
+    Wipe "Wipe", "Drag a divider between this stage and the one that it is compared with",
         |w, _| w.compare(Mode::Wipe), key(Key::C), off(Facts::nothing_to_compare),
         on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.with() == With::Stage),
-        also("slot snapshot compare")}
-    row! {C::Difference, "Difference", "Shows where the two differ, and by how much",
+        also("slot snapshot compare");
+    Difference "Difference", "Shows where the two differ, and by how much",
         |w, _| w.compare(Mode::Difference), key(Key::X), off(Facts::nothing_to_compare),
         on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_none()),
-        also("slot snapshot compare subtract")}
-    row! {C::BookArithmetic, "The book’s arithmetic",
+        also("slot snapshot compare subtract");
+    BookArithmetic "The book’s arithmetic",
         "Wipes against the same picture with the book’s own formulas",
         |w, _| w.model.view.toggle(Mode::Wipe, With::Book),
         needs(
@@ -407,151 +303,182 @@ fn rows() -> Vec<Row> {
             "This picture already has the book’s arithmetic, or traces no rays"
         ),
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
-        also("rounding f64 precision")}
-    row! {C::ListPaths, "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
+        also("rounding f64 precision");
+    ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
         |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
-            None if f.model.view.kept.looked().is_some() =>
-                Some("A kept picture is shown; Escape returns to the one that is traced".to_owned()),
             None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
         }),
-        also("rays bounce trace")}
-    row! {C::Code, "Code", "Shows the lines of the tracer that are new in this stage",
+        also("rays bounce trace");
+    Code "Code", "Shows the lines of the tracer that are new in this stage",
         |w, _| {
             let tab = if w.model.shows(Tab::Code) { Tab::Stage } else { Tab::Code };
             let r = &mut w.model.remembered;
             (r.tab, r.has_panels, r.has_info) = (tab, true, true);
         }, key(Key::K),
         off(no_presentation),
-        on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program")}
-    row! {C::Book, "Read in the book", "Opens this section in the browser", |w, c| {
+        on(|f| f.model.shows(Tab::Code)), also("source rust wgsl program");
+    Book "Read in the book", "Opens this section in the browser", |w, c| {
             let url = w.document().stage().map_or_else(|| BOOK_URL.into(), Stage::url);
             w.open_url(c, url);
         },
-        also("web section")}
-    row! {C::Companion, "Read in the companion",
+        also("web section");
+    Companion "Read in the companion",
         "Opens the companion at this stage; writes it first, which takes 3 seconds",
-        |w, c| w.write_companion(c, true), also("web page explain")}
-    row! {C::ExtremeScenes, "Extreme scenes…",
+        |w, c| w.write_companion(c, true), also("web page explain");
+    ExtremeScenes "Extreme scenes…",
         "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
-        |w, c| w.open_stage_list(c, true), line(), off(no_presentation), also("stress stiff numerical")}
+        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), true))), line(), also("stress stiff numerical");
 
-    menu = Some(Menu::Help);
-    row! {C::FirstSteps, "First steps", "Brings back the card with three things to try",
+    [Some("Help")]
+    FirstSteps "First steps", "Brings back the card with three things to try",
         |w, _| (w.model.has_first_steps, w.model.remembered.is_greeted) =
             (!w.model.has_first_steps, w.model.has_first_steps), off(no_presentation), on(|f| f.model.has_first_steps),
-        also("tutorial introduction")}
-    row! {C::Help, "Keys and mouse", "All keys, and what the mouse does",
-        |w, _| w.shell.dialogs.open(Dialog::Help(Keys::default())), key(Key::F1),
-        also("shortcuts keyboard help")}
-    row! {C::Palette, "Find a command…", "Type what you want to do",
+        also("tutorial introduction");
+    Help "Keys and mouse", "All keys, and what the mouse does",
+        |w, _| w.shell.dialogs.open(Dialog::Help), key(Key::F1),
+        also("shortcuts keyboard help");
+    Palette "Find a command…", "Type what you want to do",
         |w, c| w.shell.dialogs.open(Dialog::Palette(Finder::typed(c))), keys(CTRL, Key::P),
-        also("palette search")}
-    row! {C::About, "About Weekender", "Version, licences, folder of the log, and how to report a fault",
-        |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug")}
+        also("palette search");
+    About "About Weekender", "Version, licences, folder of the log, and how to report a fault",
+        |w, _| w.shell.dialogs.open(Dialog::About), also("version licence report bug");
 
-    menu = None;
-    row! {C::Brighter, "Brighter",
+    [None]
+    Brighter "Brighter",
         "Shows the picture with half a stop more light; files are saved without it",
         |w, _| w.model.view.tone.expose(Tone::STEP), key(Key::Plus), off(Facts::no_exposure),
-        also("exposure bright dim")}
-    row! {C::Darker, "Darker", "Shows the picture with half a stop less light; files are saved without it",
+        also("exposure bright dim");
+    Darker "Darker", "Shows the picture with half a stop less light; files are saved without it",
         |w, _| w.model.view.tone.expose(-Tone::STEP), key(Key::Minus), off(Facts::no_exposure),
-        also("exposure dim")}
-    row! {C::NoExposure, "As bright as it is saved", "Shows the picture without exposure",
+        also("exposure dim");
+    NoExposure "As bright as it is saved", "Shows the picture without exposure",
         |w, _| w.model.view.tone.exposure = 0.0, key(Key::Num0), off(Facts::no_exposure),
-        also("exposure bright dim reset")}
-    row! {C::ZoomIn, "Zoom in", "Ctrl and the wheel zoom at the pointer",
-        |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket)}
-    row! {C::ZoomOut, "Zoom out", "Ctrl and the wheel zoom at the pointer",
-        |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket)}
-    row! {C::Denoise, "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
+        also("exposure bright dim reset");
+    ZoomIn "Zoom in", "Ctrl and the wheel zoom at the pointer",
+        |w, _| w.display.viewport.placement.zoom_by(1.25), key(Key::CloseBracket);
+    ZoomOut "Zoom out", "Ctrl and the wheel zoom at the pointer",
+        |w, _| w.display.viewport.placement.zoom_by(0.8), key(Key::OpenBracket);
+    Denoise "Denoise", "Filters the noise away and says how wrong the result is; films are saved as they are",
         |w, _| w.model.view.is_denoised ^= true, key(Key::V),
         needs(|f| f.document().settings.estimate_error, "The film has one half; denoising compares two"),
-        on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn")}
-    for channel in Channel::ALL {
-        row! {C::Channel(channel), channel.name(), "Shows one channel alone, as grey; again shows all",
-            move |w, _| w.model.view.tone.toggle(channel), keys(SHIFT, channel.key()),
-            off(Facts::no_exposure), on(move |f| f.model.view.tone.channel == Some(channel)),
-            also("channel rgb")}
-    }
-    row! {C::NextSphere, "Next sphere", "Selects the next sphere of the scene", 
+        on(|f| f.model.view.is_denoised), also("filter smooth noise clean oidn");
+    NextSphere "Next sphere", "Selects the next sphere of the scene",
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, true),
-        key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select")}
-    row! {C::PreviousSphere, "Previous sphere", "Selects the previous sphere of the scene",
+        key(Key::Period), needs(has_spheres, "There is no sphere in this scene"), also("select");
+    PreviousSphere "Previous sphere", "Selects the previous sphere of the scene",
         |w, _| w.model.selected = neighbour(w.document().scene(), w.model.selected, false), key(Key::Comma),
-        needs(has_spheres, "There is no sphere in this scene"), also("select")}
-    row! {C::FocusSphere, "Focus on the sphere",
+        needs(has_spheres, "There is no sphere in this scene"), also("select");
+    FocusSphere "Focus on the sphere",
         "Sets the focus distance to the nearest point of the selected sphere", |w, _| w.focus_sphere(),
-        needs(has_selection, NO_SPHERE), also("sharp depth of field")}
-    row! {C::Flip, "Flip between the two", "Shows the traced picture and the kept one in turn",
+        needs(has_selection, NO_SPHERE), also("sharp depth of field");
+    Flip "Flip between the two", "Shows the traced picture and the kept one in turn",
         |w, _| w.model.view.flip(), key(Key::J), needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.kept.looked().is_some()),
-        also("kept slot compare blink")}
-    row! {C::KeptWipe, "Wipe with the kept picture", "Drag a divider between it and the picture",
+        on(|f| f.model.view.looked().is_some()),
+        also("kept slot compare blink");
+    KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture",
         |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some()),
-        also("slot compare")}
-    row! {C::KeptDifference, "Difference from the kept picture", "Subtracts it from the picture",
+        on(|f| f.model.view.wiped().is_some() && f.model.view.looked().is_none()),
+        also("slot compare");
+    KeptDifference "Difference from the kept picture", "Subtracts it from the picture",
         |w, _| w.compare_kept(Mode::Difference), keys(SHIFT, Key::X), off(Facts::not_subtractable),
         on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
-        also("slot compare subtract")}
-    row! {C::OnlyNoise, "Is it only noise?", "Tests whether the two differ by more than chance",
+        also("slot compare subtract");
+    OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance",
         |w, c| w.ask_only_noise(c), keys(SHIFT, Key::N), off(Facts::not_subtractable),
-        also("kept slot compare same")}
-    for device in [Device::Cpu, Device::Gpu, Device::Both] {
-        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
-        row! {C::Device(device), name, device.help(),
-            move |w, _| w.model.remembered.device = device, off(move |_| device.unavailable()),
-            on(move |f| f.model.remembered.device == device), also("device trace")}
-    }
-
-    row! {C::SaveAs(OutputFormat::P6), "Save as PPM…", "", |w, _| w.ask_save(OutputFormat::P6),
-        keys(CTRL_SHIFT, Key::S), unlisted()}
-    row! {C::SaveAs(OutputFormat::Exr), "Save film…", "", |w, _| w.ask_save(OutputFormat::Exr),
-        keys(CTRL, Key::E), unlisted()}
-    row! {C::StopSaving, "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted()}
-    row! {C::Recover, "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted()}
-    row! {C::NotNow, "Not now", "Leaves it until the window closes",
-        |w, _| w.shell.toasts.withdraw(Command::NotNow), unlisted()}
-    row! {C::WholeCompanion, "Write the full one",
+        also("kept slot compare same");
+    RenderAtSize "Render at this size",
+        "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
+        |w, _| {
+            w.model.document.has_own_size = false;
+            w.tracing.sizer.ask();
+        }, unlisted();
+    StopSaving "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted();
+    Recover "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted();
+    WholeCompanion "Write the full one",
         "Renders its pictures at full size and without noise, which takes some minutes",
-        |w, c| w.write_companion(c, false), unlisted()}
-    row! {C::StopCompanion, "Stop", "Leaves out the pictures that are missing",
-        |w, _| w.files.stop_companion(), unlisted()}
-    row! {C::Deselect, "Deselect the sphere", "", |w, _| w.model.selected = None, unlisted()}
-    row! {C::DeleteKept, "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
-        needs(has_kept, NOTHING_KEPT), unlisted()}
-    row! {C::NextRay, "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
-        needs(|f| f.has_paths, NO_PATHS), unlisted()}
-    row! {C::PreviousRay, "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
-        needs(|f| f.has_paths, NO_PATHS), unlisted()}
-    row! {C::ClearPaths, "Close the paths", "", |w, _| {
+        |w, c| w.write_companion(c, false), unlisted();
+    StopCompanion "Stop", "Leaves out the pictures that are missing",
+        |w, _| w.files.stop_companion(), unlisted();
+    GoOnFromKept "Go on from it", "Makes it the picture that is traced, and adds more samples",
+        |w, _| w.go_on_from_kept(), needs(has_kept, NOTHING_KEPT), unlisted();
+    DeleteKept "Delete", "Deletes the kept picture", |w, _| w.model.view.delete_kept(),
+        needs(has_kept, NOTHING_KEPT), unlisted();
+    NextRay "Next ray", "", |w, _| w.tools.paths.step(true), key(Key::ArrowRight),
+        needs(|f| f.has_paths, NO_PATHS), unlisted();
+    PreviousRay "Previous ray", "", |w, _| w.tools.paths.step(false), key(Key::ArrowLeft),
+        needs(|f| f.has_paths, NO_PATHS), unlisted();
+    ClearPaths "Close the paths", "", |w, _| {
             w.tools.paths.forget();
             w.model.remembered.dock.take_if(|dock| *dock == Dock::Path);
-        }, needs(|f| f.has_paths, NO_PATHS),
-        unlisted()}
-    row! {C::FocusControls, "Into the controls", "",
-        |_, c| c.memory_mut(|memory| memory.move_focus(FocusDirection::Next)), key(Key::F6), unlisted()}
-    row! {C::Blank, "Blank the screen", "", 
+        }, unlisted();
+    FocusControls "Into the controls", "",
+        |_, c| c.memory_mut(|memory| memory.move_focus(FocusDirection::Next)), key(Key::F6), unlisted();
+    Blank "Blank the screen", "",
         |w, _| w.model.presentation.iter_mut().for_each(|shown| shown.is_blank ^= true), key(Key::B),
         needs(|f| f.model.presentation.is_some(), "Only a presentation can be blanked; F5 begins one"),
-        unlisted()}
-    for sizing in Sizing::ALL {
-        row! {C::Size(sizing), "Render at this size",
-            "Renders one pixel of the picture per pixel of the screen; the samples begin anew",
-            move |w, _| {
-                w.model.remembered.sizing = sizing;
-                w.model.document.has_own_size = false;
-                w.tracing.sizer.ask();
-            }, unlisted()}
+        unlisted();
+}
+
+/// The rows of commands that differ in a value.
+fn family_rows() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for (show, digit) in Show::ALL.into_iter().zip(DIGITS) {
+        let [name, help, synonyms] = show.words();
+        let row = Row::new(Some("Show"), Command::Show(show), [name, help], move |w, _| {
+            w.model.view.choose(show);
+        });
+        let is_on =
+            move |view: &ViewState| view.show() == show && (show != Show::Picture || view.mode().is_none());
+        let row = row.keys(CTRL, digit).also(synonyms).off(move |f| f.useless_show(show));
+        rows.push(row.on(move |f| is_on(&f.model.view)));
+    }
+    for (theme, name, help, synonyms) in [
+        (ThemePreference::System, "As the system", "Follows the system", "theme"),
+        (ThemePreference::Dark, "Dark", "Light text on dark panels", "theme night"),
+        (ThemePreference::Light, "Light", "Dark text on light panels", "theme bright"),
+    ] {
+        let row = Row::new(Some("Theme"), Command::Theme(theme), [name, help], move |w, c| {
+            w.model.remembered.theme = theme;
+            c.set_theme(theme);
+        });
+        rows.push(row.on(move |f| f.model.remembered.theme == theme).also(synonyms));
+    }
+    for channel in Channel::ALL {
+        let words = [channel.name(), "Shows one channel alone, as grey; again shows all"];
+        let row = Row::new(None, Command::Channel(channel), words, move |w, _| {
+            w.model.view.tone.toggle(channel);
+        });
+        let row = row.keys(SHIFT, channel.key()).off(Facts::no_exposure).also("channel rgb");
+        rows.push(row.on(move |f| f.model.view.tone.channel == Some(channel)));
+    }
+    for device in [Device::Cpu, Device::Gpu, Device::Both] {
+        let name = if device == Device::Both { "CPU and GPU together" } else { device.label() };
+        let row = Row::new(None, Command::Device(device), [name, device.help()], move |w, _| {
+            w.model.remembered.device = device;
+        });
+        let row = row.off(move |_| device.unavailable()).also("device trace");
+        rows.push(row.on(move |f| f.model.remembered.device == device));
+    }
+    for (format, name, modifiers, key) in [
+        (OutputFormat::P6, "Save as PPM…", CTRL_SHIFT, Key::S),
+        (OutputFormat::Exr, "Save film…", CTRL, Key::E),
+    ] {
+        let row = Row::new(None, Command::SaveAs(format), [name, ""], move |w, _| w.ask_save(format));
+        rows.push(row.keys(modifiers, key).unlisted());
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
-        row! {C::Kept(place), "", "Shows it instead of the picture",
-            move |w, _| w.model.view.look(Some(place)), keys(Modifiers::ALT, digit),
-            needs(move |f| f.model.view.kept.get(place).is_some(), "No picture is kept under this number"),
-            unlisted()}
+        let row =
+            Row::new(None, Command::Kept(place), ["", "Shows it instead of the picture"], move |w, _| {
+                w.model.view.look(place);
+            });
+        let is_there = move |f: &Facts| f.model.view.kept.get(place).is_some();
+        rows.push(
+            row.keys(Modifiers::ALT, digit)
+                .needs(is_there, "No picture is kept under this number")
+                .unlisted(),
+        );
     }
     rows
 }
@@ -674,31 +601,5 @@ impl Facts {
     /// Whether what a command switches is on.
     pub fn is_on(&self, command: Command) -> bool {
         self.switch(command).unwrap_or(false)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::HashSet;
-
-    #[test]
-    fn every_command_has_one_row_and_one_key() {
-        let mut keys = HashSet::new();
-        for (index, row) in ROWS.iter().enumerate() {
-            let first = ROWS.iter().position(|other| other.command == row.command);
-            assert_eq!(first, Some(index), "{:?} stands twice", row.command);
-            if let Some(shortcut) = row.keys {
-                assert!(keys.insert(format!("{shortcut:?}")), "{:?} has the key of another", row.command);
-            }
-        }
-    }
-
-    #[test]
-    fn there_are_few_menu_entries_and_commands() {
-        let submenus = [Menu::Show, Menu::Bookmarks, Menu::Theme].len() + 1;
-        let entries = ROWS.iter().filter(|row| row.menu.is_some()).count() + submenus;
-        let listed = ROWS.iter().filter(|row| row.is_listed).count();
-        assert!(entries <= 70 && listed <= 90, "{entries} entries, {listed} commands");
     }
 }

@@ -27,23 +27,18 @@ const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 const LENS_CHAPTER: u32 = 12;
 
 /// Draws the panel.
-pub fn ui(
-    ui: &mut Ui,
-    (document, selected): (&mut Document, Option<&Selected>),
-    remembered: &mut Remembered,
-    facts: &Facts,
-) {
+pub fn ui(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let has_rays = document.no_rays().is_none();
     if has_rays {
         camera(ui, document);
         lens(ui, document);
-        sphere(ui, (document, selected), facts);
+        sphere(ui, document, facts);
         panel_line(ui);
     }
     ui.spacing_mut().item_spacing.y = 0.0;
-    size_and_samples(ui, document, facts);
+    size_and_samples(ui, document, remembered, facts);
     if has_rays {
-        tracer(ui, document, remembered, facts);
+        tracer(ui, document, remembered);
     }
 }
 
@@ -121,15 +116,17 @@ fn lens_controls(ui: &mut Ui, camera: &mut Camera, original: f64) {
     }
 }
 
-fn sphere(ui: &mut Ui, (document, selected): (&mut Document, Option<&Selected>), facts: &Facts) {
-    let title = selected.map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
+fn sphere(ui: &mut Ui, document: &mut Document, facts: &Facts) {
+    let selected = Selected::of(&facts.model);
+    let title =
+        selected.as_ref().map_or("Sphere".to_owned(), |selected| format!("Sphere: {}", selected.material));
     let reset = document.has_changed_scene().then_some("Reset spheres");
     let is_reset = group(ui, Header { title: &title, reset, ..Header::default() }, |ui| {
         let Some(selected) = selected else {
             hint(ui, "Click a sphere in the picture to move or change it.");
             return;
         };
-        let body = body(ui, selected, document);
+        let body = body(ui, &selected, document);
         if body != selected.body {
             facts.edit(Edit::Change(selected.sphere, body));
         }
@@ -202,7 +199,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
     switch(ui, width, material, &options).unwrap_or(material)
 }
 
-fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
+fn size_and_samples(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let (origin, size) = (Arc::clone(&document.origin), document.size());
     let is_own = document.has_own_size;
     let is_resized = is_own != origin.keeps_size() || (is_own && size != origin.size());
@@ -211,7 +208,7 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     let reset = is_changed.then_some("Reset size and samples");
     let header = Header { title: "Size and samples", summary: &summary, reset, ..Header::default() };
     let is_reset = fold(ui, header, document.no_rays().is_some(), |ui| {
-        sizing(ui, document, facts);
+        sizing(ui, document, remembered, facts);
         let usual = origin.recipe.samples_per_pixel;
         stop(ui, &mut document.stop, document.settings.estimate_error, usual);
     });
@@ -223,20 +220,23 @@ fn size_and_samples(ui: &mut Ui, document: &mut Document, facts: &Facts) {
     }
 }
 
-fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts) {
+fn sizing(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
     let names = [
         ("Fill the window", Some(Sizing::Viewport)),
         ("As in the book", Some(Sizing::Book)),
         ("Other", None),
     ];
-    let chosen = (!document.has_own_size).then_some(facts.model.remembered.sizing);
+    let chosen = (!document.has_own_size).then_some(remembered.sizing);
     let shown = names.iter().find(|(_, sizing)| *sizing == chosen).map_or("", |(name, _)| name);
     ui.spacing_mut().combo_width = 136.0;
     list(ui, About::new("Size", "How many pixels are rendered"), shown, |ui| {
         for (name, sizing) in names {
             if entry(ui, sizing == chosen, About::new(name, "")) {
                 match sizing {
-                    Some(sizing) => facts.send(Command::Size(sizing)),
+                    Some(sizing) => {
+                        remembered.sizing = sizing;
+                        facts.send(Command::RenderAtSize);
+                    }
                     None => document.has_own_size = true,
                 }
             }
@@ -301,20 +301,12 @@ fn stop(ui: &mut Ui, stop: &mut Stop, has_error: bool, usual: u64) {
     }
 }
 
-fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered, facts: &Facts) {
+fn tracer(ui: &mut Ui, document: &mut Document, remembered: &mut Remembered) {
     let RenderSettings { width, height, .. } = document.settings;
     let original = RenderSettings { width, height, ..document.origin.recipe.settings };
     let is_changed = document.settings != original;
-    let backend = facts.status.backend.as_ref();
-    let summary = match (remembered.device, backend.map(|backend| backend.threads)) {
-        (Device::Reference, _) => "reference".to_owned(),
-        _ if is_changed => "changed".to_owned(),
-        (Device::Cpu, Some(1)) => "1 thread".to_owned(),
-        (Device::Cpu, Some(threads)) => format!("{threads} threads"),
-        _ => String::new(),
-    };
     let reset = is_changed.then_some("Reset tracer");
-    let header = Header { title: "Tracer", summary: &summary, reset, ..Header::default() };
+    let header = Header { title: "Tracer", reset, ..Header::default() };
     let (rules, is_random) = (*document.rules(), document.is_random());
     let is_reset = fold(ui, header, false, |ui| {
         let settings = &mut document.settings;

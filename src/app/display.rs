@@ -1,15 +1,15 @@
 //! How the picture is shown: the viewport, the layers and numbers over it, and the pictures that were kept.
 
 use super::denoising::Denoising;
-use super::kept::{FilmId, KeptActions, Subject};
+use super::kept::KeptActions;
 use super::layers::Layers;
 use super::model::{CheckedScene, Model, Show};
 use super::pixel_values::PixelValues;
 use super::sight::Sighted;
 use super::spheres::is_lost;
+use super::subject::Subject;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
-use super::tracer::Shown;
 use super::tracing::Tracing;
 use super::viewport::Viewport;
 use crate::scene::Camera;
@@ -33,14 +33,6 @@ pub struct Display {
 }
 
 impl Display {
-    /// The picture of the film on the screen.
-    pub fn shown<'a>(&'a self, model: &Model, tracing: &'a Tracing) -> Option<&'a Shown> {
-        match model.view.kept.shown() {
-            Some(kept) => self.kept.picture.shown(kept),
-            None => tracing.main.shown(),
-        }
-    }
-
     /// Asks background threads for what the screen shows beside the picture.
     pub fn follow(
         &mut self,
@@ -58,13 +50,8 @@ impl Display {
             self.judged = Some((document.camera, Arc::clone(&document.checked)));
             self.is_lost = is_lost(document);
         }
-        if let Some(kept) = view.kept.shown().or(view.kept.meant()) {
-            let shown = view.of_shown(FilmId::Kept(kept.number), tracing.second.film.as_ref());
-            self.kept.picture.follow(context, kept, &shown);
-        }
         let subject = Subject::new(view, document, tracing);
-        let is_live_moving = is_moving && !subject.is_kept();
-        let fault = self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
+        let fault = self.layers.follow(context, view.show().layer(), document);
         if let Some(reason) = fault {
             toasts.bad(format!("This view cannot be traced: {reason}"));
         }

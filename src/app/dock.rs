@@ -59,9 +59,9 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
         ui.spacing_mut().item_spacing.x = 16.0;
         for (tab, name, help) in [
             (Dock::Path, "Path", "The path that is drawn over the picture, point by point"),
-            (Dock::Kept, "Kept pictures", Command::Dock(Dock::Kept).help()),
-            (Dock::Lanes, "Lanes", Command::Dock(Dock::Lanes).help()),
-            (Dock::Error, "Error", Command::Dock(Dock::Error).help()),
+            (Dock::Kept, "Kept pictures", Command::KeptDock.help()),
+            (Dock::Lanes, "Lanes", Command::LanesDock.help()),
+            (Dock::Error, "Error", Command::ErrorDock.help()),
         ] {
             let is_there = tab != Dock::Path || dock == tab || facts.has_paths;
             if is_there {
@@ -76,37 +76,29 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
         let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
             facts.send(match dock {
-                Dock::Path if facts.has_paths => Command::ClearPaths,
-                _ => Command::Dock(dock),
+                Dock::Path => Command::ClearPaths,
+                Dock::Kept => Command::KeptDock,
+                Dock::Lanes => Command::LanesDock,
+                Dock::Error => Command::ErrorDock,
             });
-        }
-        if dock == Dock::Kept {
-            actions(ui, facts);
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
 }
 
-/// What can be done with the chosen kept picture.
-const ACTIONS: [(&str, Command); 5] = [
-    ("Look", Command::Flip),
-    ("Wipe", Command::KeptWipe),
-    ("Difference", Command::KeptDifference),
-    ("Only noise?", Command::OnlyNoise),
-    ("Keep", Command::Keep),
-];
+/// How the chosen kept picture is compared.
+const COMPARISONS: [(&str, Command); 3] =
+    [("Look", Command::Flip), ("Wipe", Command::KeptWipe), ("Difference", Command::KeptDifference)];
 
 /// What the menu of a right click on it offers.
-pub const MENU: [Command; 5] =
-    [Command::Flip, Command::KeptWipe, Command::KeptDifference, Command::OnlyNoise, Command::DeleteKept];
-
-/// The actions, from right to left. The first three are a switch.
-fn actions(ui: &mut Ui, facts: &Facts) {
-    for (name, command) in ACTIONS[3..].iter().rev() {
-        command_button(ui, facts, *command, name);
-    }
-    command_switch(ui, facts, 0.0, &ACTIONS[..3]);
-}
+const MENU: [Command; 6] = [
+    Command::Flip,
+    Command::KeptWipe,
+    Command::KeptDifference,
+    Command::OnlyNoise,
+    Command::GoOnFromKept,
+    Command::DeleteKept,
+];
 
 fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts) {
     let list = &model.view.kept;
@@ -115,6 +107,9 @@ fn kept_ui(ui: &mut Ui, model: &mut Model, kept: &mut KeptActions, facts: &Facts
         return;
     };
     ui.horizontal_wrapped(|ui| {
+        command_switch(ui, facts, 0.0, &COMPARISONS);
+        command_button(ui, facts, Command::OnlyNoise, "Only noise?");
+        command_button(ui, facts, Command::Keep, "Keep");
         if !kept.verdict.ui(ui, chosen.number, facts.status.run) {
             let memory = words(list.bytes());
             small(ui, format!("Kept pictures take {memory}. They are gone when the window closes."));
@@ -145,7 +140,7 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
     });
     let response = added.inner;
     if response.double_clicked() {
-        view.look(Some(place));
+        view.look(place);
     } else if response.clicked() {
         choose(view, place);
     } else if response.secondary_clicked() {
@@ -160,11 +155,11 @@ fn card(ui: &mut Ui, place: usize, view: &mut ViewState, facts: &Facts) {
 
 /// Chooses a picture. If another one is shown or compared with, this one takes its place.
 fn choose(view: &mut ViewState, place: usize) {
-    let looked = view.kept.looked();
     view.kept.choose(place);
     match (view.compared_kept(), view.mode()) {
-        (Some(compared), Some(mode)) if compared != place => view.toggle(mode, With::Kept(place)),
-        (None, _) if looked.is_some() => view.look(Some(place)),
+        (Some(compared), _) if compared == place => {}
+        (Some(_), _) if view.looked().is_some() => view.look(place),
+        (Some(_), Some(mode)) => view.toggle(mode, With::Kept(place)),
         _ => {}
     }
 }

@@ -60,20 +60,6 @@ impl Facts {
         &self.model.document
     }
 
-    /// The document of the picture on the screen, which may be one that was kept.
-    pub fn shown(&self) -> &Document {
-        self.model.view.shown_document(self.document())
-    }
-
-    /// The name of the picture on the screen.
-    pub fn title(&self) -> String {
-        let Model { view, document, .. } = &self.model;
-        match view.kept.looked() {
-            Some(place) => view.kept.title(place),
-            None => document.title(),
-        }
-    }
-
     /// How a render that has ended can go on.
     pub fn further(&self) -> Option<Stop> {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
@@ -158,19 +144,16 @@ impl Facts {
     /// Why a view has nothing to show now, if so.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
-        let (has_error, shading) = (self.shown().settings.estimate_error, self.shown().rules().shading);
+        let (has_error, shading) = (self.document().settings.estimate_error, self.document().rules().shading);
         match show {
             Show::Error if !has_error => no("The film has one half; switch on Estimate error"),
             Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
-                if let Some(reason) = self.shown().no_rays() =>
+                if let Some(reason) = self.no_rays() =>
             {
                 no(reason)
             }
             Show::Bounces if shading != Shading::Path => {
                 no("In this stage rays end at their first hit, so each path is one ray")
-            }
-            Show::Occupancy if self.model.view.kept.looked().is_some() => {
-                no("A kept picture has no lanes; Escape returns to the one that is traced")
             }
             Show::Occupancy => match self.model.remembered.device {
                 Device::Gpu => no("The graphics adapter traces without packets; switch to the CPU"),

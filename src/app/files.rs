@@ -3,9 +3,9 @@
 
 use super::answers::Answers;
 use super::command::Command;
-use super::kept::Subject;
 use super::model::Document;
 use super::scene_file::SceneFile;
+use super::subject::Subject;
 use super::toasts::Toasts;
 use crate::backends::BackendChoice;
 use crate::cli::{CompanionOptions, ProgressChoice};
@@ -188,19 +188,19 @@ impl Files {
 
     /// Writes the film on the screen at the next end of a pass.
     pub fn save(&mut self, context: &Context, subject: &Subject<'_>, named: (OutputFormat, PathBuf)) {
-        let document = subject.document().clone();
-        let describe = describer(&document, subject.status(), subject.seconds_before());
+        let (document, tracing) = (subject.document.clone(), subject.tracing);
+        let describe = describer(&document, tracing.main.status(), tracing.seconds_before);
         let answer = self.saved.promise(context);
         let denoised = subject.denoised.map(Arc::clone);
-        subject
-            .inspect(move |film| answer.give(write(film, denoised.as_deref(), &document, describe, named)));
+        let work = move |film: &Film| write(film, denoised.as_deref(), &document, describe, named);
+        tracing.main.inspect(move |film| answer.give(work(film)));
     }
 
     /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
     pub fn copy(&mut self, context: &Context, subject: &Subject<'_>) {
-        let transfer = subject.document().rules().transfer;
+        let transfer = subject.document.rules().transfer;
         let answer = self.copied.answer(context);
-        subject.inspect_shown(move |film| {
+        subject.inspect(move |film| {
             let size = [film.width(), film.height()];
             let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &film.to_rgb8(transfer));
             answer.give(Ok((picture, format!("picture, {} × {}", size[0], size[1]))));
@@ -288,39 +288,6 @@ pub fn describer(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::kept::tests::{OnScreen, small_film};
-
-    #[test]
-    fn a_film_is_saved_under_a_name_of_its_format() {
-        let directory = tempfile::tempdir().unwrap();
-        let (mut files, context) = (Files::default(), Context::default());
-        let mut save = |format: OutputFormat, name: &str| {
-            let path = directory.path().join(name);
-            let screen = OnScreen::new(small_film(1, 0.5));
-            screen.before_answers(|subject| files.save(&context, subject, (format, path.clone())));
-            let outcome = files.saved.take().unwrap();
-            assert_eq!(outcome.is_ok(), path.exists(), "{name}");
-            outcome.map(|saved| assert_eq!(saved, path))
-        };
-        for (format, name) in
-            [(OutputFormat::Png, "a.png"), (OutputFormat::P6, "a.PPM"), (OutputFormat::Exr, "a.exr")]
-        {
-            assert_eq!(save(format, name), Ok(()));
-        }
-    }
-
-    #[test]
-    fn a_film_without_samples_is_not_saved() {
-        let directory = tempfile::tempdir().unwrap();
-        let (mut files, path) = (Files::default(), directory.path().join("a.png"));
-        let (screen, context) = (OnScreen::new(Film::new(4, 2, 1)), Context::default());
-        let named = (OutputFormat::Png, path.clone());
-        screen.before_answers(|subject| files.save(&context, subject, named));
-        let reason = "nothing has been traced yet; try again in a moment";
-        assert_eq!(files.saved.take(), Some(Err(reason.to_owned())));
-        assert!(!path.exists());
-    }
-
     #[test]
     fn a_file_that_is_not_opened_may_be_a_picture_to_check() {
         let directory = tempfile::tempdir().unwrap();

@@ -73,7 +73,7 @@ fn content(ui: &mut Ui, has_columns: bool, facts: &Facts) {
     }
     ui.horizontal(|ui| {
         if let Some(first) = Stage::ALL.first() {
-            let response = primary(ui, format!("Start the book at {}", first.section));
+            let response = ui.add(primary(format!("Start the book at {}", first.section)));
             if tip(ui, response, first.what_is_new, None).clicked() {
                 facts.send(Command::Stage(first));
             }

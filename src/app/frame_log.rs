@@ -116,18 +116,6 @@ mod tests {
     }
 
     #[test]
-    fn each_frame_is_logged_with_its_times_when_the_next_one_begins() {
-        let [cpu, ui, picture] = [250, 16, 1].map(Duration::from_millis);
-        let times = FrameTimes { cpu, ui, picture };
-        let lines = logged(|log| (0..3).for_each(|_| log.frame(times)));
-        assert_eq!(lines.len(), 2, "{lines:?}");
-        for line in &lines {
-            assert!(line[0] == "frame" && line[1].parse::<f64>().unwrap() >= 0.0, "{line:?}");
-            assert_eq!(line[2..], ["250.000", "16.000", "1.000"]);
-        }
-    }
-
-    #[test]
     fn the_latency_is_that_of_the_first_picture_after_each_change() {
         let lines = logged(|log| {
             log.changed();

@@ -1,7 +1,7 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
-use super::kept::{FilmId, Query, Subject};
 use super::model::Document;
+use super::subject::{PictureId, Query, Subject};
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
@@ -38,7 +38,7 @@ pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
     pub pixel: Option<Pixel>,
     /// By pixel, film and number of samples.
-    query: Query<([u32; 2], FilmId, u64), Pixel>,
+    query: Query<([u32; 2], PictureId, u64), Pixel>,
 }
 
 impl Inspector {
@@ -58,9 +58,9 @@ impl Inspector {
     /// the last known pixel stays.
     pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
         self.pixel = self.query.take().or(self.pixel.take());
-        let Some(at) = self.hovered.filter(|_| subject.is_full()) else { return };
-        let (key, transfer) =
-            ((at, subject.film_id(), subject.shown_samples()), subject.document().rules().transfer);
+        let (document, main) = (subject.document, &subject.tracing.main);
+        let Some(at) = self.hovered.filter(|_| main.is_full(document)) else { return };
+        let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
         self.query.ask(context, subject, key, move |film| {
             let [x, y] = at;
             if x >= film.width() || y >= film.height() || film.sample_count() == 0 {

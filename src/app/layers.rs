@@ -1,11 +1,11 @@
 //! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
-use super::answers::{Answer, Answers};
+use super::answers::Answers;
 use super::model::{Document, best_isa};
 use super::texture::Texture;
 use crate::backends::layers::{Layer, LayerImage};
 use crate::film::to_byte;
-use crate::job::render::{RenderJob, RenderSettings};
+use crate::job::render::{JobError, RenderJob, RenderSettings};
 use crate::numbers::heat::HeatScale;
 use crate::render_cpu::PathRecorder;
 use crate::stages::Transfer;
@@ -26,7 +26,6 @@ type Traced = Option<(LayerImage, Vec<u8>, u32)>;
 struct Ordered {
     layer: Layer,
     document: Document,
-    is_coarse: bool,
     is_pictured: bool,
 }
 
@@ -66,33 +65,12 @@ impl Layers {
     }
 
     /// Starts to trace `layer` of the document and takes new results. Returns why the layer cannot be traced, once.
-    pub fn follow(
-        &mut self,
-        context: &Context,
-        layer: Option<Layer>,
-        document: &Document,
-        is_moving: bool,
-    ) -> Option<String> {
+    pub fn follow(&mut self, context: &Context, layer: Option<Layer>, document: &Document) -> Option<String> {
         let Some(layer) = layer else {
             self.cancel.store(true, Ordering::Relaxed);
             (self.ordered, self.shown) = (None, None);
             return None;
         };
-        let fault = self.fetch();
-        let ordered = self.ordered.as_ref().filter(|ordered| ordered.layer == layer);
-        let is_at_it = ordered.is_some_and(|ordered| {
-            ordered.document.has_same_film(document) && (is_moving || !ordered.is_coarse)
-        });
-        // Until a coarse layer has been displayed, starting another one would only delay it.
-        let has_to_wait = is_moving && ordered.is_some_and(|ordered| !ordered.is_pictured);
-        if !is_at_it && !has_to_wait {
-            self.order(context, layer, document, is_moving);
-        }
-        fault
-    }
-
-    /// Takes what was traced. Returns why the layer cannot be traced, if so.
-    fn fetch(&mut self) -> Option<String> {
         let mut fault = None;
         while let Some(outcome) = self.traced.take() {
             let Some(ordered) = self.ordered.as_mut() else { continue };
@@ -108,25 +86,36 @@ impl Layers {
                 Err(reason) => fault = Some(reason),
             }
         }
+        let ordered = self.ordered.as_ref().filter(|ordered| ordered.layer == layer);
+        let is_at_it = ordered.is_some_and(|ordered| ordered.document.has_same_film(document));
+        // Until a coarse layer has been displayed, starting another one would only delay it.
+        let has_to_wait = ordered.is_some_and(|ordered| !ordered.is_pictured);
+        if !is_at_it && !has_to_wait {
+            self.order(context, layer, document);
+        }
         fault
     }
 
-    fn order(&mut self, context: &Context, layer: Layer, document: &Document, is_coarse: bool) {
+    fn order(&mut self, context: &Context, layer: Layer, document: &Document) {
         // An invalid document is reported elsewhere.
         let Ok(job) = document.job(1) else { return };
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::default();
         // A late answer is lost with its slot.
         self.traced = Answers::default();
-        self.ordered = Some(Ordered { layer, document: document.clone(), is_coarse, is_pictured: false });
+        self.ordered = Some(Ordered { layer, document: document.clone(), is_pictured: false });
         let (cancel, recorder) = (Arc::clone(&self.cancel), Arc::clone(&self.recorder));
         let answer = self.traced.answer(context);
         let work = move || {
             let mut recorder = recorder.lock().unwrap_or_else(PoisonError::into_inner);
-            let outcome = layer.job(&job).map_err(|error| error.to_string());
-            let order = Order { layer, is_coarse, cancel, answer };
-            outcome.and_then(|job| order.trace(&mut recorder, &job)).map(|()| None)
+            let job = layer.job(&job)?;
+            trace(layer, &job, &mut recorder, &cancel, |image, divisor| {
+                let rgb8 = coloured(layer, image, job.rules().transfer);
+                answer.give_one(Ok(Some((image.clone(), rgb8, divisor))));
+            })?;
+            Ok(None)
         };
+        let work = move || work().map_err(|error: JobError| error.to_string());
         self.traced.ask("layers", context, work);
     }
 }
@@ -137,53 +126,33 @@ impl Drop for Layers {
     }
 }
 
-/// A layer to trace.
-struct Order {
+/// Traces a layer coarsely, then at full size, and gives it each time the sample count has doubled.
+fn trace(
     layer: Layer,
-    is_coarse: bool,
-    cancel: Arc<AtomicBool>,
-    answer: Answer<Traced>,
-}
-
-impl Order {
-    fn trace(&self, recorder: &mut Option<PathRecorder>, job: &RenderJob) -> Result<(), String> {
-        let settings = *job.settings();
-        let pixels = f64::from(settings.width) * f64::from(settings.height);
-        let divisor = (pixels / f64::from(COARSE_PIXELS)).sqrt().ceil().max(1.0) as u32;
-        let [width, height] = [settings.width, settings.height].map(|along| along.div_ceil(divisor));
-        let coarse = RenderSettings { width, height, ..settings };
-        let coarse = job.seen_by(*job.camera(), coarse).map_err(|error| error.to_string())?;
-        if self.refine(recorder, &coarse, divisor, 1) && !self.is_coarse {
-            self.refine(recorder, job, 1, SAMPLES);
-        }
-        Ok(())
-    }
-
-    /// Adds samples and publishes the layer each time the sample count has doubled. Returns false if it was cancelled.
-    fn refine(
-        &self,
-        recorder: &mut Option<PathRecorder>,
-        job: &RenderJob,
-        divisor: u32,
-        samples: u64,
-    ) -> bool {
-        if self.cancel.load(Ordering::Relaxed) {
-            return false;
-        }
+    job: &RenderJob,
+    recorder: &mut Option<PathRecorder>,
+    cancel: &AtomicBool,
+    give: impl Fn(&LayerImage, u32),
+) -> Result<(), JobError> {
+    let settings = *job.settings();
+    let pixels = f64::from(settings.width) * f64::from(settings.height);
+    let divisor = (pixels / f64::from(COARSE_PIXELS)).sqrt().ceil().max(1.0) as u32;
+    let [width, height] = [settings.width, settings.height].map(|along| along.div_ceil(divisor));
+    let coarse = job.seen_by(*job.camera(), RenderSettings { width, height, ..settings })?;
+    for (job, divisor, samples) in [(&coarse, divisor, 1), (job, 1, SAMPLES)] {
         let earlier = recorder.take();
         let paths = recorder.insert(PathRecorder::new(job, best_isa(), earlier));
-        let mut image = LayerImage::new(self.layer, job);
+        let mut image = LayerImage::new(layer, job);
         for index in 0..samples {
-            if !image.add_sample(paths, &self.cancel) {
-                return false;
+            if !image.add_sample(paths, cancel) {
+                return Ok(());
             }
-            if (index + 1).is_power_of_two() {
-                let rgb8 = coloured(self.layer, &image, job.rules().transfer);
-                self.answer.give_one(Ok(Some((image.clone(), rgb8, divisor))));
+            if (index + 1_u64).is_power_of_two() {
+                give(&image, divisor);
             }
         }
-        true
     }
+    Ok(())
 }
 
 /// Converts a layer to three bytes per pixel.
@@ -222,7 +191,7 @@ mod tests {
         while !layers.shown(layer).is_some_and(is_full) {
             assert!(begin.elapsed() < Duration::from_secs(60), "it never came");
             std::thread::sleep(Duration::from_millis(1));
-            layers.follow(&context, Some(layer), document, false);
+            layers.follow(&context, Some(layer), document);
         }
     }
 
@@ -231,7 +200,7 @@ mod tests {
         let (mut layers, context, mut document) = (Layers::default(), Context::default(), small());
         for step in 0..20 {
             document.camera.vfov_degrees = 30.0 + f64::from(step);
-            layers.follow(&context, Some(Layer::Normals), &document, false);
+            layers.follow(&context, Some(Layer::Normals), &document);
         }
         finish(&mut layers, Layer::Normals, &document);
     }
@@ -239,16 +208,16 @@ mod tests {
     #[test]
     fn a_layer_is_ordered_when_it_or_its_picture_changes() {
         let (mut layers, context, document) = (Layers::default(), Context::default(), small());
-        layers.follow(&context, None, &document, false);
+        layers.follow(&context, None, &document);
         assert!(layers.ordered.is_none());
         finish(&mut layers, Layer::Normals, &document);
         let cancel = Arc::clone(&layers.cancel);
         assert!(layers.shown(Layer::Normals).is_some() && layers.shown(Layer::Albedo).is_none());
-        layers.follow(&context, Some(Layer::Normals), &document, true);
-        assert!(Arc::ptr_eq(&cancel, &layers.cancel), "a finished layer stays while something else moves");
+        layers.follow(&context, Some(Layer::Normals), &document);
+        assert!(Arc::ptr_eq(&cancel, &layers.cancel), "a finished layer stays");
         finish(&mut layers, Layer::Albedo, &document);
         assert!(!Arc::ptr_eq(&cancel, &layers.cancel));
-        layers.follow(&context, None, &document, false);
+        layers.follow(&context, None, &document);
         assert!(layers.cancel.load(Ordering::Relaxed) && layers.value_at([0, 0]).is_none());
         finish(&mut layers, Layer::Albedo, &document);
     }
@@ -263,7 +232,7 @@ mod tests {
             if let Some(reason) = outcome {
                 layers.traced.answer(&context).give(Err(reason.to_owned()));
             }
-            layers.follow(&context, Some(Layer::Normals), &document, false)
+            layers.follow(&context, Some(Layer::Normals), &document)
         };
         assert_eq!(follow(None), None);
         assert_eq!(follow(Some("it fell")).as_deref(), Some("it fell"));

@@ -3,11 +3,10 @@
 use super::display::Display;
 use super::facts::Facts;
 use super::inspector::Inspector;
-use super::model::{Document, Model, Remembered, Tab, ViewState};
+use super::model::{Model, Remembered, Tab};
 use super::paths::at_same_place;
 use super::second::Second;
-use super::spheres::Selected;
-use super::viewport::{Handle, Pictures, Touch};
+use super::viewport::{Pictures, Touch};
 use super::window::Window;
 use super::{bar, controls, dock, first_steps, present, right, stage_panel, status, theme};
 use eframe::egui::{self, Ui};
@@ -20,7 +19,6 @@ impl Window {
     pub(super) fn layout(&mut self, ui: &mut Ui) {
         let facts = self.facts();
         bar::name_window(ui.ctx(), facts.document());
-        self.shell.dialogs.begin(ui.ctx());
         if facts.model.presentation.is_some() {
             present::ui(ui, &facts);
         }
@@ -42,7 +40,6 @@ impl Window {
     /// The panels around the picture.
     fn panels(&mut self, ui: &mut Ui, facts: &Facts) {
         let Window { model, tracing, display, tools, .. } = self;
-        let selected = Selected::of(model);
         let Model { document, view, remembered, .. } = model;
         let has = &facts.model.remembered;
         let (room, is_narrow) = (ui.available_width(), ui.available_width() < NARROW);
@@ -58,7 +55,7 @@ impl Window {
         }
         let wanted = tabs.iter().find(|tab| **tab == remembered.tab).or(tabs.first()).copied();
         let mut controls = |ui: &mut Ui, remembered: &mut Remembered| {
-            controls::ui(ui, (document, selected.as_ref()), remembered, facts);
+            controls::ui(ui, document, remembered, facts);
         };
         if has.has_controls && !is_narrow {
             let panel = egui::Panel::left("controls").exact_size(232.0);
@@ -67,7 +64,7 @@ impl Window {
         }
         if let Some(tab) = wanted {
             right::panel(tab, room).show(ui, |ui| {
-                let (chosen, is_closed) = right::tabs(ui, &tabs, tab);
+                let chosen = right::tabs(ui, &tabs, tab);
                 if chosen != tab {
                     remembered.tab = chosen;
                 }
@@ -75,12 +72,11 @@ impl Window {
                     Tab::Stage => {
                         right::foot(ui, |ui| {
                             display.tone.ui(ui, view, facts);
-                            numbers(ui, view, facts, display, &tracing.second, &tools.inspector);
+                            numbers(ui, facts, display, &tracing.second, &tools.inspector);
                         });
                         right::scrolling(ui, |ui| stage_panel::ui(ui, facts));
                     }
                     Tab::Code => tools.code.ui(ui, facts),
-                    Tab::Check if is_closed => tools.check.close(),
                     Tab::Check => tools.check.ui(ui, facts),
                     Tab::Controls => right::scrolling(ui, |ui| controls(ui, remembered)),
                 }
@@ -111,30 +107,23 @@ impl Window {
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         let Window { model, tracing, display, tools, .. } = self;
-        let selected = Selected::of(model);
         let Model { document, view, .. } = model;
         let layer = view.show().layer();
-        let kept = view.kept.shown();
-        let shown = match kept {
-            Some(kept) => display.kept.picture.shown(kept),
-            None => tracing.main.shown(),
-        };
-        let has_film = shown.is_some();
-        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.shown().size());
+        let shown = tracing.main.shown();
+        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.document().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown(layer)) {
                 Some(layer) => Some((&layer.texture, layer.divisor > 1)),
                 None => shown.map(|shown| (&shown.texture, shown.divisor > 1)),
             },
-            has_film,
+            has_film: shown.is_some(),
             titles: titles(facts, &tracing.second),
             second: tracing.second.shown().map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
-            paths: kept.is_none().then_some(&tools.paths),
+            paths: &tools.paths,
             values: &display.values,
         };
-        let handle =
-            Handle { camera: &mut document.camera, divider: &mut view.divider, selected: selected.as_ref() };
-        display.viewport.ui(ui, handle, pictures, facts)
+        let handles = (&mut document.camera, &mut view.divider);
+        display.viewport.ui(ui, handles, pictures, facts)
     }
 
     /// Does what the pointer did in the picture.
@@ -143,10 +132,10 @@ impl Window {
             && let (Some(room), Some(at)) = (touch.room, ui.input(|input| input.pointer.hover_pos()))
             && touch.hovered.is_some()
         {
-            let Window { model, display, tracing, tools, .. } = self;
-            let numbers =
-                |ui: &mut Ui| numbers(ui, &model.view, facts, display, &tracing.second, &tools.inspector);
-            present::magnify(ui, room, at, numbers);
+            let Window { display, tracing, tools, .. } = self;
+            present::magnify(ui, room, at, |ui| {
+                numbers(ui, facts, display, &tracing.second, &tools.inspector);
+            });
         }
         self.tools.inspector.hover(touch.hovered);
         self.list_paths(ui.ctx(), touch.listed);
@@ -168,32 +157,22 @@ impl Window {
 /// The titles of the two sides of a comparison, the other one first.
 fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
-    let of = |document: &Document, kept: Option<usize>| {
-        kept.map_or_else(|| document.title(), |place| view.kept.title(place))
+    let other = match view.compared_kept() {
+        Some(place) => Some(view.kept.title(place)),
+        None => second.shown().map(|shown| shown.document.title()),
     };
-    let other = second.shown().map(|shown| of(&shown.document, view.compared_kept()));
-    [other.unwrap_or_default(), of(facts.shown(), view.kept.looked())]
+    [other.unwrap_or_default(), facts.document().title()]
 }
 
 /// The numbers of the pixel under the pointer.
-fn numbers(
-    ui: &mut Ui,
-    view: &ViewState,
-    facts: &Facts,
-    display: &Display,
-    second: &Second,
-    inspector: &Inspector,
-) {
+fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspector: &Inspector) {
+    let view = &facts.model.view;
     let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
-    let other = at.and_then(|at| other_pixel(view, second, facts.document(), at));
-    inspector.ui(ui, facts.shown(), value, other);
-}
-
-/// What the other picture of a comparison has at a pixel: linear radiance.
-fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<[f64; 3]> {
-    match view.wiped() {
-        Some(kept) => kept.mean(at_same_place(at, [view.shown_document(live).size(), kept.size()])),
+    let size = facts.document().size();
+    let other = at.and_then(|at| match view.wiped() {
+        Some(kept) => kept.means.mean(at_same_place(at, [size, kept.size()])),
         None => second.film.as_ref()?.mean(at),
-    }
+    });
+    inspector.ui(ui, facts.document(), value, other);
 }

@@ -1,6 +1,6 @@
 //! The menus, read from the table of commands.
 
-use super::command::{Command, Menu, ROWS};
+use super::command::{Command, MENUS, ROWS};
 use super::facts::Facts;
 use super::widgets::tip;
 use eframe::egui::accesskit::Toggled;
@@ -12,16 +12,16 @@ pub const MENU_WIDTH: f32 = 248.0;
 
 /// All menus of the bar.
 pub fn menus(ui: &mut Ui, facts: &Facts) {
-    for menu in Menu::BAR {
-        ui.menu_button(menu.name(), |ui| entries(ui, menu, facts));
+    for menu in MENUS {
+        ui.menu_button(menu, |ui| entries(ui, menu, facts));
     }
 }
 
 /// The entries of a menu, with its submenus where they belong.
-fn entries(ui: &mut Ui, menu: Menu, facts: &Facts) {
+fn entries(ui: &mut Ui, menu: &str, facts: &Facts) {
     ui.set_width(MENU_WIDTH);
-    if menu == Menu::View {
-        submenu(ui, Menu::Show.name(), |ui| entries(ui, Menu::Show, facts));
+    if menu == "View" {
+        submenu(ui, "Show", |ui| entries(ui, "Show", facts));
     }
     for row in ROWS.iter().filter(|row| row.menu == Some(menu)) {
         if row.has_line {
@@ -35,17 +35,17 @@ fn entries(ui: &mut Ui, menu: Menu, facts: &Facts) {
                 });
             }
             Command::ActualSize => {
-                submenu(ui, Menu::Bookmarks.name(), |ui| entries(ui, Menu::Bookmarks, facts));
+                submenu(ui, "Bookmarks", |ui| {
+                    entries(ui, "Bookmarks", facts);
+                    places(ui, facts, facts.bookmarks());
+                });
             }
             Command::FullScreen => {
                 ui.separator();
-                submenu(ui, Menu::Theme.name(), |ui| entries(ui, Menu::Theme, facts));
+                submenu(ui, "Theme", |ui| entries(ui, "Theme", facts));
             }
             _ => {}
         }
-    }
-    if menu == Menu::Bookmarks {
-        places(ui, facts, facts.bookmarks());
     }
 }
 

@@ -50,6 +50,7 @@ mod spheres;
 mod stage_list;
 mod stage_panel;
 mod status;
+mod subject;
 mod texture;
 mod theme;
 mod toasts;
@@ -60,9 +61,8 @@ mod tracing;
 mod viewport;
 mod widgets;
 mod window;
-mod wording;
 
-pub use command::{Command, Menu, ROWS};
+pub use command::{Command, MENUS, ROWS};
 pub use eframe::egui::ThemePreference as Theme;
 pub use model::{Device, Dock, Document, Origin, Remembered, Show, Sizing, Source, Tab};
 pub use window::Window;
@@ -71,7 +71,7 @@ use crate::cli::{DrawWith, WindowOptions};
 use crate::system::files::state_directory;
 use crate::system::interrupt::Interrupt;
 use anyhow::{Result, anyhow, bail};
-use eframe::egui;
+use eframe::egui::{self, Rect, pos2, vec2};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
@@ -135,20 +135,26 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
 
 /// Moves the window to a monitor if it was last on one that is gone.
 fn bring_to_monitor(context: &eframe::CreationContext) {
-    /// Pixels of the window that must be visible in each direction.
-    const VISIBLE: i32 = 64;
     let Some(window) = context.winit_window() else { return };
-    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
-    let meets = |from: i32, length: u32, begin: i32, extent: u32| {
-        from + VISIBLE <= begin + extent as i32 && begin + VISIBLE <= from + length as i32
+    let rect = |x: i32, y: i32, width: u32, height: u32| {
+        Rect::from_min_size(pos2(x as f32, y as f32), vec2(width as f32, height as f32))
     };
-    let is_visible = window.available_monitors().any(|monitor| {
+    let (Ok(at), size) = (window.outer_position(), window.outer_size()) else { return };
+    let is_on_one = window.available_monitors().any(|monitor| {
         let (corner, area) = (monitor.position(), monitor.size());
-        meets(at.x, size.width, corner.x, area.width) && meets(at.y, size.height, corner.y, area.height)
+        let area = rect(corner.x, corner.y, area.width, area.height);
+        is_in_sight(rect(at.x, at.y, size.width, size.height), area)
     });
-    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_visible) {
+    if let Some(monitor) = window.available_monitors().next().filter(|_| !is_on_one) {
         window.set_outer_position(monitor.position());
     }
+}
+
+/// Whether enough of a window is on a monitor to find and move it.
+fn is_in_sight(window: Rect, monitor: Rect) -> bool {
+    /// Pixels in each direction.
+    const VISIBLE: f32 = 64.0;
+    monitor.intersect(window).size().min_elem() >= VISIBLE
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
@@ -196,8 +202,6 @@ mod tests {
     use super::facts::Facts;
     use super::*;
     use crate::cli::{Request, parse};
-    use eframe::egui::{Event, Pos2, Ui};
-
     use egui_kittest::{Harness, HarnessBuilder};
 
     /// The window of a command line, without a display.
@@ -222,15 +226,19 @@ mod tests {
         Harness::<State>::builder().with_size(size).with_context_setup(theme::install)
     }
 
-    /// A part of the window that keeps no state.
-    pub(super) fn part<'a>(size: [f32; 2], draw: impl FnMut(&mut Ui) + 'a) -> Harness<'a> {
-        dressed(size).build_ui(draw)
-    }
-
-    /// Rests the pointer at this point until tips are shown.
-    pub(super) fn rest_at<State>(harness: &mut Harness<'_, State>, at: Pos2) {
-        harness.event(Event::PointerMoved(at));
-        harness.run_steps(6);
+    #[test]
+    fn a_window_whose_monitor_is_gone_is_brought_back() {
+        let rect = |x, y, width, height| Rect::from_min_size(pos2(x, y), vec2(width, height));
+        let monitor = rect(0.0, 0.0, 1920.0, 1080.0);
+        for (window, expected) in [
+            (rect(100.0, 100.0, 1280.0, 800.0), true),
+            (rect(-1000.0, 900.0, 1280.0, 800.0), true),
+            (rect(1900.0, 300.0, 1280.0, 800.0), false),
+            (rect(2400.0, 300.0, 1280.0, 800.0), false),
+            (rect(300.0, -800.0, 1280.0, 800.0), false),
+        ] {
+            assert_eq!(is_in_sight(window, monitor), expected, "{window:?}");
+        }
     }
 
     #[test]

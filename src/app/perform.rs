@@ -5,18 +5,18 @@ use super::command::Command;
 use super::dialogs::{
     Dialog, LargeSize, Outcome, Purpose, SaveBox, What, default_folder, file_name, samples_wanted,
 };
-use super::kept::Subject;
 use super::model::{
-    Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source, ViewState,
-    With, companion, device,
+    Body, Bookmark, Device, Dock, Document, Edit, Mode, Origin, Presentation, Remembered, Show, Source,
+    ViewState, With, companion, device,
 };
 use super::navigation;
 use super::sight::Sighted;
 use super::spheres::grip::new_body;
 use super::spheres::{self, Selected};
 use super::window::Window;
-use super::wording::{grouped, lower_first};
+use crate::film::Film;
 use crate::job::output::OutputFormat;
+use crate::measure::grouped;
 use eframe::egui::{self, Context, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::process;
@@ -38,11 +38,16 @@ impl Window {
         }
         match facts.disabled_reason(command) {
             Some(reason) => {
-                let name = facts.name(command);
-                self.shell.toasts.good(format!("{}: {}", name.trim_end_matches('…'), lower_first(&reason)));
+                self.refuse(&facts.name(command), &reason);
             }
             None => command.run(self, context),
         }
+    }
+
+    fn refuse(&mut self, name: &str, reason: &str) {
+        let mut letters = reason.chars();
+        let reason: String = letters.next().into_iter().flat_map(char::to_lowercase).chain(letters).collect();
+        self.shell.toasts.good(format!("{}: {reason}", name.trim_end_matches('…')));
     }
 
     /// Leaves the innermost thing that can be left.
@@ -50,14 +55,12 @@ impl Window {
         let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
-        } else if tools.paths.len() > 0 && model.view.kept.looked().is_none() {
+        } else if tools.paths.len() > 0 {
             commands.push(Command::ClearPaths);
         } else if display.sight.is_some() {
             commands.push(Command::ShowMe);
         } else if model.view.mode().is_some() || model.view.show() != Show::Picture {
             model.view.choose(Show::Picture);
-        } else if model.view.kept.looked().is_some() {
-            model.view.look(None);
         } else if model.selected.is_some() {
             model.selected = None;
         } else if model.has_first_steps {
@@ -102,7 +105,6 @@ impl Window {
         let kept = std::mem::take(&mut self.model.view.kept);
         self.model.view = ViewState::default();
         self.model.view.kept = kept;
-        self.model.view.look(None);
         self.display.viewport.placement.fit();
         self.model.is_paused = false;
         self.show_document(Document::new(Origin::usual()));
@@ -112,28 +114,23 @@ impl Window {
 
     pub(super) fn undo(&mut self) {
         let words = format!("Undone: {}", self.facts().undo.unwrap_or_default());
-        self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
+        self.change(|window| window.changes.undo(&mut window.model.document));
         self.shell.toasts.withdraw(Command::Redo);
         self.shell.toasts.good_with(words, &[Command::Redo]);
     }
 
     pub(super) fn redo(&mut self) {
         self.shell.toasts.withdraw(Command::Redo);
-        self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
+        self.change(|window| window.changes.redo(&mut window.model.document));
     }
 
-    /// Selects the sphere that `change` brings back or alters.
-    pub(super) fn keep_selection_after(&mut self, change: impl FnOnce(&mut Self)) {
-        let (checked, origin) = (Arc::clone(&self.document().checked), Arc::clone(&self.document().origin));
+    /// Changes the document. With other spheres, the selection would be another one.
+    pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
+        let count = self.document().scene().spheres.len();
         change(self);
-        let after = self.document();
-        if Arc::ptr_eq(&checked, &after.checked) {
-            return;
+        if self.document().scene().spheres.len() != count {
+            self.model.selected = None;
         }
-        let is_same_origin = Arc::ptr_eq(&origin, &after.origin);
-        let [old, new] = [&checked, &after.checked].map(|checked| checked.scene().spheres.len());
-        let first = super::model::first_difference(checked.scene(), after.scene());
-        self.model.selected = first.filter(|_| is_same_origin && new >= old);
     }
 
     // Camera and spheres
@@ -162,9 +159,9 @@ impl Window {
 
     /// Puts a copy to the right of the selected sphere.
     pub(super) fn duplicate_sphere(&mut self) {
-        if let Some(Selected { sphere, body, .. }) = Selected::of(&self.model) {
-            let right = self.document().camera.basis().u;
-            self.edit(Edit::Duplicate(sphere, 2.2 * body.radius * right));
+        if let Some(Selected { body, .. }) = Selected::of(&self.model) {
+            let center = body.center + 2.2 * body.radius * self.document().camera.basis().u;
+            self.edit(Edit::Add(Body { center, ..body }));
         }
     }
 
@@ -199,11 +196,7 @@ impl Window {
     pub(super) fn leave_useless_views(&mut self) {
         let show = self.model.view.show();
         if let Some(reason) = self.facts().useless_show(show).filter(|_| show != Show::Picture) {
-            self.shell.toasts.good(format!(
-                "{}: {}",
-                show.name().trim_end_matches('…'),
-                lower_first(&reason)
-            ));
+            self.refuse(show.name(), &reason);
             self.model.view.leave_show();
         }
         let is_kept_difference =
@@ -274,11 +267,6 @@ impl Window {
         }
     }
 
-    pub(super) fn open_stage_list(&mut self, context: &Context, is_at_end: bool) {
-        self.model.remembered.has_panels = true;
-        super::stage_list::open(context, is_at_end);
-    }
-
     pub(super) fn fill_screen(&mut self, context: &Context, is_full: bool) {
         if self.model.is_full_screen != is_full {
             self.model.is_full_screen = is_full;
@@ -293,7 +281,7 @@ impl Window {
                 let was_full_screen = self.model.is_full_screen;
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });
-                self.model.view.look(None);
+                self.model.view.end_look();
                 self.fill_screen(context, true);
             }
         }
@@ -325,6 +313,25 @@ impl Window {
         }
     }
 
+    /// Goes on with the chosen kept picture.
+    pub(super) fn go_on_from_kept(&mut self) {
+        let Some(kept) = self.model.view.kept.meant().cloned() else { return };
+        match kept.film.try_copy() {
+            Ok(film) => {
+                self.show_document(Document { has_own_size: true, ..kept.document.clone() });
+                self.model.view.end_comparison();
+                self.adopt(film, kept.seconds);
+            }
+            Err(error) => self.shell.toasts.bad(error.to_string()),
+        }
+    }
+
+    /// Goes on with this film of the document.
+    pub(super) fn adopt(&mut self, film: Film, seconds: Option<f64>) {
+        self.tracing.adopt(film, seconds);
+        self.changes.last = self.model.document.clone();
+    }
+
     // Files
 
     pub(super) fn ask_path(&mut self, context: &Context, purpose: Purpose) {
@@ -334,10 +341,8 @@ impl Window {
 
     /// Opens the dialog of saving with this format chosen.
     pub(super) fn ask_save(&mut self, format: OutputFormat) {
-        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
-        let document = subject.document();
-        let (name, what) = (file_name(document), What::Picture(format));
-        let save = SaveBox::new(&name, self.folder(), what, document.size());
+        let (name, what) = (file_name(self.document()), What::Picture(format));
+        let save = SaveBox::new(&name, self.folder(), what, self.document().size());
         self.shell.dialogs.open(Dialog::Save(save));
     }
 
@@ -353,12 +358,8 @@ impl Window {
             Outcome::Named(Purpose::Check, path) => self.tools.check.begin(context, &path, None),
             Outcome::Named(_, path) => self.files.open(context, path),
             Outcome::Save(what, size, path) => {
-                if let Some(folder) =
-                    path.parent().filter(|folder| default_folder().as_deref() == Some(folder))
-                {
-                    // If this fails, writing the file tells why.
-                    let _ = std::fs::create_dir_all(folder);
-                }
+                // If this fails, writing the file tells why.
+                let _ = path.parent().map(std::fs::create_dir_all);
                 self.save_as(context, what, size, path);
             }
             Outcome::Size(size) => {
@@ -370,15 +371,14 @@ impl Window {
     }
 
     fn save_as(&mut self, context: &Context, what: What, size: [u32; 2], path: PathBuf) {
-        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
-        let document = subject.document();
+        let document = &self.model.document;
         match what {
             What::Scene => self.files.save_scene(context, path, document),
             What::Picture(format) if size == document.size() => {
                 self.files.pending_save = Some((format, path));
             }
             What::Picture(format) => {
-                let samples = samples_wanted(document, subject.status());
+                let samples = samples_wanted(document, self.tracing.main.status());
                 let mut document = document.clone();
                 document.give_size(size);
                 let backend = self.model.backend();
@@ -418,7 +418,7 @@ impl Window {
         let (name, samples) = (document.place(), grouped(samples));
         let words =
             format!("The last window ended early. {name} with {samples} samples per pixel was saved.");
-        self.shell.toasts.offer(words, &[Command::Recover, Command::NotNow]);
+        self.shell.toasts.offer(words, &[Command::Recover]);
     }
 
     pub(super) fn recover(&mut self, context: &Context) {
@@ -501,10 +501,9 @@ impl Window {
 
     /// Copies the command that renders the picture, and says what it needs.
     pub(super) fn copy_command(&mut self, context: &Context) {
-        let subject = Subject::new(&self.model.view, &self.model.document, &self.tracing);
-        let document = subject.document();
-        let samples = match subject.samples() {
-            samples @ 1.. if subject.is_full() => samples,
+        let (document, main) = (&self.model.document, &self.tracing.main);
+        let samples = match main.status().samples_per_pixel {
+            samples @ 1.. if main.is_full(document) => samples,
             _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
         };
         let device = self.model.remembered.device;

@@ -1,6 +1,6 @@
 //! The numbers of pixels, drawn in them when they are large.
 
-use super::kept::{FilmId, Query, Subject};
+use super::subject::{PictureId, Query, Subject};
 use super::widgets::compact;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
 
@@ -20,7 +20,7 @@ struct Part {
 pub struct PixelValues {
     part: Option<Part>,
     /// By film, samples and pixels.
-    query: Query<(FilmId, u64, [[u32; 2]; 2]), Part>,
+    query: Query<(PictureId, u64, [[u32; 2]; 2]), Part>,
 }
 
 impl PixelValues {
@@ -28,12 +28,12 @@ impl PixelValues {
     /// `area` is the viewport.
     pub fn follow(&mut self, subject: &Subject<'_>, rect: Rect, area: Option<Rect>, context: &egui::Context) {
         self.part = self.query.take().or(self.part.take());
-        let visible = area.and_then(|area| visible(rect, area, subject.document().size()));
+        let visible = area.and_then(|area| visible(rect, area, subject.document.size()));
         let Some([first, end]) = visible.filter(|_| subject.has_samples()) else {
             *self = PixelValues::default();
             return;
         };
-        self.query.ask(context, subject, (subject.film_id(), subject.samples(), [first, end]), move |film| {
+        self.query.ask(context, subject, (subject.id(), subject.samples(), [first, end]), move |film| {
             let means = (first[1]..end[1].min(film.height()))
                 .flat_map(|y| (first[0]..end[0].min(film.width())).map(move |x| [x, y]))
                 .map(|[x, y]| film.mean(y as usize * film.width() as usize + x as usize))

@@ -4,12 +4,12 @@
 use super::facts::Facts;
 use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
-use super::widgets::{compact, hint, swatch, tip};
+use super::widgets::{compact, hint, tip};
 use crate::numbers::statistics::fit::Point;
 use crate::progressive::{HistoryPoint, Status};
-use eframe::egui::{self, Color32, Rangef, Sense, Sides, Ui, Vec2b};
+use eframe::egui::{self, Rangef, Sense, Sides, Ui, Vec2b};
 use egui_plot::{
-    AxisHints, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
+    AxisHints, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, Points, uniform_grid_spacer,
 };
 use std::fmt::Write;
 
@@ -56,22 +56,11 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         let seconds = 10_f64.powf(x) + ahead.time.min(FARTHEST);
         vec![[x, y], at(&Point { time: seconds, error: goal })]
     });
-    ui.horizontal(|ui| {
-        let mut names: Vec<(Color32, &str)> = curves.iter().map(|(backend, _)| style(backend)).collect();
-        names.sort_by_key(|(_, name)| *name);
-        names.dedup();
-        names.into_iter().for_each(|(colour, name)| swatch(ui, colour, name));
-        if let Some(goal) = goal {
-            swatch(ui, weak, &format!("goal {} %", compact(two_digits(100.0 * goal))));
-        }
-        if ahead.is_some() {
-            swatch(ui, expected, "expected");
-        }
-    });
     let axis = |hints: AxisHints<'static>, name: &str| {
         hints.label(egui::RichText::new(name).small()).formatter(|mark, _| power(mark.value))
     };
     let plot = Plot::new("error")
+        .legend(Legend::default())
         .allow_drag(false)
         .allow_zoom(Vec2b::FALSE)
         .allow_scroll(false)
@@ -98,7 +87,8 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         });
     plot.show(ui, |plot| {
         if let Some(goal) = goal {
-            let line = HLine::new("goal", (100.0 * goal).log10()).color(weak);
+            let name = format!("goal {} %", compact(two_digits(100.0 * goal)));
+            let line = HLine::new(name, (100.0 * goal).log10()).color(weak);
             plot.hline(line.style(LineStyle::dashed_loose()).allow_hover(false));
         }
         if let Some(ahead) = ahead {
@@ -113,7 +103,8 @@ fn plot(ui: &mut Ui, goal: Option<f64>, status: &Status) {
         // The newest estimate, after the last point.
         if let (Some((backend, points)), Some(now)) = (curves.last(), now) {
             let newest = points.last().into_iter().copied().chain([now]).collect::<Vec<_>>();
-            let line = Line::new("now", PlotPoints::from(newest)).color(style(backend).0);
+            let (colour, name) = style(backend);
+            let line = Line::new(name, PlotPoints::from(newest)).color(colour);
             plot.line(line.width(1.0).allow_hover(false));
         }
     });

@@ -125,7 +125,8 @@ fn title(ui: &mut Ui, unit: f32, facts: &Facts) {
         }
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
             let changed = if facts.document().has_changed_scene() { ", changed" } else { "" };
-            let title = stage.map_or_else(|| facts.title(), |stage| format!("{}{changed}", stage.title));
+            let title =
+                stage.map_or_else(|| facts.document().title(), |stage| format!("{}{changed}", stage.title));
             ui.add(Label::new(RichText::new(title).size(4.5 * unit).color(colours.strong)).truncate());
         });
     });

@@ -78,8 +78,7 @@ impl Window {
         let words = format!("Opened {name}; its size and samples hold for this picture only");
         self.shell.toasts.good(words);
         if let Some(film) = saved.and_then(Saved::into_film) {
-            self.tracing.adopt(film);
-            self.changes.last = self.model.document.clone();
+            self.adopt(film.film, film.seconds);
         }
     }
 
@@ -93,8 +92,7 @@ impl Window {
             }
             return;
         }
-        self.tracing.adopt(film);
-        self.changes.last = self.model.document.clone();
+        self.adopt(film.film, film.seconds);
         if !is_quiet {
             self.shell.toasts.good(format!("Going on with {}", self.document().place()));
         }

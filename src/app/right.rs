@@ -2,8 +2,8 @@
 
 use super::model::Tab;
 use super::theme;
-use super::widgets::{TABS, panel_line, sign_button, tab, tip};
-use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Sides, Ui};
+use super::widgets::{panel_line, tab};
+use eframe::egui::{CentralPanel, Frame, Margin, Panel, Rangef, ScrollArea, Ui};
 
 /// Points that are left for the picture.
 const PICTURE: f32 = 240.0;
@@ -36,32 +36,22 @@ pub fn panel(tab: Tab, room: f32) -> Panel {
         .frame(theme::panel(Margin::ZERO))
 }
 
-/// Draws the tabs. Returns the one to show from now on, and whether the present one was closed.
-pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> (Tab, bool) {
+/// Draws the tabs. Returns the one to show from now on.
+pub fn tabs(ui: &mut Ui, tabs: &[Tab], shown: Tab) -> Tab {
     ui.spacing_mut().item_spacing.y = 0.0;
-    let (mut chosen, mut is_closed) = (shown, false);
+    let mut chosen = shown;
     Frame::new().inner_margin(Margin::symmetric(16, 0)).show(ui, |ui| {
-        Sides::new().height(TABS).show(
-            ui,
-            |ui| {
-                ui.spacing_mut().item_spacing.x = 16.0;
-                for each in tabs {
-                    if tab(ui, each.name(), *each == shown).clicked() {
-                        chosen = *each;
-                    }
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 16.0;
+            for each in tabs {
+                if tab(ui, each.name(), *each == shown).clicked() {
+                    chosen = *each;
                 }
-            },
-            |ui| {
-                if matches!(shown, Tab::Code | Tab::Check) {
-                    let name = format!("Close {}", shown.name().to_lowercase());
-                    let response = sign_button(ui, "×", 24.0, &name);
-                    is_closed = tip(ui, response, "Back to the stage", None).clicked();
-                }
-            },
-        );
+            }
+        });
     });
     panel_line(ui);
-    (if is_closed { Tab::Stage } else { chosen }, is_closed)
+    chosen
 }
 
 /// What stays at the foot of the panel, at the same height for all stages.

@@ -2,10 +2,10 @@
 //! picture that was kept.
 
 use super::answers::Answers;
-use super::kept::KeptPicture;
 use super::model::{Document, Kept, Mode, Origin, Other, ViewState, differ_in_camera};
+use super::texture::Texture;
 use super::tracer::{Shown, Tracer, Want};
-use crate::progressive::ReferenceMeans;
+use crate::progressive::{ReferenceMeans, View};
 use eframe::egui::Context;
 use std::sync::Arc;
 
@@ -98,15 +98,7 @@ impl Second {
             tracer.abandon();
         }
         self.picture.follow(context, &kept, &view.tone.of_picture());
-        let is_difference = view.mode() == Some(Mode::Difference);
-        self.film = kept.known_means().filter(|_| is_difference).cloned();
-        if is_difference && self.film.is_none() && !self.films.is_open() {
-            let (kept, answer) = (Arc::clone(&kept), self.films.answer(context));
-            super::kept::run(move || {
-                let means = Arc::clone(kept.means());
-                answer.give(Ok((Arc::clone(&kept.document.origin), means)));
-            });
-        }
+        self.film = (view.mode() == Some(Mode::Difference)).then(|| Arc::clone(&kept.means));
         let origin = Arc::clone(&kept.document.origin);
         self.of = Some((Other::Kept(kept), origin));
     }
@@ -128,6 +120,41 @@ impl Second {
         let stop = if usual_stop == mine.origin.usual_stop() { mine.stop } else { usual_stop };
         let camera = if differ_in_camera(base, theirs) { theirs.camera } else { mine.camera };
         Document { camera, settings, stop, ..Document::of(Arc::clone(origin)) }
+    }
+}
+
+/// The picture of a kept film, resolved on a thread.
+#[derive(Default)]
+struct KeptPicture {
+    resolved: Option<(u64, View, Shown)>,
+    /// The kept picture, the view, and three bytes per pixel.
+    answers: Answers<(Arc<Kept>, View, Vec<u8>)>,
+}
+
+impl KeptPicture {
+    /// The newest picture of `kept`.
+    fn shown(&self, kept: &Kept) -> Option<&Shown> {
+        self.resolved.as_ref().filter(|(of, ..)| *of == kept.number).map(|(_, _, shown)| shown)
+    }
+
+    /// Takes the picture that was resolved, and has the film resolved in `view` if that is another one.
+    fn follow(&mut self, context: &Context, kept: &Arc<Kept>, view: &View) {
+        while let Some(Ok((of, view, rgb8))) = self.answers.take() {
+            let earlier = self.resolved.take().map(|(_, _, shown)| shown.texture);
+            let texture = Texture::new(of.size(), &rgb8, earlier);
+            let document = of.document.clone();
+            let shown = Shown { texture, samples: of.samples(), divisor: 1, document, run: 0 };
+            self.resolved = Some((of.number, view, shown));
+        }
+        let is_known = |(of, in_view, _): &(u64, View, Shown)| *of == kept.number && in_view.is_same(view);
+        if self.answers.is_open() || self.resolved.as_ref().is_some_and(is_known) {
+            return;
+        }
+        let (kept, view) = (Arc::clone(kept), view.clone());
+        self.answers.ask("kept", context, move || {
+            let rgb8 = view.resolve(&kept.film, kept.document.rules().transfer, None);
+            Ok((kept, view, rgb8))
+        });
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A sight that is shown, and what was shown before.
 pub struct Sighted {
     origin: Arc<Origin>,
-    looks: (Show, Option<Mode>),
+    looks: (Show, Option<Mode>, With),
     view: ViewState,
     placement: Placement,
     /// The camera before, if it was not the stage's.
@@ -27,13 +27,12 @@ impl Sighted {
         let home = document.origin.recipe.camera;
         let mut before = Sighted {
             origin: Arc::clone(&document.origin),
-            looks: (view.show(), view.mode()),
+            looks: (view.show(), view.mode(), view.with()),
             view: view.clone(),
             placement: placement.clone(),
             camera: (document.camera != home).then_some(document.camera),
         };
         document.camera = home;
-        view.look(None);
         view.choose(Show::of_means(stage.sight.means));
         match stage.sight.means {
             Means::Luminance(range) => view.tone.range = range,
@@ -47,15 +46,13 @@ impl Sighted {
             Some(part) => placement.show_part(part),
             None => placement.fit(),
         }
-        before.looks = (view.show(), view.mode());
+        before.looks = (view.show(), view.mode(), view.with());
         before
     }
 
     /// Whether the window still shows it.
     pub fn lasts(&self, document: &Document, view: &ViewState) -> bool {
-        Arc::ptr_eq(&self.origin, &document.origin)
-            && self.looks == (view.show(), view.mode())
-            && view.kept.looked().is_none()
+        Arc::ptr_eq(&self.origin, &document.origin) && self.looks == (view.show(), view.mode(), view.with())
     }
 
     /// Whether another picture is shown.
@@ -82,68 +79,10 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::{Kept, Tone};
-    use crate::film::Film;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();
         (stage, Document::new(Origin::of_stage(stage)))
-    }
-
-    /// A stage whose sight has these means.
-    fn with_means(is_it: fn(&Means) -> bool) -> (&'static Stage, Document) {
-        let found = Stage::ALL.iter().find(|stage| is_it(&stage.sight.means)).unwrap();
-        stage(found.id)
-    }
-
-    /// A picture that was kept.
-    fn kept(document: &Document) -> Kept {
-        let mut film = Film::new(4, 2, 1);
-        film.record(0..1, 0).unwrap();
-        Kept::new(document.clone(), film, Arc::default(), None)
-    }
-
-    #[test]
-    fn a_sight_shows_its_means_from_the_stages_own_camera_and_returns() {
-        let cases: [fn(&Means) -> bool; 3] = [
-            |means| matches!(means, Means::Luminance(_)),
-            |means| matches!(means, Means::Wipe(_)),
-            |means| matches!(means, Means::StandardError),
-        ];
-        for is_it in cases {
-            if !Stage::ALL.iter().any(|stage| is_it(&stage.sight.means)) {
-                continue;
-            }
-            let (stage, mut document) = with_means(is_it);
-            let home = document.camera;
-            document.camera.vfov_degrees = 33.0;
-            let moved = document.camera;
-            let mut view = ViewState::default();
-            view.tone.expose(1.0);
-            let (range, mut placement) = (view.tone.range, Placement::default());
-            placement.actual_size();
-            let before = placement.zoom;
-            let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
-            assert!(document.camera == home && sight.lasts(&document, &view));
-            assert_eq!(view.show(), Show::of_means(stage.sight.means));
-            match stage.sight.means {
-                Means::Luminance(wanted) => assert_eq!(view.tone.range, wanted),
-                Means::Wipe(divider) => {
-                    assert_eq!((view.mode(), view.divider), (Some(Mode::Wipe), divider));
-                }
-                _ => {}
-            }
-            assert_ne!(placement.zoom, before);
-            view.tone.expose(1.0);
-            sight.end(&mut document, &mut view, &mut placement);
-            assert_eq!((document.camera, placement.zoom), (moved, before));
-            assert_eq!((view.show(), view.mode()), (Show::Picture, None));
-            assert_eq!(
-                view.tone,
-                Tone { exposure: 2.0, range, ..Tone::default() },
-                "the exposure stays as it was chosen"
-            );
-        }
     }
 
     #[test]
@@ -172,10 +111,7 @@ mod tests {
         other.toggle(Mode::Difference, With::Kept(0));
         assert!(!sight.lasts(&document, &other));
         let mut other = view.clone();
-        other.kept.add(kept(&document));
-        other.look(None);
-        assert!(sight.lasts(&document, &other), "a picture was kept meanwhile");
-        other.look(Some(0));
+        other.look(0);
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));

@@ -20,17 +20,6 @@ pub struct Present {
     pub is_needed: bool,
 }
 
-/// What to do about a picture that does not have the size of the viewport.
-#[derive(Debug, PartialEq)]
-enum Verdict {
-    /// Render it at the new size.
-    Change,
-    /// Look again after this time.
-    Wait(Duration),
-    /// Show it scaled, and offer to render it at the new size.
-    Keep,
-}
-
 /// Follows the size of the viewport.
 #[derive(Default)]
 pub struct Sizer {
@@ -70,30 +59,20 @@ impl Sizer {
         if wanted == document.size() {
             return;
         }
-        let is_by_hand = context.input(|input| input.pointer.any_down());
-        match verdict(present, now.duration_since(since), is_by_hand) {
+        let settled = now.duration_since(since);
+        if is_asked || sizing == Sizing::Book || !present.is_documents {
             // The book's size changes only when the user chooses it or another picture.
-            _ if is_asked || sizing == Sizing::Book => document.set_size(wanted),
-            Verdict::Change => document.set_size(wanted),
-            Verdict::Wait(time) => context.request_repaint_after(time),
-            Verdict::Keep => self.offer = Some(wanted),
+            document.set_size(wanted);
+        } else if settled < SETTLE {
+            context.request_repaint_after(SETTLE - settled);
+        } else if present.is_needed || present.seconds > LONG_SECONDS {
+            // Also while a button of the mouse is down, which may be pressing the offer.
+            self.offer = Some(wanted);
+        } else if context.input(|input| input.pointer.any_down()) {
+            context.request_repaint_after(SETTLE);
+        } else {
+            document.set_size(wanted);
         }
-    }
-}
-
-/// What to do about a picture when another size fits for `settled`. `is_by_hand` says that a button of the mouse is down.
-fn verdict(present: &Present, settled: Duration, is_by_hand: bool) -> Verdict {
-    if !present.is_documents {
-        Verdict::Change
-    } else if settled < SETTLE {
-        Verdict::Wait(SETTLE - settled)
-    } else if present.is_needed || present.seconds > LONG_SECONDS {
-        // Also while a button of the mouse is down, which may be pressing the offer.
-        Verdict::Keep
-    } else if is_by_hand {
-        Verdict::Wait(SETTLE)
-    } else {
-        Verdict::Change
     }
 }
 
@@ -106,18 +85,6 @@ mod tests {
     use crate::stages::Stage;
 
     const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
-    const LONG: Duration = Duration::from_secs(1);
-
-    #[test]
-    fn a_window_that_is_being_resized_is_waited_for() {
-        let short = Duration::from_millis(100);
-        assert_eq!(verdict(&YOUNG, short, false), Verdict::Wait(Duration::from_millis(150)));
-        assert!(matches!(verdict(&YOUNG, LONG, true), Verdict::Wait(_)), "the mouse drags an edge");
-        assert_eq!(verdict(&YOUNG, LONG, false), Verdict::Change);
-        let old = Present { seconds: 99.0, ..YOUNG };
-        assert!(matches!(verdict(&old, short, false), Verdict::Wait(_)), "nothing flickers");
-        assert_eq!(verdict(&Present { is_documents: false, ..YOUNG }, short, true), Verdict::Change);
-    }
 
     fn ago(seconds: u64) -> Instant {
         Instant::now().checked_sub(Duration::from_secs(seconds)).unwrap()
@@ -149,14 +116,5 @@ mod tests {
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
         assert_eq!(sizer.offer, None);
         assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
-    }
-
-    #[test]
-    fn ten_seconds_of_tracing_are_given_up_and_no_more() {
-        let after = |seconds| verdict(&Present { seconds, ..YOUNG }, SETTLE, false);
-        assert_eq!([10.0, 10.5].map(after), [Verdict::Change, Verdict::Keep]);
-        let nearly = Duration::from_millis(249);
-        assert_eq!(verdict(&YOUNG, nearly, false), Verdict::Wait(Duration::from_millis(1)));
-        assert_eq!(verdict(&YOUNG, SETTLE, true), Verdict::Wait(SETTLE));
     }
 }

@@ -1,6 +1,7 @@
 //! The list of stages: a field to search in, chapters as headings, and the extreme scenes.
 
 use super::command::Command;
+use super::dialogs::Outcome;
 use super::facts::Facts;
 use super::finder::Finder;
 use super::widgets::{caption, choice, tip};
@@ -8,21 +9,17 @@ use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Rect, Response,
-    RichText, TextureHandle, Ui, WidgetInfo, vec2,
+    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Response, RichText,
+    TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
-pub const WIDTH: f32 = 360.0;
+const WIDTH: f32 = 360.0;
 
 /// Size of the small pictures, points.
 const PICTURE: egui::Vec2 = vec2(72.0, 40.0);
 
 const LAST_HEADING: &str = "Extreme scenes";
-
-fn place() -> Id {
-    Id::unique("list of stages")
-}
 
 /// All rows: the walk through the book, what else is a stage, and the extreme scenes.
 fn rows() -> impl Iterator<Item = Command> {
@@ -57,27 +54,21 @@ fn found(typed: &str) -> Vec<Command> {
     if by_name.is_empty() { having(true) } else { by_name }
 }
 
-/// Opens the list at the picture that is shown, or at its end.
-pub fn begin(context: &Context, facts: &Facts, is_at_end: bool) {
+/// The list at the picture that is shown, or at its end.
+pub fn list(facts: &Facts, is_at_end: bool) -> Finder {
     let is_first = |row| match is_at_end {
         true => heading_of(row) == LAST_HEADING,
         false => facts.is_on(row),
     };
-    let chosen = rows().position(is_first).unwrap_or(0);
-    context.data_mut(|data| data.insert_temp(place(), Finder::at(chosen)));
+    Finder::at(rows().position(is_first).unwrap_or(0))
 }
 
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
-pub fn ui(ui: &mut Ui, facts: &Facts) {
+pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
     ui.set_width(WIDTH);
-    // Tips stand beside what clips a column.
-    let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
-    ui.shrink_clip_rect(column);
-    let mut finder: Finder = ui.data(|data| data.get_temp(place())).unwrap_or_default();
     if finder.has_text() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
-        finder = Finder::at(0);
+        *finder = Finder::at(0);
     }
-    let height = (ui.ctx().content_rect().height() - 140.0).clamp(160.0, 720.0);
     let words = (
         "Search for a stage",
         "Type a number or a word: 9.5, glass, gamma",
@@ -92,11 +83,10 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
         row_ui(ui, *row, is_chosen)
     };
     let (found, run) = finder.ui(ui, words, height, found, draw);
-    ui.data_mut(|data| data.insert_temp(place(), finder));
-    if let Some(run) = run {
+    run.map_or(Outcome::Stay, |run| {
         facts.send(found[run]);
-        ui.close();
-    }
+        Outcome::Close
+    })
 }
 
 fn row_ui(ui: &mut Ui, row: Command, is_chosen: bool) -> Response {
@@ -147,16 +137,6 @@ fn thumbnail(context: &Context, stage: &Stage) -> Option<TextureHandle> {
         context.data_mut(|data| data.insert_temp(place, handle.clone()));
         Some(handle)
     })
-}
-
-/// Opens the list in this frame. `is_at_end` shows the extreme scenes, which come last.
-pub fn open(context: &Context, is_at_end: bool) {
-    context.data_mut(|data| data.insert_temp(place().with("open"), is_at_end));
-}
-
-/// Whether the list is to be opened, and if so, whether at its end.
-pub fn take_open(ui: &Ui) -> Option<bool> {
-    ui.data_mut(|data| data.remove_temp(place().with("open")))
 }
 
 #[cfg(test)]

@@ -3,12 +3,10 @@
 use super::command::Command;
 use super::facts::Facts;
 use super::model::{Document, With, partner};
-use super::widgets::{
-    add_command, choice, command_button, command_switch, hint, primary, small, tip, with_keys,
-};
+use super::widgets::{add_command, choice, command_button, command_switch, hint, primary, small};
 use crate::measure::stress::Case;
 use crate::stages::Stage;
-use eframe::egui::{Button, Label, Link, RichText, Ui};
+use eframe::egui::{Label, Link, RichText, Ui};
 
 pub fn ui(ui: &mut Ui, facts: &Facts) {
     let document = facts.document();
@@ -61,18 +59,14 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts) {
 
 /// A button that shows what to look for, and then says what is seen.
 fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts) {
-    let command = Command::ShowMe;
-    let reason = facts.disabled_reason(command);
+    let is_off = facts.disabled_reason(Command::ShowMe).is_some();
     ui.add_space(4.0);
     // The card of the first steps has the one button to press next.
-    let response = if facts.has_sight || facts.model.has_first_steps || reason.is_some() {
+    if facts.has_sight || facts.model.has_first_steps || is_off {
         let label = if facts.has_sight { "Return" } else { "Show me" };
-        ui.add_enabled(reason.is_none(), Button::new(label))
+        command_button(ui, facts, Command::ShowMe, label);
     } else {
-        primary(ui, "Show me")
-    };
-    if tip(ui, response, &with_keys(ui, command.help(), command), reason.as_deref()).clicked() {
-        facts.send(command);
+        add_command(ui, facts, Command::ShowMe, primary("Show me"));
     }
     if facts.has_sight {
         let text = RichText::new(stage.sight.caption).strong().line_height(Some(20.0));
@@ -118,39 +112,4 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts) {
     let command = Command::BookArithmetic;
     let button = choice(ui, facts.is_on(command), command.name());
     add_command(ui, facts, command, button);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::CheckedScene;
-    use crate::app::tests::{dressed, facts_of};
-    use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
-    use std::sync::Arc;
-
-    fn panel(words: &str) -> Harness<'static, Facts> {
-        let draw = |ui: &mut Ui, facts: &mut Facts| super::ui(ui, facts);
-        dressed([270.0, 900.0]).build_ui_state(draw, facts_of(words))
-    }
-
-    #[test]
-    fn spheres_and_materials_are_counted_as_edited() {
-        let mut harness = panel("--scene field:20 --size 32x18");
-        let shown = |harness: &Harness<'_, Facts>| {
-            let scene = harness.state().document().scene();
-            let words = format!("{} spheres, {} materials", scene.spheres.len(), scene.materials.len());
-            assert!(harness.query_by_label(&words).is_some(), "{words}");
-            words
-        };
-        let before = shown(&harness);
-        let document = &mut harness.state_mut().model.document;
-        let mut scene = document.scene().clone();
-        let material = scene.materials[0].clone();
-        scene.materials.extend([material.clone(), material]);
-        scene.spheres.truncate(4);
-        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
-        harness.run_steps(3);
-        assert_ne!(shown(&harness), before);
-    }
 }

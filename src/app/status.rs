@@ -2,16 +2,14 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::kept::FilmId;
-use super::model::Sizing;
 use super::prediction::prediction;
 use super::spheres;
 use super::theme;
 use super::widgets::{command_button, compact, small, tip};
-use super::wording::grouped;
 use crate::denoise::DenoisedError;
 use crate::film::Film;
 use crate::job::render::BackendInfo;
+use crate::measure::grouped;
 use crate::progressive::{EndReason, Phase, Status};
 use eframe::egui::{
     self, Align, Button, Id, Label, Layout, Margin, PopupCloseBehavior, RectAlign, Response, RichText, Sides,
@@ -67,7 +65,7 @@ fn sentence_ui(ui: &mut Ui, facts: &Facts, offered: Option<[u32; 2]>) {
     } else if let Some([width, height]) = offered {
         ui.label("This picture is scaled.");
         let name = format!("Render at {width} × {height}");
-        command_button(ui, facts, Command::Size(Sizing::Viewport), &name);
+        command_button(ui, facts, Command::RenderAtSize, &name);
     }
 }
 
@@ -102,9 +100,9 @@ pub fn sentence(facts: &Facts) -> String {
     if let Some(reason) = &facts.invalid {
         return format!("Not rendered: {reason}");
     }
-    let kept = &facts.model.view.kept;
-    if let Some((place, shown)) = kept.looked().zip(kept.shown()) {
-        let (title, samples) = (kept.title(place), grouped(shown.samples()));
+    let view = &facts.model.view;
+    if let Some((place, kept)) = view.looked().zip(view.wiped()) {
+        let (title, samples) = (view.kept.title(place), grouped(kept.samples()));
         return format!("Kept {title}, {samples} samples per pixel. Escape returns to the picture");
     }
     if let Some(checked) = &facts.checked {
@@ -154,9 +152,9 @@ pub fn sentence(facts: &Facts) -> String {
 /// The error of the denoised picture of the traced film, or why there is none, if it is to be shown.
 fn denoised_error(facts: &Facts) -> Option<Result<DenoisedError, &str>> {
     let view = &facts.model.view;
-    let (film, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
+    let (run, found) = view.denoised.as_ref().filter(|_| view.is_denoised)?;
     let outcome = found.as_ref().map(|denoised| denoised.error).map_err(String::as_str);
-    (*film == FilmId::Live(facts.status.run) && outcome != Err("")).then_some(outcome)
+    (*run == facts.status.run && outcome != Err("")).then_some(outcome)
 }
 
 /// When a render without a number of samples will end.
@@ -174,8 +172,7 @@ fn ending(facts: &Facts) -> String {
 /// How much of the work is done, `0..=1`; none without an end.
 pub fn share(facts: &Facts) -> Option<f64> {
     let (status, stop) = (&*facts.status, facts.document().stop);
-    let is_kept = facts.model.view.kept.looked().is_some();
-    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse || is_kept {
+    if status.phase.is_over() || status.samples_per_pixel == 0 || facts.is_coarse {
         return None;
     }
     let of_samples = stop.samples.map(|end| status.samples_per_pixel as f64 / end.max(1) as f64);

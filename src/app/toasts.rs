@@ -18,8 +18,6 @@ struct Toast {
     since: Instant,
     /// It stays until it is closed or withdrawn.
     stays: bool,
-    /// The run of the render whose picture it is about, if it is about a picture.
-    run: Option<u64>,
     /// What it offers to do.
     offers: Vec<Command>,
     /// Its lower edge above that of the picture, and its height, points. It never moves.
@@ -50,17 +48,10 @@ impl Toasts {
         self.add(text, true);
     }
 
-    /// Reports what is wrong with the picture of the render with this run, in the window and on the terminal.
-    pub fn warn(&mut self, text: impl Into<String>, run: u64) {
-        self.bad(text);
-        if let Some(toast) = self.0.last_mut() {
-            toast.run = Some(run);
-        }
-    }
-
-    /// Removes what was wrong with the pictures of other runs than this one.
-    pub fn end_warnings(&mut self, run: u64) {
-        self.0.retain(|toast| toast.run.is_none_or(|of| of == run));
+    /// Reports what is remarkable about a render, both in the window and on the terminal.
+    pub fn note(&mut self, text: &str) {
+        console::note(&format!("weekender: {text}"));
+        self.good(text);
     }
 
     /// Reports a success, and offers commands that follow from it.
@@ -88,15 +79,7 @@ impl Toasts {
     fn add(&mut self, text: String, is_error: bool) {
         self.0.retain(|toast| toast.text != text);
         let since = Instant::now();
-        self.0.push(Toast {
-            text,
-            is_error,
-            since,
-            stays: is_error,
-            run: None,
-            offers: Vec::new(),
-            place: None,
-        });
+        self.0.push(Toast { text, is_error, since, stays: is_error, offers: Vec::new(), place: None });
     }
 
     /// The visible messages, oldest first.
@@ -184,17 +167,6 @@ mod tests {
             toasts.good(text);
         }
         assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first"]);
-    }
-
-    #[test]
-    fn a_warning_ends_with_its_picture() {
-        let mut toasts = Toasts::default();
-        toasts.warn("too thin", 1);
-        toasts.bad("not saved");
-        toasts.end_warnings(1);
-        assert_eq!(toasts.texts().count(), 2);
-        toasts.end_warnings(3);
-        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["not saved"]);
     }
 
     #[test]

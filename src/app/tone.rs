@@ -2,8 +2,8 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::kept::{FilmId, Query, Subject};
 use super::model::{Channel, Show, Tone, ViewState};
+use super::subject::{PictureId, Query, Subject};
 use super::theme;
 use super::widgets::{
     About, Header, Number, add_command, compact, entry, fold, hint, list, row, small, switch, tip,
@@ -12,22 +12,17 @@ use crate::film::Histogram;
 use eframe::egui::{
     self, Align2, Checkbox, Pos2, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
-use std::time::{Duration, Instant};
 
 /// Height of the histogram in points.
 const HEIGHT: f32 = 72.0;
-
-/// Time between two histograms of a picture that refines: counting takes the tracer's time.
-const INTERVAL: Duration = Duration::from_millis(500);
 
 /// The histogram on the screen.
 #[derive(Default)]
 pub struct ToneUi {
     is_open: bool,
     histogram: Option<Histogram>,
-    /// By film, white and samples.
-    query: Query<(FilmId, f64, u64), Histogram>,
-    asked_at: Option<Instant>,
+    /// By film, white, and how often its samples have doubled.
+    query: Query<(PictureId, f64, u32), Histogram>,
 }
 
 impl ToneUi {
@@ -37,14 +32,10 @@ impl ToneUi {
         if !self.is_open || !subject.has_samples() {
             return;
         }
-        let key = (subject.film_id(), white, subject.samples());
-        let is_same = self.query.asked.is_some_and(|(film, of_white, _)| (film, of_white) == (key.0, white));
-        let wait = self.asked_at.map_or(Duration::ZERO, |at| INTERVAL.saturating_sub(at.elapsed()));
-        if is_same && !wait.is_zero() {
-            context.request_repaint_after(wait);
-        } else if self.query.ask(context, subject, key, move |film| Some(Histogram::of(film, white))) {
-            self.asked_at = Some(Instant::now());
-        }
+        // Counting takes the tracer's time.
+        let doublings = subject.samples().ilog2();
+        let key = (subject.id(), white, doublings);
+        self.query.ask(context, subject, key, move |film| Some(Histogram::of(film, white)));
     }
 
     /// Draws what is shown and how bright, and the histogram.

@@ -3,10 +3,10 @@
 use super::check::Check;
 use super::code::Code;
 use super::inspector::Inspector;
-use super::kept::Subject;
 use super::lanes::Lanes;
 use super::model::{Dock, Model};
 use super::paths::Paths;
+use super::subject::Subject;
 use eframe::egui::Context;
 
 #[derive(Default)]

@@ -121,6 +121,11 @@ impl Tracer {
         self.shown.as_ref()
     }
 
+    /// Samples per pixel of the newest picture; 0 as long as only that of an earlier film is there.
+    pub fn shown_samples(&self) -> u64 {
+        self.shown.as_ref().filter(|shown| shown.run == self.status.run).map_or(0, |shown| shown.samples)
+    }
+
     /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
         self.started

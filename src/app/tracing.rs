@@ -1,14 +1,12 @@
 //! What traces: the render on the screen, the one that it is compared with, and their size.
 
 use super::changes::Changes;
-use super::kept::FilmId;
 use super::model::{Device, Model, Sizing};
 use super::second::Second;
 use super::sizer::{Present, Sizer};
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
 use crate::film::Film;
-use crate::job::saved::SavedFilm;
 use crate::progressive::Status;
 use eframe::egui::Context;
 use std::time::{Duration, Instant};
@@ -53,14 +51,13 @@ impl Tracing {
     }
 
     /// Goes on with this film, which is the document's.
-    pub fn adopt(&mut self, film: SavedFilm) {
-        self.seconds_before = film.seconds;
-        self.film = Some(film.film);
+    pub fn adopt(&mut self, film: Film, seconds: Option<f64>) {
+        (self.film, self.seconds_before) = (Some(film), seconds);
     }
 
-    /// Tracing time of the film's samples; infinite if it is not known.
-    pub fn seconds(&self) -> f64 {
-        self.seconds_before.unwrap_or(f64::INFINITY) + self.main.status().trace.as_secs_f64()
+    /// Tracing time of the film's samples, if known.
+    pub fn seconds(&self) -> Option<f64> {
+        Some(self.seconds_before? + self.main.status().trace.as_secs_f64())
     }
 
     pub fn pause(&mut self, context: &Context) {
@@ -90,7 +87,7 @@ impl Tracing {
         let present = Present {
             is_documents: self.main.is_of(&model.document),
             // A presentation begins with a picture of its own size, whatever that costs.
-            seconds: if is_presented { 0.0 } else { self.seconds() },
+            seconds: if is_presented { 0.0 } else { self.seconds().unwrap_or(f64::INFINITY) },
             is_needed,
         };
         let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
@@ -104,7 +101,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_shown(FilmId::Live(self.main.status().run), self.second.film.as_ref()),
+            view: view.of_shown(self.main.status().run, self.second.film.as_ref()),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };
@@ -125,13 +122,10 @@ impl Tracing {
         };
         for message in &status.messages[messages..] {
             if status.given_up.is_empty() {
-                toasts.warn(message, status.run);
+                toasts.note(message);
             } else {
                 toasts.bad(message);
             }
-        }
-        if status.samples_per_pixel > 0 {
-            toasts.end_warnings(status.run);
         }
         let (next, failures) = device_after(*device, failures, status);
         *device = next;

@@ -73,7 +73,9 @@ pub fn tip(ui: &Ui, response: Response, help: &str, disabled_reason: Option<&str
     let text = [Some(help), reason].into_iter().flatten().filter(|part| !part.is_empty());
     let text = text.collect::<Vec<_>>().join("\n\n");
     let is_held = response.ctx.input(|input| input.pointer.any_down());
-    if !text.is_empty() && !is_held && Tooltip::should_show_tooltip(&response, true) {
+    // A dialog may have opened above it.
+    let is_reached = response.ctx.memory(|memory| memory.allows_interaction(response.layer_id));
+    if !text.is_empty() && !is_held && is_reached && Tooltip::should_show_tooltip(&response, true) {
         show_tip(ui, &response, &text);
     }
     response
@@ -145,20 +147,22 @@ pub fn hint(ui: &mut Ui, text: &str) -> Response {
 }
 
 /// The button to press next. There is at most one in the window.
-pub fn primary(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
-    let colours = theme::colours(ui);
-    let towards = if ui.visuals().dark_mode { Color32::WHITE } else { Color32::BLACK };
-    ui.scope(|ui| {
-        let widgets = &mut ui.visuals_mut().widgets;
-        for (widget, share) in
-            [(&mut widgets.inactive, 0.0), (&mut widgets.hovered, 0.08), (&mut widgets.active, 0.16)]
-        {
-            widget.weak_bg_fill = colours.accent.lerp_to_gamma(towards, share);
-            widget.fg_stroke.color = colours.on_accent;
-        }
-        ui.add(Button::new(text.into()))
-    })
-    .inner
+pub fn primary(text: impl Into<WidgetText>) -> impl Widget {
+    move |ui: &mut Ui| {
+        let (colours, is_dark) = (theme::colours(ui), ui.visuals().dark_mode);
+        let towards = if is_dark { Color32::WHITE } else { Color32::BLACK };
+        ui.scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            for (widget, share) in
+                [(&mut widgets.inactive, 0.0), (&mut widgets.hovered, 0.08), (&mut widgets.active, 0.16)]
+            {
+                widget.weak_bg_fill = colours.accent.lerp_to_gamma(towards, share);
+                widget.fg_stroke.color = colours.on_accent;
+            }
+            ui.add(Button::new(text.into()))
+        })
+        .inner
+    }
 }
 
 /// A button for a command, under this name.

@@ -9,9 +9,9 @@ use super::facts::Facts;
 use super::files::Files;
 use super::frame_log::FrameLog;
 use super::input;
-use super::kept::Subject;
 use super::model::{Device, DeviceOptions, Document, Model, Origin, Source, Stored, Tab, ViewState};
 use super::shell::Shell;
+use super::subject::Subject;
 use super::theme;
 use super::tools::Tools;
 use super::tracing::Tracing;
@@ -208,7 +208,7 @@ impl Window {
             self.escape();
         }
         let before = self.model.document.camera;
-        if self.model.view.kept.looked().is_none() && input::fly(context, &mut self.model.document.camera) {
+        if input::fly(context, &mut self.model.document.camera) {
             if let Some(reason) = self.document().no_rays() {
                 self.model.document.camera = before;
                 self.shell.toasts.good(reason);
@@ -244,7 +244,7 @@ impl Window {
         self.tracing.follow_size(context, &mut self.model, room, needs_film);
         if self.changes.follow(context, &self.model.document) {
             self.tracing.seconds_before = Some(0.0);
-            self.model.view.look(None);
+            self.model.view.end_look();
             if let Some(log) = &mut self.shell.frame_log {
                 log.changed();
             }

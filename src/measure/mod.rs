@@ -11,6 +11,7 @@ pub mod stress;
 mod table;
 
 pub use candidate::{Candidate, Source, Stop, Traced};
+pub use table::grouped;
 
 use crate::cli::terminal::write_figures;
 use anyhow::Result;

@@ -20,12 +20,12 @@ pub(super) fn or_dash<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> St
 
 /// A number with its noun: `1 lane`, `8 lanes`, `10,000 shells`.
 pub fn counted(number: usize, noun: &str) -> String {
-    format!("{} {noun}{}", grouped(number), if number == 1 { "" } else { "s" })
+    format!("{} {noun}{}", grouped(number as u64), if number == 1 { "" } else { "s" })
 }
 
 /// Digits grouped by commas: `10,000`.
-pub fn grouped(number: usize) -> String {
-    HumanCount(number as u64).to_string()
+pub fn grouped(number: u64) -> String {
+    HumanCount(number).to_string()
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ fn another_device_goes_on_with_the_same_film() {
     let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
     until(&mut harness, "samples", has_samples(8));
     let (run, before) = (harness.state().status().run, harness.state().status().samples_per_pixel);
-    send(&mut harness, Command::Device(Device::Reference));
+    send(&mut harness, Command::Reference);
     until(&mut harness, "two contributions", |window| window.status().contributions.len() == 2);
     let status = harness.state().status();
     assert_eq!(status.run, run);

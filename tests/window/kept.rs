@@ -5,10 +5,10 @@ use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, Show, Window};
+use weekender::app::{Command, Window};
 use weekender::film::to_byte;
 use weekender::numbers::heat::HeatScale;
-use weekender::progressive::{Phase, luminance};
+use weekender::progressive::Phase;
 use weekender::stages::Transfer;
 
 /// A pixel in the sky above the left ball.
@@ -68,21 +68,14 @@ fn a_kept_picture_stays_as_it_was() {
     assert_ne!(in_8_bits(kept, 0.0), in_8_bits(live, 0.0));
 
     harness.key_press_modifiers(Modifiers::ALT, Key::Num1);
-    until(&mut harness, "it", |window| window.shown_pixel(AT) == Some(in_8_bits(kept, 0.0)));
-    assert_eq!(harness.state().looked(), Some(0));
-    assert_eq!(mean(&mut harness), kept, "the inspector reads it");
+    until(&mut harness, "it", |window| window.other_pixel(AT) == Some(in_8_bits(kept, 0.0)));
+    assert_eq!((harness.state().looked(), harness.state().divider()), (Some(0), 1.0));
     send(&mut harness, Command::Brighter);
-    until(&mut harness, "exposure", |window| window.shown_pixel(AT) == Some(in_8_bits(kept, 0.5)));
+    until(&mut harness, "exposure", |window| window.other_pixel(AT) == Some(in_8_bits(kept, 0.5)));
     send(&mut harness, Command::NoExposure);
-    send(&mut harness, Command::Show(Show::Luminance));
-    let colour = HeatScale::luminance([-8.0, 4.0]).colour(luminance(kept));
-    until(&mut harness, "false colours", |window| window.shown_pixel(AT) == Some(colour));
-
-    for expected in [(Show::Picture, Some(0)), (Show::Picture, None)] {
-        harness.key_press(Key::Escape);
-        harness.run_steps(2);
-        assert_eq!((harness.state().show(), harness.state().looked()), expected);
-    }
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().looked(), None);
     until(&mut harness, "the live picture", |window| window.shown_pixel(AT) == Some(in_8_bits(live, 0.0)));
 }
 
@@ -98,13 +91,24 @@ fn one_key_flips_and_a_change_returns_to_the_live_picture() {
         seen.push(harness.state().looked());
     }
     assert_eq!(seen, [Some(0), None, Some(0)]);
-    // A drag moves the picture, not the camera, which belongs to the live one.
-    let camera = harness.state().shown_document().camera;
-    crate::common::drag(&mut harness, eframe::egui::PointerButton::Primary, Modifiers::NONE);
-    assert_eq!((harness.state().shown_document().camera, harness.state().looked()), (camera, Some(0)));
     harness.state_mut().document_mut().camera.vfov_degrees = 50.0;
     harness.run_steps(2);
-    assert_eq!(harness.state().looked(), None);
+    assert!(harness.state().looked().is_none() && !harness.state().is_comparing());
+}
+
+#[test]
+fn a_kept_picture_goes_on_with_its_samples() {
+    let mut harness = finished(8);
+    keep(&mut harness);
+    let kept = harness.state().shown_document().camera;
+    change(&mut harness);
+    send(&mut harness, Command::GoOnFromKept);
+    until(&mut harness, "its picture", is_done);
+    assert_eq!(
+        (harness.state().shown_document().camera, harness.state().status().samples_per_pixel),
+        (kept, 8)
+    );
+    assert!(harness.state().status().contributions.is_empty(), "nothing was traced again");
 }
 
 #[test]

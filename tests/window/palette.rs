@@ -1,8 +1,8 @@
 //! The palette: an empty box does nothing, and what is found is carried out.
 
-use crate::common::{SMALL, open};
+use crate::common::{SMALL, control, open};
 use crate::questions::Ask as _;
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Theme, Window};
@@ -46,4 +46,19 @@ fn another_word_leads_to_a_field() {
     harness.run_steps(5);
     let mut fields = harness.get_all_by_label("Defocus angle");
     assert!(fields.any(|node| node.accesskit_node().is_focused()), "the field has the focus");
+}
+
+#[test]
+fn no_tip_stays_above_a_dialog() {
+    let mut harness = open(SMALL);
+    let at = control(&harness, "Save…").rect().center();
+    harness.event(Event::PointerMoved(at));
+    harness.run_steps(60);
+    let has_tip = |harness: &Harness<'_, Window>| {
+        harness.query_all_by_label_contains(Command::Save.help()).next().is_some()
+    };
+    assert!(has_tip(&harness));
+    harness.key_press(Key::F1);
+    harness.run_steps(5);
+    assert!(harness.state().has_dialog() && !has_tip(&harness));
 }

@@ -3,12 +3,12 @@
 use super::common::{control, open, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::OutputCommand;
-use weekender::app::{Command, Dock};
+use weekender::app::Command;
 
 #[test]
 fn a_render_ends_at_the_goal_goes_on_to_a_lower_one_and_its_errors_are_copied() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.01");
-    send(&mut harness, Command::Dock(Dock::Error));
+    send(&mut harness, Command::ErrorDock);
     until(&mut harness, "the end", |window| window.status().phase.is_over());
     let done = harness.state().status().samples_per_pixel;
     send(&mut harness, Command::Pause);

@@ -33,7 +33,7 @@ pub trait Ask {
     /// The kept pictures by name, with their samples per pixel.
     fn kept(&self) -> Vec<(String, u64)>;
 
-    /// The place of the kept picture that is shown.
+    /// The place of the kept picture that hides the traced one.
     fn looked(&self) -> Option<usize>;
 
     /// The two sentences of the answer to "Only noise?".
@@ -48,6 +48,9 @@ pub trait Ask {
     fn is_comparing(&self) -> bool;
 
     fn has_other_picture(&self) -> bool;
+
+    /// A pixel of the picture that the traced one is compared with.
+    fn other_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]>;
 
     fn divider(&self) -> f32;
 
@@ -110,7 +113,7 @@ impl Ask for Window {
     }
 
     fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
-        self.display.shown(&self.model, &self.tracing).and_then(|shown| shown.texture.colour(at))
+        self.tracing.main.shown().and_then(|shown| shown.texture.colour(at))
     }
 
     fn is_up_to_date(&self) -> bool {
@@ -122,7 +125,7 @@ impl Ask for Window {
     }
 
     fn looked(&self) -> Option<usize> {
-        self.model.view.kept.looked()
+        self.model.view.looked()
     }
 
     fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
@@ -157,6 +160,10 @@ impl Ask for Window {
             }
             _ => false,
         }
+    }
+
+    fn other_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
+        self.tracing.second.shown().and_then(|shown| shown.texture.colour(at))
     }
 
     fn divider(&self) -> f32 {

@@ -124,9 +124,9 @@ fn settings_are_remembered_and_those_of_another_version_ignored() {
     let mut harness = remembering("--stage metal --size 16x9", &stored);
     for command in [
         Command::Theme(Theme::Light),
-        Command::Dock(Dock::Error),
+        Command::ErrorDock,
         Command::Info,
-        Command::Device(Device::Reference),
+        Command::Reference,
         Command::AddBookmark,
     ] {
         send(&mut harness, command);

@@ -58,7 +58,7 @@ fn a_picture_of_another_program_is_checked() {
     control(&harness, "Go to 2.2").click();
     harness.run_steps(3);
     assert_eq!(harness.state().shown_document().stage().unwrap().section, "2.2");
-    control(&harness, "Close check").click();
+    control(&harness, "Close").click();
     harness.run_steps(3);
     assert!(harness.state().checked().is_none() && harness.query_by_label("Picture").is_some());
     let _kept = drop_file(&mut harness, b"P6\nnothing");
@@ -82,7 +82,7 @@ fn the_code_of_a_stage_is_shown_and_copied() {
     harness.step();
     let is_code = |command: &egui::OutputCommand| matches!(command, egui::OutputCommand::CopyText(text) if text.contains("fn reflectance"));
     assert!(harness.output().platform_output.commands.iter().any(is_code));
-    control(&harness, "Close code").click();
+    send(&mut harness, Command::Code);
     harness.run_steps(2);
     assert!(harness.query_by_label("Why").is_some());
 }

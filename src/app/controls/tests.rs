@@ -1,7 +1,6 @@
 //! Tests of the left panel.
 
 use super::*;
-use crate::app::spheres::Selected;
 use crate::app::tests::{dressed, facts_of};
 use eframe::egui::{self, Key, Role};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -11,11 +10,9 @@ use egui_kittest::{Harness, Node};
 fn panel(words: &str) -> Harness<'static, Facts> {
     let draw = |ui: &mut Ui, facts: &mut Facts| {
         let (mut document, mut remembered) = (facts.model.document.clone(), facts.model.remembered.clone());
-        let selected = Selected::of(&facts.model);
         egui::Frame::new().inner_margin(egui::Margin::symmetric(16, 8)).show(ui, |ui| {
             ui.set_min_width(200.0);
-            let chosen = (&mut document, selected.as_ref());
-            super::ui(ui, chosen, &mut remembered, facts);
+            super::ui(ui, &mut document, &mut remembered, facts);
         });
         (facts.model.document, facts.model.remembered) = (document, remembered);
     };

@@ -138,12 +138,6 @@ impl PathField {
     }
 }
 
-fn missing_folder(path: &Path) -> Option<String> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir())?;
-    let is_default = default_folder().as_deref() == Some(folder);
-    (!is_default).then(|| format!("The folder {} is not there: choose another", folder.display()))
-}
-
 /// Focuses a field of text, all of which is selected, until something else takes the focus.
 fn focus(ui: &Ui, field: &egui::Response, text: &str) {
     // Enter, which takes the focus, is still to be seen.
@@ -162,7 +156,7 @@ fn buttons(ui: &mut Ui, field: &egui::Response, label: &str, is_usable: bool) ->
     let is_enter = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         ui.spacing_mut().interact_size.y = 32.0;
-        let is_pressed = ui.add_enabled_ui(is_usable, |ui| primary(ui, label)).inner.clicked();
+        let is_pressed = ui.add_enabled(is_usable, primary(label)).clicked();
         let is_cancelled = ui.button("Cancel").clicked();
         if is_pressed || is_enter && is_usable { Some(true) } else { is_cancelled.then_some(false) }
     })
@@ -242,19 +236,20 @@ impl SaveBox {
             }
             right.add_enabled_ui(self.what != What::Scene, |ui| self.sizes(ui, facts));
         });
-        let (path, shown) = (self.path(), facts.shown());
+        let (path, shown) = (self.path(), facts.document());
         let size = self.pixels(self.size, shown);
-        let (reason, is_replaced) = (missing_folder(&path), path.exists());
-        let colours = theme::colours(ui);
-        match &reason {
-            Some(reason) => ui.colored_label(colours.bad, reason),
-            None if is_replaced => ui.colored_label(colours.warn, "A file of this name is there already."),
-            None if self.what != What::Scene && shown.size() != size => {
+        let (is_replaced, has_folder) = (path.exists(), path.parent().is_none_or(Path::is_dir));
+        match has_folder {
+            _ if is_replaced => {
+                ui.colored_label(theme::colours(ui).warn, "A file of this name is there already.")
+            }
+            false => ui.weak("The folder is made first."),
+            true if self.what != What::Scene && shown.size() != size => {
                 ui.weak("Renders first, and you can go on meanwhile.")
             }
-            None => ui.label(""),
+            true => ui.label(""),
         };
-        let is_usable = !self.name.trim().is_empty() && !path.is_dir() && reason.is_none();
+        let is_usable = !self.name.trim().is_empty() && !path.is_dir();
         match buttons(ui, &field, if is_replaced { "Replace" } else { "Save" }, is_usable) {
             Some(true) => Outcome::Save(self.what, size, path),
             Some(false) => Outcome::Close,
@@ -270,9 +265,9 @@ impl SaveBox {
             (Size::Twice, "Twice as large"),
             (Size::Other, "Other"),
         ] {
-            let [width, height] = self.pixels(size, facts.shown());
+            let [width, height] = self.pixels(size, facts.document());
             let when = match seconds_at(facts, [width, height]) {
-                _ if facts.shown().size() == [width, height] => ", ready".to_owned(),
+                _ if facts.document().size() == [width, height] => ", ready".to_owned(),
                 Some(seconds) => format!(", about {}", time(seconds.ceil())),
                 None => String::new(),
             };

@@ -1,10 +1,10 @@
 //! The dialog that lists keys and mouse actions.
 
 use super::Outcome;
-use crate::app::command::{Menu, ROWS, Row};
+use crate::app::command::{ROWS, Row};
 use crate::app::theme;
-use crate::app::widgets::{caption, hint};
-use eframe::egui::{self, Context, Frame, Margin, RichText, Sides, Ui, vec2};
+use crate::app::widgets::caption;
+use eframe::egui::{Context, Frame, Margin, RichText, ScrollArea, Sides, Ui};
 
 const GROUPS: [&str; 8] = ["The picture", "Camera", "File", "Edit", "View", "Render", "Stage", "Other"];
 
@@ -33,9 +33,9 @@ const MOUSE: [(&str, &str, &str); 18] = [
 /// The group of a command: its menu in the bar.
 fn group(row: &Row) -> &'static str {
     match row.menu {
-        Some(Menu::Show | Menu::Bookmarks | Menu::Theme) => Menu::View.name(),
-        Some(menu) if menu != Menu::Help => menu.name(),
-        _ => "Other",
+        Some("Show" | "Bookmarks" | "Theme") => "View",
+        None | Some("Help") => "Other",
+        Some(menu) => menu,
     }
 }
 
@@ -47,37 +47,18 @@ fn rows(title: &str, context: &Context) -> Vec<(String, String)> {
     mouse.chain(named.filter_map(with_keys)).collect()
 }
 
-/// Keys and mouse, and the words to search for.
-#[derive(Default)]
-pub struct Keys {
-    text: String,
-}
-
-impl Keys {
-    pub(super) fn ui(&mut self, ui: &mut Ui, height: f32) -> Outcome {
-        ui.heading("Keys and mouse");
-        let edit = egui::TextEdit::singleline(&mut self.text).hint_text("Search").margin(vec2(8.0, 8.0));
-        ui.add(edit.desired_width(f32::INFINITY)).accessible_name("Search");
-        let typed = self.text.to_lowercase();
-        let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
-        area.auto_shrink(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
-            let mut is_empty = true;
-            for title in GROUPS {
-                let mut rows = rows(title, ui.ctx());
-                rows.retain(|(what, keys)| format!("{title} {what} {keys}").to_lowercase().contains(&typed));
-                if !rows.is_empty() {
-                    is_empty = false;
-                    caption(ui, title);
-                    rows.iter().for_each(|(what, keys)| row_ui(ui, what, keys));
-                }
-            }
-            if is_empty {
-                hint(ui, "No key or command is called that.");
-            }
-        });
-        if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
-    }
+/// Draws the dialog.
+pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
+    ui.heading("Keys and mouse");
+    let area = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+    area.auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for title in GROUPS {
+            caption(ui, title);
+            rows(title, ui.ctx()).iter().for_each(|(what, keys)| row_ui(ui, what, keys));
+        }
+    });
+    if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
 }
 
 fn row_ui(ui: &mut Ui, what: &str, keys: &str) {

@@ -7,11 +7,11 @@ mod palette;
 mod sky;
 
 pub use files::{LargeSize, PathField, Purpose, SaveBox, What, default_folder, file_name, samples_wanted};
-pub use help::Keys;
 
 use super::facts::Facts;
 use super::finder::Finder;
-use eframe::egui::{self, Context, Id, Modal, PointerState, Ui};
+use super::stage_list;
+use eframe::egui::{self, Align2, Color32, Id, Modal, Ui, vec2};
 use std::path::PathBuf;
 
 /// What happens to a dialog after a frame.
@@ -30,8 +30,10 @@ pub enum Outcome {
 pub enum Dialog {
     /// All commands by name.
     Palette(Finder),
+    /// The list of stages.
+    Stages(Finder),
     /// Keys and mouse.
-    Help(Keys),
+    Help,
     /// The colours of the sky.
     Sky,
     /// Version and licences.
@@ -48,8 +50,6 @@ pub enum Dialog {
 #[derive(Default)]
 pub struct Dialogs {
     open: Option<Dialog>,
-    /// The pointer, while what is behind a dialog is drawn.
-    pointer: Option<PointerState>,
     pub system: files::System,
 }
 
@@ -64,30 +64,29 @@ impl Dialogs {
         self.open = Some(dialog);
     }
 
-    /// Hides the pointer from what is drawn behind a dialog: a tip that was shown there would stay above the dialog as long as
-    /// the pointer rests.
-    pub fn begin(&mut self, context: &Context) {
-        if self.is_open() {
-            self.pointer = Some(context.input_mut(|input| std::mem::take(&mut input.pointer)));
-        }
-    }
-
     /// Draws the dialog. Returns how it closes.
     pub fn ui(&mut self, ui: &mut Ui, facts: &Facts) -> Outcome {
-        if let Some(pointer) = self.pointer.take() {
-            ui.ctx().input_mut(|input| input.pointer = pointer);
-        }
         let Some(dialog) = self.open.as_mut() else { return Outcome::Stay };
         let room = ui.ctx().content_rect().size();
         // Each kind has its own size.
         let id = Id::unique(("dialog", std::mem::discriminant(dialog)));
-        let modal = Modal::new(id).frame(egui::Frame::window(ui.style())).show(ui.ctx(), |ui| {
+        let mut modal = Modal::new(id).frame(egui::Frame::window(ui.style()));
+        if matches!(dialog, Dialog::Stages(_)) {
+            // It hangs below the bar.
+            let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
+            modal = modal.area(area).frame(egui::Frame::menu(ui.style()).inner_margin(8));
+            modal = modal.backdrop_color(Color32::TRANSPARENT);
+        }
+        let modal = modal.show(ui.ctx(), |ui| {
             ui.set_max_width((room.x - 64.0).min(512.0));
             match dialog {
                 Dialog::Palette(finder) => {
                     palette::ui(finder, ui, (room.y - 180.0).clamp(100.0, 360.0), facts)
                 }
-                Dialog::Help(keys) => keys.ui(ui, (room.y - 240.0).clamp(100.0, 560.0)),
+                Dialog::Stages(finder) => {
+                    stage_list::ui(finder, ui, (room.y - 140.0).clamp(160.0, 720.0), facts)
+                }
+                Dialog::Help => help::ui(ui, (room.y - 200.0).clamp(100.0, 560.0)),
                 Dialog::Sky => sky::ui(ui, facts),
                 Dialog::About => about::ui(ui, facts),
                 Dialog::Save(save) => save.ui(ui, facts, &mut self.system),
@@ -112,33 +111,5 @@ impl Dialogs {
             (_, None, _) => self.open(Dialog::Path(PathField::new(purpose, from))),
         }
         None
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::tests::{facts_of, part, rest_at};
-    use eframe::egui;
-
-    #[test]
-    fn what_is_behind_a_dialog_does_not_see_the_pointer() {
-        let facts = facts_of("--stage metal --size 32x18");
-        let mut dialogs = Dialogs::default();
-        for is_open in [false, true] {
-            if is_open {
-                dialogs.open(Dialog::Help(Keys::default()));
-            }
-            let mut seen = Vec::new();
-            let mut harness = part([800.0, 600.0], |ui| {
-                dialogs.begin(ui.ctx());
-                let behind = ui.ctx().input(|input| input.pointer.hover_pos());
-                dialogs.ui(ui, &facts);
-                seen.push([behind, ui.ctx().input(|input| input.pointer.hover_pos())].map(|at| at.is_some()));
-            });
-            rest_at(&mut harness, egui::pos2(400.0, 300.0));
-            drop(harness);
-            assert_eq!(seen.last(), Some(&[!is_open, true]));
-        }
     }
 }

@@ -15,16 +15,6 @@ fn taken(events: Vec<egui::Event>, context: &egui::Context) -> (Vec<Command>, bo
 }
 
 #[test]
-fn every_shortcut_gives_its_command() {
-    for row in ROWS.iter() {
-        let Some(shortcut) = row.keys else { continue };
-        let event = key(shortcut.logical_key, shortcut.modifiers);
-        let found = taken(vec![event], &egui::Context::default());
-        assert_eq!(found, (vec![row.command], !row.command.opens_dialog()), "{:?}", row.command);
-    }
-}
-
-#[test]
 fn each_press_counts_and_a_dialog_gets_the_keys_that_follow() {
     let context = egui::Context::default();
     let plain = |pressed| key(pressed, Modifiers::NONE);

@@ -164,14 +164,20 @@ impl Document {
         }
     }
 
-    /// The name of the picture in menus and badges.
-    pub fn title(&self) -> String {
-        let title = match &self.origin.source {
+    /// The name of what is shown, changed or not.
+    pub fn heading(&self) -> String {
+        match &self.origin.source {
             Source::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Source::Extreme(case) => case.title().to_owned(),
+            Source::File(path) => path.file_name().unwrap_or(path.as_os_str()).display().to_string(),
             _ => self.origin.recipe.name.clone(),
-        };
-        if self.has_changed_scene() { format!("{title} (changed)") } else { title }
+        }
+    }
+
+    /// The name of the picture in menus and badges.
+    pub fn title(&self) -> String {
+        let heading = self.heading();
+        if self.has_changed_scene() { format!("{heading} (changed)") } else { heading }
     }
 
     /// A short name for sentences: the section of the book, else the title.
@@ -309,8 +315,8 @@ mod tests {
         let changed = edited(&metal());
         assert_eq!(names(&changed), expected("10.5 Mirrors (changed)", "metal-changed"));
         let opened = Document::new(Origin::new(changed.recipe(), Source::File("a.toml".into())));
-        assert_eq!(names(&opened), expected("metal-changed", "metal-changed"));
-        assert_eq!(names(&edited(&opened)), expected("metal-changed (changed)", "metal-changed"));
+        assert_eq!(names(&opened), expected("a.toml", "metal-changed"));
+        assert_eq!(names(&edited(&opened)), expected("a.toml (changed)", "metal-changed"));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::Document;
 use crate::film::Film;
-use crate::progressive::{ReferenceMeans, Status};
+use crate::progressive::ReferenceMeans;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::{RgbImage, imageops};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -29,13 +29,12 @@ pub struct Kept {
     pub document: Document,
     /// Its exact sums.
     pub film: Arc<Film>,
-    /// The status of its render.
-    pub status: Arc<Status>,
-    /// Tracing time of the samples from before that render, if known.
-    pub seconds_before: Option<f64>,
+    /// Tracing time of its samples, if known.
+    pub seconds: Option<f64>,
+    /// Its picture to subtract from another.
+    pub means: Arc<ReferenceMeans>,
     small: ColorImage,
     texture: OnceLock<TextureHandle>,
-    means: OnceLock<Arc<ReferenceMeans>>,
 }
 
 impl std::fmt::Debug for Kept {
@@ -46,17 +45,16 @@ impl std::fmt::Debug for Kept {
 
 impl Kept {
     /// Keeps a film of `document` that has samples.
-    pub fn new(document: Document, film: Film, status: Arc<Status>, seconds_before: Option<f64>) -> Self {
+    pub fn new(document: Document, film: Film, seconds: Option<f64>) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         Kept {
             number: COUNT.fetch_add(1, Ordering::Relaxed),
             small: small_copy(&film, &document),
+            means: Arc::new(ReferenceMeans::of(&film)),
             document,
             film: Arc::new(film),
-            status,
-            seconds_before,
+            seconds,
             texture: OnceLock::new(),
-            means: OnceLock::new(),
         }
     }
 
@@ -76,26 +74,10 @@ impl Kept {
         [self.film.width(), self.film.height()]
     }
 
-    /// The linear radiance of a pixel, column and row.
-    pub fn mean(&self, [x, y]: [u32; 2]) -> Option<[f64; 3]> {
-        let is_inside = x < self.film.width() && y < self.film.height();
-        is_inside.then(|| self.film.mean(y as usize * self.film.width() as usize + x as usize))
-    }
-
-    /// Its picture to subtract from another, if that was computed.
-    pub fn known_means(&self) -> Option<&Arc<ReferenceMeans>> {
-        self.means.get()
-    }
-
-    /// Its picture to subtract from another. The first call takes as long as resolving the picture.
-    pub fn means(&self) -> &Arc<ReferenceMeans> {
-        self.means.get_or_init(|| Arc::new(ReferenceMeans::of(&self.film)))
-    }
-
     /// Bytes that it takes.
     pub fn bytes(&self) -> u64 {
         let [width, height] = self.size();
-        let of_means = self.means.get().map_or(0, |means| size_of_val(means.means.as_slice()) as u64);
+        let of_means = size_of_val(self.means.means.as_slice()) as u64;
         Film::bytes(width, height, self.film.halves().len()) + of_means
     }
 }
@@ -104,7 +86,6 @@ impl Kept {
 #[derive(Clone, Debug, Default)]
 pub struct KeptList {
     pictures: Vec<Arc<Kept>>,
-    looked: Option<usize>,
     chosen: Option<usize>,
 }
 
@@ -120,16 +101,6 @@ impl KeptList {
     /// As it is called in sentences.
     pub fn title(&self, place: usize) -> String {
         self.get(place).map_or_else(String::new, |kept| format!("{}: {}", place + 1, kept.document.title()))
-    }
-
-    /// The place of the picture that is shown instead of the traced one.
-    pub fn looked(&self) -> Option<usize> {
-        self.looked
-    }
-
-    /// The kept picture that is shown instead of the traced one.
-    pub fn shown(&self) -> Option<&Arc<Kept>> {
-        self.get(self.looked?)
     }
 
     /// The place of the picture that commands mean.
@@ -148,12 +119,6 @@ impl KeptList {
         }
     }
 
-    /// Shows a kept picture, or the traced one.
-    pub fn look(&mut self, place: Option<usize>) {
-        self.looked = place.filter(|place| *place < self.pictures.len());
-        self.chosen = self.looked.or(self.chosen);
-    }
-
     /// Adds a picture and chooses it. Returns its place.
     pub fn add(&mut self, kept: Kept) -> usize {
         self.pictures.push(Arc::new(kept));
@@ -169,51 +134,11 @@ impl KeptList {
         }
         self.pictures.remove(place);
         let after = |other: usize| (other != place).then(|| other - usize::from(other > place));
-        self.looked = self.looked.and_then(after);
         self.chosen = self.chosen.and_then(after).or_else(|| self.pictures.len().checked_sub(1));
     }
 
     /// What all of them take in memory.
     pub fn bytes(&self) -> u64 {
         self.iter().map(|kept| kept.bytes()).sum()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::model::Origin;
-    use crate::film::PixelSum;
-    use crate::stages::Stage;
-
-    fn film(width: u32, height: u32, value: u64) -> Film {
-        let mut film = Film::new(width, height, 1);
-        film.halves_mut()[0].iter_mut().for_each(|sum| *sum = PixelSum([value << 16; 3]));
-        film.record(0..1, 0).unwrap();
-        film
-    }
-
-    #[test]
-    fn a_pixel_of_a_kept_picture_is_found_by_its_column_and_row() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let mut film = film(4, 2, 1);
-        film.halves_mut()[0].iter_mut().zip(1..).for_each(|(sum, value)| *sum = PixelSum([value << 16; 3]));
-        let kept = Kept::new(document, film, Arc::default(), None);
-        let unit = kept.mean([0, 0]).unwrap()[0];
-        let found = [[3, 0], [0, 1], [3, 1]].map(|at| (kept.mean(at).unwrap()[0] / unit).round());
-        assert_eq!(found, [4.0, 5.0, 8.0]);
-        assert_eq!([kept.mean([4, 0]), kept.mean([0, 2])], [None, None]);
-    }
-
-    #[test]
-    fn the_picture_to_subtract_is_made_once_and_knows_its_film() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let mut two_halves = Film::new(4, 2, 2);
-        two_halves.record(0..2, 0).unwrap();
-        let kept = Kept::new(document, two_halves, Arc::default(), None);
-        assert_eq!((kept.bytes(), kept.samples(), kept.size()), (8 * 48, 2, [4, 2]));
-        assert!(kept.known_means().is_none());
-        let means = Arc::clone(kept.means());
-        assert!(kept.known_means().is_some_and(|known| Arc::ptr_eq(known, &means)));
     }
 }

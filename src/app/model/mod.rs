@@ -19,7 +19,7 @@ pub use checked::{CheckedScene, stamp_of};
 pub use companion::file_url;
 pub use device::{Device, DeviceOptions, adapter, best_isa, core_count, lane_counts};
 pub use document::Document;
-pub use edit::{Body, Edit, first_difference};
+pub use edit::{Body, Edit};
 pub use kept::{Kept, KeptList};
 pub use origin::{Origin, Source};
 pub use remembered::{Bookmark, Dock, Remembered, Stored, Tab};

@@ -120,19 +120,6 @@ impl Origin {
 mod tests {
     use super::*;
     use crate::stages::{Rules, Transfer};
-    use glam::DVec3;
-
-    #[test]
-    fn a_recipe_of_a_stage_is_known_again() {
-        let stage = Stage::find("defocus").unwrap();
-        let mut recipe = stage.recipe();
-        recipe.camera.vfov_degrees = 50.0;
-        assert_eq!(Origin::guess(&recipe, Some(stage)).source, Source::Stage(stage));
-        std::sync::Arc::make_mut(&mut recipe.scene).sky.top = DVec3::ZERO;
-        assert_eq!(Origin::guess(&recipe, Some(stage)).source, Source::Embedded);
-        let builtin = Recipe::builtin("book").unwrap();
-        assert_eq!(Origin::guess(&builtin, None).source, Source::Builtin);
-    }
 
     #[test]
     fn pictures_without_chance_end_with_their_samples() {

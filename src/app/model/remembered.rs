@@ -107,7 +107,7 @@ impl Stored {
     pub fn read(storage: Option<&dyn Storage>) -> (Remembered, ViewState) {
         let stored: Option<Stored> = storage.and_then(|storage| eframe::get_value(storage, Stored::KEY));
         let stored = stored.filter(|stored| stored.version == Stored::VERSION);
-        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.view.mended()))
+        stored.map_or_else(Default::default, |stored| (stored.remembered.mended(), stored.view))
     }
 
     pub fn write(model: &Model, storage: &mut dyn Storage) {

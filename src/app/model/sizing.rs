@@ -15,11 +15,6 @@ pub enum Sizing {
     Book,
 }
 
-impl Sizing {
-    /// All of them.
-    pub const ALL: [Sizing; 2] = [Sizing::Viewport, Sizing::Book];
-}
-
 impl Origin {
     /// Whether its pictures have a size of their own: files do, and stages without rays, whose pixels are the lesson.
     pub fn keeps_size(&self) -> bool {

@@ -2,7 +2,6 @@
 
 use super::{CheckedScene, Document, Kept, KeptList, Origin, Show, Tone};
 use crate::app::denoising::Found;
-use crate::app::kept::FilmId;
 use crate::denoise::Denoised;
 use crate::job::recipe::Recipe;
 use crate::progressive::{ReferenceMeans, View};
@@ -11,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// How two pictures are compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// The pictures are on the two sides of a divider.
     Wipe,
@@ -20,9 +19,10 @@ pub enum Mode {
 }
 
 /// The kind of picture to compare with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum With {
     /// The stage that belongs to this one; without a stage, the book's own arithmetic.
+    #[default]
     Stage,
     /// The book's own arithmetic, even if there is another stage to compare with.
     Book,
@@ -67,12 +67,15 @@ impl Other {
 }
 
 /// The current view, which is exactly one.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct ViewState {
     show: Show,
+    #[serde(skip)]
     mode: Option<Mode>,
+    #[serde(skip)]
     with: With,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
+    #[serde(skip)]
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
@@ -81,35 +84,12 @@ pub struct ViewState {
     /// The latest denoised picture.
     #[serde(skip)]
     pub denoised: Option<Found>,
-    /// Pictures that are kept; one of them can be shown instead of the traced one.
+    /// Pictures that are kept.
     #[serde(skip)]
     pub kept: KeptList,
 }
 
-impl Default for ViewState {
-    fn default() -> Self {
-        ViewState {
-            show: Show::Picture,
-            mode: None,
-            with: With::Stage,
-            divider: 0.5,
-            tone: Tone::default(),
-            is_denoised: false,
-            denoised: None,
-            kept: KeptList::default(),
-        }
-    }
-}
-
 impl ViewState {
-    /// The view without films and kept pictures, which are gone with their window.
-    pub fn mended(mut self) -> Self {
-        if matches!(self.with, With::Kept(_)) {
-            self.end_comparison();
-        }
-        self
-    }
-
     /// The current view of the film.
     pub fn show(&self) -> Show {
         self.show
@@ -133,11 +113,6 @@ impl ViewState {
         }
     }
 
-    /// The document of the main picture: the kept one that is shown, or `live`.
-    pub fn shown_document<'a>(&'a self, live: &'a Document) -> &'a Document {
-        self.kept.shown().map_or(live, |kept| &kept.document)
-    }
-
     /// Shows only this view of the film.
     pub fn choose(&mut self, show: Show) {
         self.end_comparison();
@@ -151,30 +126,37 @@ impl ViewState {
 
     /// Starts a comparison, or ends it if it is already active.
     pub fn toggle(&mut self, mode: Mode, with: With) {
-        let is_on = self.mode == Some(mode) && self.with == with;
-        match with {
-            // A picture that is compared with itself would teach nothing.
-            With::Kept(place) if self.kept.looked() != Some(place) => {}
-            With::Kept(_) | With::Stage | With::Book => self.kept.look(None),
-        }
+        let is_on = self.mode == Some(mode) && self.with == with && self.looked().is_none();
         self.show = Show::Picture;
         (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
         self.divider = 0.5;
     }
 
-    /// Shows a kept picture, or the traced one.
-    pub fn look(&mut self, place: Option<usize>) {
-        self.kept.look(place);
-        let looked = self.kept.looked();
-        let is_own = looked.is_some_and(|place| self.with == With::Kept(place));
-        if is_own || (looked.is_some() && !matches!(self.with, With::Kept(_))) {
+    /// Shows a kept picture in place of the traced one: a wipe whose divider is at the right edge.
+    pub fn look(&mut self, place: usize) {
+        self.kept.choose(place);
+        (self.mode, self.with, self.show) = (Some(Mode::Wipe), With::Kept(place), Show::Picture);
+        self.divider = 1.0;
+    }
+
+    /// The place of the kept picture that hides the traced one.
+    pub fn looked(&self) -> Option<usize> {
+        self.compared_kept().filter(|_| self.mode == Some(Mode::Wipe) && self.divider == 1.0)
+    }
+
+    /// Shows the traced picture, if a kept one hides it.
+    pub fn end_look(&mut self) {
+        if self.looked().is_some() {
             self.end_comparison();
         }
     }
 
     /// Shows the traced picture and the chosen kept one in turn.
     pub fn flip(&mut self) {
-        self.look(if self.kept.looked().is_some() { None } else { self.kept.chosen() });
+        match self.kept.chosen() {
+            Some(place) if self.looked().is_none() => self.look(place),
+            _ => self.end_look(),
+        }
     }
 
     /// Deletes the chosen kept picture. A comparison with it ends.
@@ -199,19 +181,19 @@ impl ViewState {
         }
     }
 
-    /// As [`ViewState::of_film`], of the denoised picture of this film, if it is to be shown.
-    pub fn of_shown(&self, film: FilmId, other: Option<&Arc<ReferenceMeans>>) -> View {
-        match (self.of_film(other), self.denoised_of(film)) {
+    /// As [`ViewState::of_film`], of the denoised picture of this run, if it is to be shown.
+    pub fn of_shown(&self, run: u64, other: Option<&Arc<ReferenceMeans>>) -> View {
+        match (self.of_film(other), self.denoised_of(run)) {
             (View::Occupancy, _) => View::Occupancy,
             (view, Some(denoised)) => View::Denoised(Arc::clone(denoised), Box::new(view)),
             (view, None) => view,
         }
     }
 
-    /// The denoised picture of a film, if it is to be shown.
-    pub fn denoised_of(&self, film: FilmId) -> Option<&Arc<Denoised>> {
+    /// The denoised picture of a run's film, if it is to be shown.
+    pub fn denoised_of(&self, run: u64) -> Option<&Arc<Denoised>> {
         match &self.denoised {
-            Some((of, Ok(denoised))) if self.is_denoised && *of == film => Some(denoised),
+            Some((of, Ok(denoised))) if self.is_denoised && *of == run => Some(denoised),
             _ => None,
         }
     }
@@ -222,7 +204,7 @@ impl ViewState {
         if let With::Kept(place) = self.with {
             let kept = self.kept.get(place)?;
             // A difference of scaled pictures would show the scaling.
-            let is_possible = mode == Mode::Wipe || kept.size() == self.shown_document(document).size();
+            let is_possible = mode == Mode::Wipe || kept.size() == document.size();
             return is_possible.then(|| Other::Kept(Arc::clone(kept)));
         }
         match document.stage().filter(|_| self.with == With::Stage) {

@@ -9,12 +9,10 @@ pub use paint::Pictures;
 pub use placement::Placement;
 
 use super::command::Command;
-use super::dock::MENU;
 use super::facts::Facts;
 use super::menu;
 use super::model::{Document, Mode};
 use super::navigation;
-use super::spheres::Selected;
 use super::widgets::compact;
 use crate::scene::Camera;
 use eframe::egui::{self, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, Ui, WidgetInfo, vec2};
@@ -33,7 +31,7 @@ const MARGIN: f32 = 8.0;
 pub struct Viewport {
     /// Position and scale of the picture.
     pub placement: Placement,
-    /// Those of the traced picture, while a kept one is shown or the window presents.
+    /// Those of before, while the window presents.
     parked: Option<Placement>,
     moving: Moving,
     is_dragging_divider: bool,
@@ -44,15 +42,6 @@ pub struct Viewport {
     selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
-}
-
-/// The state that the viewport may change.
-pub struct Handle<'a> {
-    /// The camera that mouse input moves.
-    pub camera: &'a mut Camera,
-    /// Position of the wipe's divider, `0..=1` of the picture's width.
-    pub divider: &'a mut f32,
-    pub selected: Option<&'a Selected>,
 }
 
 /// What the user does in a frame.
@@ -79,12 +68,16 @@ impl Viewport {
         self.pointer.unwrap_or(FOREGROUND)
     }
 
-    /// Draws the picture and handles input on it.
-    pub fn ui(&mut self, ui: &mut Ui, handle: Handle<'_>, pictures: Pictures<'_>, facts: &Facts) -> Touch {
-        let Handle { camera, divider, selected } = handle;
+    /// Draws the picture and handles input on it, which moves the camera and the wipe's divider, `0..=1` of the picture's
+    /// width.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        (camera, divider): (&mut Camera, &mut f32),
+        pictures: Pictures<'_>,
+        facts: &Facts,
+    ) -> Touch {
         let (view, live) = (&facts.model.view, facts.document());
-        let is_kept = view.kept.looked().is_some();
-        let (selected, has_rays) = (selected.filter(|_| !is_kept), live.no_rays().is_none());
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -92,14 +85,8 @@ impl Viewport {
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        if is_kept && !is_held {
-            moving::move_picture(ui, &response, &mut self.placement);
-            is_held = true;
-        }
         if !is_held {
-            let (is_dragged, edit) = self.selection.handle(ui, &response, rect, selected, live);
-            (is_held, touch.is_move) = (is_dragged, edit.is_some());
-            edit.into_iter().for_each(|edit| facts.edit(edit));
+            (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, facts);
         }
         if is_held {
             self.moving = Moving::default();
@@ -107,17 +94,14 @@ impl Viewport {
             self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
             self.handle_click(ui, &response, live, camera, &mut touch);
         }
-        let document = match is_kept {
-            true => facts.shown().clone(),
-            false => Document { camera: *camera, ..live.clone() },
-        };
+        let document = Document { camera: *camera, ..live.clone() };
         paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, facts);
         let own = if is_wipe {
             Rect { min: egui::pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.top()), ..rect }
         } else {
             rect
         };
-        self.selection.paint(ui, (rect, own.intersect(room)), selected, &document);
+        self.selection.paint(ui, (rect, own.intersect(room)), &document, facts);
         self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         let pixel = |at| self.placement.pixel_at(at, document.size());
@@ -125,7 +109,7 @@ impl Viewport {
         if response.secondary_clicked() {
             let at = response.interact_pointer_pos();
             self.menu_at = at.and_then(pixel);
-            if let Some(at) = at.filter(|at| rect.contains(*at) && !is_kept && has_rays) {
+            if let Some(at) = at.filter(|at| rect.contains(*at) && live.no_rays().is_none()) {
                 touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
             }
         }
@@ -137,12 +121,11 @@ impl Viewport {
         touch
     }
 
-    /// Places the picture. A kept one, and one that is presented, have a place of their own.
+    /// Places the picture. One that is presented has a place of its own.
     fn place(&mut self, ui: &Ui, room: Rect, facts: &Facts) -> Rect {
         let model = &facts.model;
         let is_presenting = model.presentation.is_some();
-        let is_apart = is_presenting || model.view.kept.looked().is_some();
-        match (is_apart, self.parked.take()) {
+        match (is_presenting, self.parked.take()) {
             (true, None) => self.parked = Some(self.placement.clone()),
             (false, Some(parked)) => self.placement = parked,
             (_, parked) => self.parked = parked,
@@ -154,7 +137,7 @@ impl Viewport {
         let margin = if is_presenting || !model.has_panels() { 0.0 } else { MARGIN };
         let (inner, scale) = (room.shrink(margin), ui.ctx().pixels_per_point());
         (self.room, self.room_pixels) = (Some(room), whole_pixels(inner, scale));
-        let [width, height] = facts.shown().size().map(|along| along as f32);
+        let [width, height] = facts.document().size().map(|along| along as f32);
         self.placement.place(inner, vec2(width, height), scale)
     }
 
@@ -229,23 +212,14 @@ fn is_held(ui: &Ui, is_it: fn(&egui::Modifiers) -> bool) -> bool {
 fn context_menu(ui: &mut Ui, facts: &Facts) {
     use Command as C;
     ui.set_width(menu::MENU_WIDTH);
-    let is_kept = facts.model.view.kept.looked().is_some();
-    let of_sphere: &[Command] = match facts.model.selected {
-        Some(_) if !is_kept => &[C::FocusSphere, C::DuplicateSphere, C::DeleteSphere],
-        _ => &[],
-    };
-    let of_picture: &[Command] = match is_kept {
-        true => &MENU,
-        false => &[C::ListPaths, C::CopyPicture, C::Keep],
-    };
-    for command in of_sphere {
-        menu::item(ui, facts, *command);
-    }
-    if !of_sphere.is_empty() {
+    if facts.model.selected.is_some() {
+        for command in [C::FocusSphere, C::DuplicateSphere, C::DeleteSphere] {
+            menu::item(ui, facts, command);
+        }
         ui.separator();
     }
-    for command in of_picture {
-        menu::item(ui, facts, *command);
+    for command in [C::ListPaths, C::CopyPicture, C::Keep] {
+        menu::item(ui, facts, command);
     }
 }
 

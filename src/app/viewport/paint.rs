@@ -32,8 +32,8 @@ pub struct Pictures<'a> {
     pub has_film: bool,
     /// The picture at the other side of a wipe.
     pub second: Option<(&'a Texture, bool)>,
-    /// Paths to draw over the picture, if it is the traced one.
-    pub paths: Option<&'a Paths>,
+    /// Paths to draw over the picture.
+    pub paths: &'a Paths,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// The titles of the two pictures of a comparison, the other one first.
@@ -69,7 +69,9 @@ pub(super) fn paint(
     let [theirs, mine] = &titles;
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some((texture, is_smooth))) => {
-            wipe(ui, &painter, rect, divider, id(texture, is_smooth), [theirs, mine]);
+            let size = view.wiped().map_or(document.size(), |kept| kept.size());
+            let left = (id(texture, is_smooth), shape_in(rect, size));
+            wipe(ui, &painter, rect, divider, left, [theirs, mine]);
         }
         (Some(Mode::Difference), _) => {
             title(ui, &painter, corners, Align2::LEFT_TOP, &format!("Difference from {theirs}"));
@@ -92,9 +94,7 @@ pub(super) fn paint(
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     }
-    if let Some(paths) = paths {
-        paths.paint(document, ui, &painter, rect);
-    }
+    paths.paint(document, ui, &painter, rect);
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
@@ -113,10 +113,29 @@ fn fill_around(painter: &Painter, room: Rect, hole: Rect, colour: Color32) {
     }
 }
 
-/// Draws a picture over another one, left of a divider, and the titles of both.
-pub fn wipe(ui: &Ui, painter: &Painter, rect: Rect, divider: f32, left: TextureId, titles: [&str; 2]) {
+/// Where a picture of this size lies over the one at `rect`. Sizes of one shape can differ by rounding.
+fn shape_in(rect: Rect, [width, height]: [u32; 2]) -> Rect {
+    let size = vec2(width as f32, height as f32);
+    let stretch = rect.size() / size;
+    let is_same = stretch.max_elem() < 1.02 * stretch.min_elem();
+    if is_same { rect } else { Rect::from_center_size(rect.center(), size * stretch.min_elem()) }
+}
+
+/// Draws a picture over the one at `rect`, left of a divider, and the titles of both.
+pub fn wipe(
+    ui: &Ui,
+    painter: &Painter,
+    rect: Rect,
+    divider: f32,
+    (left, place): (TextureId, Rect),
+    titles: [&str; 2],
+) {
     let x = rect.lerp_inside(vec2(divider, 0.0)).x;
-    painter.image(left, rect.with_max_x(x), WHOLE.with_max_x(divider), Color32::WHITE);
+    let over = painter.with_clip_rect(rect.with_max_x(x).intersect(painter.clip_rect()));
+    if place != rect {
+        over.rect_filled(rect, 0.0, theme::colours(ui).surround);
+    }
+    over.image(left, place, WHOLE, Color32::WHITE);
     let seen = rect.intersect(painter.clip_rect());
     paint_divider(painter, seen, x);
     title(ui, painter, seen.with_max_x(x), Align2::LEFT_TOP, titles[0]);
@@ -133,10 +152,12 @@ fn paint_divider(painter: &Painter, rect: Rect, x: f32) {
     painter.text(knob, Align2::CENTER_CENTER, "‹ ›", FontId::proportional(16.0), Color32::from_gray(30));
 }
 
-/// A title in a corner of the area, cut if it has no room.
+/// A title in a corner of the area, cut or left out if it has no room.
 pub fn title(ui: &Ui, painter: &Painter, area: Rect, corner: Align2, text: &str) {
     let area = area.shrink(CORNER);
-    plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
+    if area.is_positive() {
+        plate(ui, painter, corner.pos_in_rect(&area), corner, text, area.width());
+    }
 }
 
 /// Words on a plate, readable on any picture, within the painter's area, and cut to this width.
@@ -199,4 +220,20 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
         font,
         ui.visuals().strong_text_color(),
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_another_shape_keeps_it() {
+        let rect = Rect::from_min_size(pos2(10.0, 20.0), vec2(760.0, 428.0));
+        assert_eq!(
+            [[760, 428], [400, 225], [1, 1]].map(|size| shape_in(rect, size) == rect),
+            [true, true, false]
+        );
+        let square = shape_in(rect, [300, 300]);
+        assert_eq!((square.size(), square.center()), (vec2(428.0, 428.0), rect.center()));
+    }
 }

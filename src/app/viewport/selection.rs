@@ -2,6 +2,7 @@
 
 use super::paint::plate;
 use super::{place_at, point_at};
+use crate::app::facts::Facts;
 use crate::app::model::{Body, Document, Edit};
 use crate::app::spheres::Selected;
 use crate::app::spheres::grip::{Grip, Held};
@@ -26,21 +27,15 @@ const LARGEST: f64 = 1.5;
 pub(super) struct Selection(Option<Held>);
 
 impl Selection {
-    /// Handles drags of the selected sphere in the picture at `rect`. Returns whether the user holds it, and the change
-    /// that the drag makes.
-    pub(super) fn handle(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        rect: Rect,
-        selected: Option<&Selected>,
-        document: &Document,
-    ) -> (bool, Option<Edit>) {
+    /// Handles drags of the selected sphere in the picture at `rect`. Returns whether the user holds it, and whether it
+    /// changes.
+    pub(super) fn handle(&mut self, ui: &Ui, response: &Response, rect: Rect, facts: &Facts) -> (bool, bool) {
         let before = self.0.take();
-        let Some(selected) = selected else { return (false, None) };
+        let Some(selected) = Selected::of(&facts.model) else { return (false, false) };
+        let document = facts.document();
         let (modifiers, origin) = ui.input(|input| (input.modifiers, input.pointer.press_origin()));
         let grasped = |at: Option<Pos2>| {
-            grasped(rect, selected, document, at.filter(|_| !modifiers.shift)?, modifiers.command)
+            grasped(rect, &selected, document, at.filter(|_| !modifiers.shift)?, modifiers.command)
         };
         let is_begin = response.drag_started_by(PointerButton::Primary);
         let held = if is_begin { grasped(origin) } else { before };
@@ -48,29 +43,25 @@ impl Selection {
         self.0 = held.filter(|held| is_dragged && held.sphere == selected.sphere);
         if let Some(held) = &self.0 {
             ui.ctx().set_cursor_icon(cursor(held.grip, true));
-            let edit = response.interact_pointer_pos().and_then(|at| {
-                let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
-                (body != selected.body).then_some(Edit::Change(selected.sphere, body))
-            });
-            return (true, edit);
+            let Some(at) = response.interact_pointer_pos() else { return (true, false) };
+            let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
+            let is_changed = body != selected.body;
+            if is_changed {
+                facts.edit(Edit::Change(selected.sphere, body));
+            }
+            return (true, is_changed);
         }
         if let Some(held) = grasped(response.hover_pos().filter(|_| !response.dragged())) {
             ui.ctx().set_cursor_icon(cursor(held.grip, false));
         }
-        (false, None)
+        (false, false)
     }
 
     /// Draws the outline, the handle and the name of the selected sphere.
-    pub(super) fn paint(
-        &self,
-        ui: &Ui,
-        (rect, clip): (Rect, Rect),
-        selected: Option<&Selected>,
-        document: &Document,
-    ) {
-        let Some(selected) = selected else { return };
+    pub(super) fn paint(&self, ui: &Ui, (rect, clip): (Rect, Rect), document: &Document, facts: &Facts) {
+        let Some(selected) = Selected::of(&facts.model) else { return };
         let painter = &ui.painter().with_clip_rect(clip);
-        let outline = outline(selected, document);
+        let outline = outline(&selected, document);
         // Points far outside are left out: their lines would not be seen, and their coordinates have no precision.
         let near = |place: &[f64; 2]| place.iter().all(|along| along.abs() < 30.0);
         let points = outline.0.iter().chain(outline.0.first());

@@ -6,8 +6,11 @@
 
 use anyhow::{Context, Result, anyhow};
 use maud::PreEscaped;
+use syntect::easy::ScopeRegionIterator;
 use syntect::html::{ClassStyle, ClassedHTMLGenerator};
-use syntect::parsing::{SyntaxDefinition, SyntaxSet, SyntaxSetBuilder};
+use syntect::parsing::{
+    ParseState, ScopeStack, SyntaxDefinition, SyntaxReference, SyntaxSet, SyntaxSetBuilder,
+};
 
 const SYNTAXES: [&str; 5] = [
     include_str!("../../../assets/companion/syntaxes/rust.sublime-syntax"),
@@ -38,15 +41,34 @@ impl Highlighter {
         if PLAIN.contains(&language) {
             return Ok(PreEscaped(maud::html! { (code) }.into_string()));
         }
-        let syntax = self.0.find_syntax_by_token(language).ok_or_else(|| {
-            let known: Vec<&str> = self.0.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
-            anyhow!("code in {language:?} has no colours; use text, {}", known.join(", "))
-        })?;
+        let syntax = self.syntax(language)?;
         let mut html = ClassedHTMLGenerator::new_with_class_style(syntax, &self.0, ClassStyle::Spaced);
         for line in code.split_inclusive('\n') {
             html.parse_html_for_line_which_includes_newline(line).context("cannot colour code")?;
         }
         Ok(PreEscaped(html.finalize()))
+    }
+
+    /// The code in pieces, each with its class, for programs that have no HTML.
+    pub fn pieces(&self, language: &str, code: &str) -> Result<Vec<(String, String)>> {
+        let (mut state, mut stack) = (ParseState::new(self.syntax(language)?), ScopeStack::new());
+        let mut pieces = Vec::new();
+        for line in code.split_inclusive('\n') {
+            let changes = state.parse_line(line, &self.0).context("cannot colour code")?;
+            for (text, change) in ScopeRegionIterator::new(&changes, line) {
+                stack.apply(change).context("cannot colour code")?;
+                let class = stack.scopes.last().map(|scope| scope.build_string()).unwrap_or_default();
+                pieces.push((text.to_owned(), class));
+            }
+        }
+        Ok(pieces)
+    }
+
+    fn syntax(&self, language: &str) -> Result<&SyntaxReference> {
+        self.0.find_syntax_by_token(language).ok_or_else(|| {
+            let known: Vec<&str> = self.0.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
+            anyhow!("code in {language:?} has no colours; use text, {}", known.join(", "))
+        })
     }
 }
 
@@ -70,6 +92,9 @@ mod tests {
                 text = text.replace(name, c);
             }
             assert!(text == code, "{language}");
+            let pieces = Highlighter::new().unwrap().pieces(language, code).unwrap();
+            assert!(pieces.iter().any(|(_, class)| class == "hl-k"), "{language}");
+            assert!(pieces.into_iter().map(|(text, _)| text).collect::<String>() == code, "{language}");
         }
     }
 }

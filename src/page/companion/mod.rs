@@ -19,6 +19,7 @@ mod site;
 mod timeline;
 
 pub use excerpt::Excerpt;
+pub use highlight::Highlighter;
 pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;

@@ -30,7 +30,7 @@ pub fn copies() -> Vec<Case> {
         let balls = vec![(DVec3::ZERO, 1.0, matte(0.5)); count];
         let stiff = format!(
             "{} identical balls: no plane separates them, and every hit is a tie between all of them",
-            grouped(count)
+            grouped(count as u64)
         );
         // Large counts test the build and depth of the hierarchy, so few samples suffice.
         let (size, samples) = match count {

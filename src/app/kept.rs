@@ -1,14 +1,40 @@
-//! Whether a kept picture and the traced one differ only by noise: the statistics of `weekender compare`, on a thread.
+//! Keeping pictures, and the question whether a kept one and the traced one differ only by noise: the statistics of
+//! `weekender compare`, on a thread. The list of kept pictures is in the model.
 
-use crate::app::answers::Answers;
-use crate::app::model::{Document, Kept};
-use crate::app::theme;
-use crate::app::tracer::Tracer;
+use super::answers::Answers;
+use super::model::{Document, Kept};
+use super::theme;
+use super::tracer::Tracer;
+use super::tracing::Tracing;
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::pictures::{Picture, compare};
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{Context, RichText, Ui};
 use std::sync::Arc;
+
+#[derive(Default)]
+pub struct KeptActions {
+    pub verdict: Verdict,
+    pub copied: Answers<Kept>,
+    /// The picture is to be kept as soon as it has samples.
+    pub is_wanted: bool,
+}
+
+impl KeptActions {
+    /// Copies the traced film if that was asked for and it has samples. The answer arrives in `copied`.
+    pub fn follow(&mut self, context: &Context, document: &Document, tracing: &Tracing) {
+        if !self.is_wanted || !tracing.main.has_samples(document) {
+            return;
+        }
+        self.is_wanted = false;
+        let (document, answer) = (document.clone(), self.copied.promise(context));
+        let seconds = tracing.seconds();
+        tracing.main.inspect(move |film| {
+            let copy = film.try_copy().map_err(|error| error.to_string());
+            answer.give_from("keep", move || copy.map(|film| Kept::new(document, film, seconds)));
+        });
+    }
+}
 
 /// Deviations of noise that hardly any block exceeds.
 const CLEAR: f64 = 4.0;
@@ -32,7 +58,7 @@ pub struct Verdict {
 
 impl Verdict {
     /// Compares a kept picture with the one that `main` traces for `live`. An earlier question is forgotten.
-    pub fn ask(&mut self, context: &egui::Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
+    pub fn ask(&mut self, context: &Context, kept: &Arc<Kept>, (live, main): (&Document, &Tracer)) {
         let of = Some((kept.number, main.status().run));
         *self = Verdict { of, ..Verdict::default() };
         let (kept, recipe) = (Arc::clone(kept), live.recipe());
@@ -90,22 +116,4 @@ fn compared(kept: &Kept, recipe: Recipe, film: Film) -> Result<Answer, String> {
         }
     };
     Ok(Answer { is_equal, headline, words })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::app::kept::tests::small_film;
-    use crate::app::model::Origin;
-    use crate::stages::Stage;
-
-    #[test]
-    fn films_are_identical_or_differ() {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
-        let kept = Kept::new(document.clone(), small_film(8, 0.5), Arc::default(), None);
-        let answer = compared(&kept, document.recipe(), small_film(8, 0.5)).unwrap();
-        assert_eq!((answer.is_equal, answer.headline), (true, "Identical to the bit."));
-        let answer = compared(&kept, document.recipe(), small_film(8, 700.0)).unwrap();
-        assert!(!answer.is_equal, "{}", answer.headline);
-    }
 }
