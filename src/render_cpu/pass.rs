@@ -5,7 +5,7 @@ use super::broadcast::BroadcastScene;
 use super::kernels::Kernel;
 use super::tiles::{Tile, tiles};
 use super::work::{RefillBlock, RefillOrder, TileStats, Work};
-use crate::film::Film;
+use crate::film::{Film, PixelSum};
 use crate::job::render::panic_text;
 use crate::kernel::Real;
 use rayon::prelude::*;
@@ -141,6 +141,7 @@ impl PassTracer<'_> {
     ) -> Vec<TracedTile> {
         let settings = &prepared.prepared.settings;
         let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
+        let is_first = film.sample_count() == 0 && matches!(pass.purpose, Purpose::Add);
         let mut tiles = tiles(film.halves_mut(), settings.width, pass.side);
         if let Purpose::Try(one_in) = pass.purpose {
             let count = tiles.len();
@@ -155,7 +156,11 @@ impl PassTracer<'_> {
             }
         }
         let tile_count = tiles.len();
-        let trace_tile = |(index, tile): (usize, Tile)| {
+        let trace_tile = |(index, mut tile): (usize, Tile)| {
+            if is_first && !pass.cancel.load(Ordering::Relaxed) {
+                // The system provides a page of zeros faster if it is written to before it is read.
+                tile.rows.iter_mut().for_each(|row| row.fill(PixelSum::default()));
+            }
             let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
             let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
             let expected = work.expected();
