@@ -17,7 +17,7 @@ pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_
 pub use error::{LENGTH_LIMIT, SceneError};
 pub(crate) use error::{toml_key, toml_string};
 pub use material::{Look, Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
-pub use pick::{NearestHit, Pick};
+pub use pick::Pick;
 pub use sphere::{RADIUS_LIMITS, Sphere};
 
 use glam::DVec3;

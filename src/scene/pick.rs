@@ -47,41 +47,16 @@ impl Camera {
 }
 
 impl Scene {
-    /// Finds the first sphere hit. `direction` must have length 1.
+    /// Finds the first sphere hit; at equal distance, the one that comes first in the scene. `direction` must have length 1.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
-        let mut nearest = NearestHit::default();
-        (0..self.spheres.len()).for_each(|sphere| nearest.take(self, sphere, origin, direction));
-        self.picked(nearest, origin, direction)
-    }
-
-    /// The hit, once every sphere the ray may hit has been taken.
-    pub fn picked(&self, nearest: NearestHit, origin: DVec3, direction: DVec3) -> Option<Pick> {
-        let (sphere, distance) = nearest.0?;
+        let distance = |sphere: &Sphere| root(sphere.center - origin, sphere.radius, direction);
+        let hits =
+            self.spheres.iter().enumerate().filter_map(|(index, sphere)| Some((index, distance(sphere)?)));
+        let (sphere, distance) = hits.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let point = origin + distance * direction;
         let outward = (point - self.spheres[sphere].center) / self.spheres[sphere].radius;
         let normal = if outward.dot(direction) > 0.0 { -outward } else { outward };
         Some(Pick { sphere, distance, point, normal })
-    }
-}
-
-/// A ray's nearest hit among the spheres taken so far, in any order: sphere index and distance.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct NearestHit(Option<(usize, f64)>);
-
-impl NearestHit {
-    /// Takes a sphere. At equal distance, the sphere that comes first in the scene wins.
-    pub fn take(&mut self, scene: &Scene, sphere: usize, origin: DVec3, direction: DVec3) {
-        let Sphere { center, radius, .. } = scene.spheres[sphere];
-        let Some(distance) = root(center - origin, radius, direction) else { return };
-        let is_nearer = |(other, least)| distance < least || distance == least && sphere < other;
-        if self.0.is_none_or(is_nearer) {
-            self.0 = Some((sphere, distance));
-        }
-    }
-
-    /// Distance of the hit, scene units; infinite without one.
-    pub fn distance(&self) -> f64 {
-        self.0.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 }
 
@@ -151,13 +126,7 @@ mod tests {
     fn first_sphere_wins_tie() {
         let mut scene = two();
         scene.spheres.push(scene.spheres[1]);
-        for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
-            let mut nearest = NearestHit::default();
-            assert_eq!(nearest.distance(), f64::INFINITY);
-            order.into_iter().for_each(|sphere| nearest.take(&scene, sphere, DVec3::ZERO, DVec3::NEG_Z));
-            assert_eq!(nearest.distance(), 0.5);
-            let pick = scene.picked(nearest, DVec3::ZERO, DVec3::NEG_Z).unwrap();
-            assert_eq!((pick.sphere, pick.point), (1, DVec3::new(0.0, 0.0, -0.5)), "{order:?}");
-        }
+        let pick = scene.pick(DVec3::ZERO, DVec3::NEG_Z).unwrap();
+        assert_eq!((pick.sphere, pick.point), (1, DVec3::new(0.0, 0.0, -0.5)));
     }
 }
