@@ -8,6 +8,7 @@ use crate::page::companion::{Excerpt, Highlighter, excerpts_between};
 use crate::stages::Stage;
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{FontSelection, Frame, Grid, Label, Margin, RichText, ScrollArea, Sides, TextStyle, Ui};
+use std::sync::LazyLock;
 
 /// What words of the code mean that are not in the book.
 const WORDS: [(&str, &str); 18] = [
@@ -104,7 +105,8 @@ fn excerpts_of(stage: &'static Stage) -> Vec<Excerpt> {
 
 /// The excerpts in colours; a test of the companion finds those that have none.
 fn coloured(excerpts: Vec<Excerpt>) -> Vec<Coloured> {
-    let Ok(highlighter) = Highlighter::new() else { return Vec::new() };
+    static HIGHLIGHTER: LazyLock<Option<Highlighter>> = LazyLock::new(|| Highlighter::new().ok());
+    let Some(highlighter) = &*HIGHLIGHTER else { return Vec::new() };
     let colour = |excerpt: Excerpt| {
         let pieces = highlighter.pieces(language(&excerpt), excerpt.text.trim_end()).unwrap_or_default();
         (excerpt, pieces)

@@ -175,14 +175,14 @@ table! {
         |w, c| w.ask_path(c, Purpose::Check),
         also("wrong mistake homework verify compare");
     Save "Save…", "Saves the picture, the film or the scene",
-        |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(),
+        |w, _| w.ask_save(OutputFormat::Png), keys(CTRL, Key::S), line(), needs(is_live, KEPT_IS_SHOWN),
         also("export png ppm exr toml download film scene");
     ShowInFolder "Show in folder", "Opens the folder of the file that was saved or opened last",
         |w, c| w.show_in_folder(c),
         needs(|f| !f.model.remembered.recent.is_empty(), "Nothing has been saved or opened yet"),
         also("directory explorer finder");
     CopyPicture "Copy picture", "Copies the picture at full size",
-        |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), also("clipboard");
+        |w, _| w.files.pending_copy = true, keys(CTRL, Key::C), needs(is_live, KEPT_IS_SHOWN), also("clipboard");
     CopyCommand "Copy as command", "Copies the command line that renders this picture",
         |w, c| w.copy_command(c), keys(CTRL_SHIFT, Key::C), also("batch terminal shell clipboard");
     Fresh "Start fresh", "Goes back to the first picture, with the usual settings; Undo returns",
@@ -270,7 +270,7 @@ table! {
         |w, _| w.model.remembered.device.toggle(Device::Reference),
         on(|f| f.model.remembered.device == Device::Reference), also("double precision");
     Keep "Keep this picture", "Keeps a copy with all its samples, to compare with",
-        |w, _| w.display.kept.is_wanted = true, key(Key::M), line(),
+        |w, _| w.display.kept.is_wanted = true, key(Key::M), line(), needs(is_live, KEPT_IS_SHOWN),
         also("slot snapshot compare");
 
     [Some("Stage")]
@@ -308,6 +308,7 @@ table! {
         |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
+            None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),
             None => (!f.has_pixel).then(|| "Point at the picture first".to_owned()),
         }),
         also("rays bounce trace");
@@ -466,7 +467,7 @@ fn family_rows() -> Vec<Row> {
         (OutputFormat::Exr, "Save film…", CTRL, Key::E),
     ] {
         let row = Row::new(None, Command::SaveAs(format), [name, ""], move |w, _| w.ask_save(format));
-        rows.push(row.keys(modifiers, key).unlisted());
+        rows.push(row.keys(modifiers, key).needs(is_live, KEPT_IS_SHOWN).unlisted());
     }
     for (place, digit) in DIGITS.into_iter().enumerate() {
         let row =
@@ -486,6 +487,12 @@ fn family_rows() -> Vec<Row> {
 const NO_SPHERE: &str = "No sphere is selected; click one";
 const NOTHING_KEPT: &str = "No picture is kept; M keeps this one";
 const NO_PATHS: &str = "No paths are shown; point at the picture and press T";
+
+const KEPT_IS_SHOWN: &str = "A kept picture is shown; Escape returns to the one that is traced";
+
+fn is_live(facts: &Facts) -> bool {
+    facts.model.view.looked().is_none()
+}
 
 fn has_selection(facts: &Facts) -> bool {
     facts.model.selected.is_some()

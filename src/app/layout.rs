@@ -118,7 +118,7 @@ impl Window {
             },
             has_film: shown.is_some(),
             titles: titles(facts, &tracing.second),
-            second: tracing.second.shown().map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
+            second: tracing.second.shown(view).map(|shown| (&shown.texture, shown.divisor > 1 || is_scaled)),
             paths: &tools.paths,
             values: &display.values,
         };
@@ -159,7 +159,7 @@ fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
     let other = match view.compared_kept() {
         Some(place) => Some(view.kept.title(place)),
-        None => second.shown().map(|shown| shown.document.title()),
+        None => second.shown(view).map(|shown| shown.document.title()),
     };
     [other.unwrap_or_default(), facts.document().title()]
 }

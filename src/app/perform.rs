@@ -55,6 +55,8 @@ impl Window {
         let Window { model, tools, display, commands, .. } = self;
         if model.presentation.is_some() {
             commands.push(Command::Present);
+        } else if model.view.looked().is_some() {
+            model.view.end_look();
         } else if tools.paths.len() > 0 {
             commands.push(Command::ClearPaths);
         } else if display.sight.is_some() {
@@ -126,9 +128,13 @@ impl Window {
 
     /// Changes the document. With other spheres, the selection would be another one.
     pub(super) fn change(&mut self, change: impl FnOnce(&mut Self)) {
-        let count = self.document().scene().spheres.len();
+        let scene = |window: &Self| {
+            let document = window.document();
+            (Arc::as_ptr(&document.origin), document.scene().spheres.len())
+        };
+        let before = scene(self);
         change(self);
-        if self.document().scene().spheres.len() != count {
+        if scene(self) != before {
             self.model.selected = None;
         }
     }

@@ -24,10 +24,10 @@ pub struct Second {
 
 impl Second {
     /// The newest second picture.
-    pub fn shown(&self) -> Option<&Shown> {
-        match &self.of {
-            Some((Other::Kept(kept), _)) => self.picture.shown(kept),
-            _ => self.tracer.as_ref().and_then(Tracer::shown),
+    pub fn shown(&self, view: &ViewState) -> Option<&Shown> {
+        match view.compared_kept() {
+            Some(place) => self.picture.shown(view.kept.get(place)?),
+            None => self.tracer.as_ref().and_then(Tracer::shown),
         }
     }
 
@@ -97,6 +97,7 @@ impl Second {
         if let Some(tracer) = &mut self.tracer {
             tracer.abandon();
         }
+        self.picture.resolved.retain(|(number, ..)| view.kept.iter().any(|kept| kept.number == *number));
         self.picture.follow(context, &kept, &view.tone.of_picture());
         self.film = (view.mode() == Some(Mode::Difference)).then(|| Arc::clone(&kept.means));
         let origin = Arc::clone(&kept.document.origin);
@@ -123,10 +124,11 @@ impl Second {
     }
 }
 
-/// The picture of a kept film, resolved on a thread.
+/// The pictures of kept films, resolved on a thread. All stay, so that a flip between two does not flicker.
 #[derive(Default)]
 struct KeptPicture {
-    resolved: Option<(u64, View, Shown)>,
+    /// The number of the kept picture, the view, and its picture.
+    resolved: Vec<(u64, View, Shown)>,
     /// The kept picture, the view, and three bytes per pixel.
     answers: Answers<(Arc<Kept>, View, Vec<u8>)>,
 }
@@ -134,20 +136,21 @@ struct KeptPicture {
 impl KeptPicture {
     /// The newest picture of `kept`.
     fn shown(&self, kept: &Kept) -> Option<&Shown> {
-        self.resolved.as_ref().filter(|(of, ..)| *of == kept.number).map(|(_, _, shown)| shown)
+        self.resolved.iter().find(|(of, ..)| *of == kept.number).map(|(_, _, shown)| shown)
     }
 
     /// Takes the picture that was resolved, and has the film resolved in `view` if that is another one.
     fn follow(&mut self, context: &Context, kept: &Arc<Kept>, view: &View) {
         while let Some(Ok((of, view, rgb8))) = self.answers.take() {
-            let earlier = self.resolved.take().map(|(_, _, shown)| shown.texture);
+            let place = self.resolved.iter().position(|(number, ..)| *number == of.number);
+            let earlier = place.map(|place| self.resolved.swap_remove(place).2.texture);
             let texture = Texture::new(of.size(), &rgb8, earlier);
             let document = of.document.clone();
             let shown = Shown { texture, samples: of.samples(), divisor: 1, document, run: 0 };
-            self.resolved = Some((of.number, view, shown));
+            self.resolved.push((of.number, view, shown));
         }
         let is_known = |(of, in_view, _): &(u64, View, Shown)| *of == kept.number && in_view.is_same(view);
-        if self.answers.is_open() || self.resolved.as_ref().is_some_and(is_known) {
+        if self.answers.is_open() || self.resolved.iter().any(is_known) {
             return;
         }
         let (kept, view) = (Arc::clone(kept), view.clone());

@@ -9,8 +9,8 @@ use crate::measure::stress::shown_cases;
 use crate::stages::Stage;
 use eframe::egui::text::LayoutJob;
 use eframe::egui::{
-    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Response, RichText,
-    TextureHandle, Ui, WidgetInfo, vec2,
+    self, Align, Atom, ColorImage, Context, FontSelection, Id, Image, Key, Modifiers, Rect, Response,
+    RichText, TextureHandle, Ui, WidgetInfo, vec2,
 };
 
 /// The width of the list in points.
@@ -66,6 +66,9 @@ pub fn list(facts: &Facts, is_at_end: bool) -> Finder {
 /// Draws the list. Arrow keys go through it, typing leaves what has these words, and Enter chooses.
 pub fn ui(finder: &mut Finder, ui: &mut Ui, height: f32, facts: &Facts) -> Outcome {
     ui.set_width(WIDTH);
+    // Tips stand beside what clips a column.
+    let column = Rect::from_min_size(ui.min_rect().min, vec2(WIDTH, f32::INFINITY)).expand(6.0);
+    ui.shrink_clip_rect(column);
     if finder.has_text() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
         *finder = Finder::at(0);
     }

@@ -208,7 +208,7 @@ impl Window {
             self.escape();
         }
         let before = self.model.document.camera;
-        if input::fly(context, &mut self.model.document.camera) {
+        if self.model.view.looked().is_none() && input::fly(context, &mut self.model.document.camera) {
             if let Some(reason) = self.document().no_rays() {
                 self.model.document.camera = before;
                 self.shell.toasts.good(reason);

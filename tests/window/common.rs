@@ -1,7 +1,7 @@
 //! A window without a display, and helpers to use it.
 
 use crate::questions::Ask as _;
-use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use std::path::Path;
@@ -199,4 +199,17 @@ pub fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, modifiers:
     }
     harness.event_modifiers(press(start + egui::vec2(60.0, 30.0), false), modifiers);
     harness.step();
+}
+
+pub fn scroll(harness: &mut Harness<'_, Window>, at: Pos2, lines: f32) {
+    harness.event(egui::Event::PointerMoved(at));
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, lines),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(25);
 }

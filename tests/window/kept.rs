@@ -1,6 +1,6 @@
 //! Pictures that are kept.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
+use crate::common::{SMALL, control, drag_from, has_samples, middle, open, scroll, send, until};
 use crate::questions::Ask as _;
 use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -55,6 +55,38 @@ fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
 
 fn in_8_bits(mean: [f64; 3], stops: f64) -> [u8; 3] {
     mean.map(|x| to_byte(x * stops.exp2(), Transfer::Gamma2, AT[1] as usize, 18))
+}
+
+/// While a kept picture is shown, nothing changes or saves the one that it hides.
+#[test]
+fn a_kept_picture_shields_the_traced_one() {
+    let mut harness = finished(8);
+    keep(&mut harness);
+    change(&mut harness);
+    let centre = middle(&harness);
+    harness.hover_at(centre);
+    harness.run_steps(2);
+    send(&mut harness, Command::ListPaths);
+    until(&mut harness, "paths", |window| window.listed_paths() > 0);
+    until(&mut harness, "the end", is_done);
+    let camera = harness.state().shown_document().camera;
+
+    harness.key_press_modifiers(Modifiers::ALT, Key::Num1);
+    harness.run_steps(2);
+    scroll(&mut harness, centre, 3.0);
+    drag_from(&mut harness, centre, vec2(30.0, 10.0));
+    harness.key_down(Key::W);
+    harness.run_steps(3);
+    harness.key_up(Key::W);
+    assert_eq!(harness.state().shown_document().camera, camera);
+    assert_eq!((harness.state().looked(), harness.state().selected()), (Some(0), None));
+    for command in [Command::Save, Command::CopyPicture, Command::Keep] {
+        assert!(harness.state().disabled_reason(command).is_some(), "{command:?}");
+    }
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().looked(), None);
+    assert!(harness.state().listed_paths() > 0 && is_done(harness.state()));
 }
 
 #[test]

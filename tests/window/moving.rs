@@ -1,9 +1,9 @@
 //! Moving about: orbits and the wheel at what is under the pointer, and the axes in the corner.
 
-use crate::common::{control, drag_from, has_samples, hold, open, send, until};
+use crate::common::{control, drag_from, has_samples, hold, open, scroll, send, until};
 use crate::objects::on_screen;
 use crate::questions::Ask as _;
-use eframe::egui::{self, Modifiers, Pos2, Shape, vec2};
+use eframe::egui::{self, Pos2, Shape, vec2};
 use egui_kittest::Harness;
 use glam::DVec3;
 use weekender::app::{Command, Window};
@@ -42,19 +42,6 @@ fn is_marked(harness: &Harness<'_, Window>, at: Pos2) -> bool {
     shapes.iter().any(|clipped| {
         matches!(&clipped.shape, Shape::Circle(circle) if circle.center.distance(at) < 1.5 && circle.radius == 6.0)
     })
-}
-
-fn scroll(harness: &mut Harness<'_, Window>, at: Pos2, lines: f32) {
-    harness.event(egui::Event::PointerMoved(at));
-    harness.step();
-    harness.event(egui::Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, lines),
-        phase: egui::TouchPhase::Move,
-        source: egui::MouseWheelSource::Wheel,
-        modifiers: Modifiers::NONE,
-    });
-    harness.run_steps(25);
 }
 
 /// The copied command line renders the camera of the window.

@@ -154,7 +154,7 @@ impl Ask for Window {
 
     fn has_other_picture(&self) -> bool {
         let (second, wanted) = (&self.tracing.second, self.model.view.compared(self.shown_document()));
-        match (wanted, &second.of, second.shown()) {
+        match (wanted, &second.of, second.shown(&self.model.view)) {
             (Some(wanted), Some((other, origin)), Some(shown)) => {
                 wanted == *other && std::sync::Arc::ptr_eq(origin, &shown.document.origin)
             }
@@ -163,7 +163,7 @@ impl Ask for Window {
     }
 
     fn other_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
-        self.tracing.second.shown().and_then(|shown| shown.texture.colour(at))
+        self.tracing.second.shown(&self.model.view).and_then(|shown| shown.texture.colour(at))
     }
 
     fn divider(&self) -> f32 {

@@ -20,6 +20,9 @@ use moving::Moving;
 use placement::{Zoom, whole_pixels};
 use selection::Selection;
 
+/// How far right the divider can be dragged; at the right edge, a kept picture is looked at.
+const LAST_PLACE: f32 = 0.9999;
+
 /// How close the pointer must be to the wipe's divider to grab it, in points.
 const GRIP: f32 = 12.0;
 
@@ -85,7 +88,12 @@ impl Viewport {
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
-        if !is_held {
+        // Nothing acts on a picture that a kept one hides.
+        let is_hidden = view.looked().is_some();
+        if is_hidden && !is_held {
+            moving::move_picture(ui, &response, &mut self.placement);
+            is_held = true;
+        } else if !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, facts);
         }
         if is_held {
@@ -109,7 +117,7 @@ impl Viewport {
         if response.secondary_clicked() {
             let at = response.interact_pointer_pos();
             self.menu_at = at.and_then(pixel);
-            if let Some(at) = at.filter(|at| rect.contains(*at) && live.no_rays().is_none()) {
+            if let Some(at) = at.filter(|at| rect.contains(*at) && live.no_rays().is_none() && !is_hidden) {
                 touch.select = Some(live.pick(camera, place_at(rect, at)).map(|pick| pick.sphere));
             }
         }
@@ -156,7 +164,7 @@ impl Viewport {
         if self.is_dragging_divider
             && let Some(at) = response.interact_pointer_pos()
         {
-            *divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            *divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, LAST_PLACE);
         }
         self.is_dragging_divider &= response.dragged();
         if is_on_it {

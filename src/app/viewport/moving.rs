@@ -104,6 +104,18 @@ pub(super) fn orbited(camera: &Camera, pivot: DVec3, drag: Vec2, document: &Docu
     navigation::orbit_above_ground(camera, pivot, right, UP_SHARE * down, document.scene())
 }
 
+/// Moves and enlarges the picture alone.
+pub(super) fn move_picture(ui: &Ui, response: &Response, placement: &mut Placement) {
+    if response.dragged_by(PointerButton::Primary) || response.dragged_by(PointerButton::Middle) {
+        pan(ui, response, placement);
+    }
+    let (scroll, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+    let factor = zoom * (scroll * DOLLY_PER_POINT as f32).exp();
+    if let Some(pointer) = response.hover_pos().filter(|_| factor != 1.0) {
+        placement.zoom_at(pointer, factor);
+    }
+}
+
 fn pan(ui: &Ui, response: &Response, placement: &mut Placement) {
     placement.pan_by(response.drag_delta());
     ui.ctx().set_cursor_icon(CursorIcon::Grabbing);

@@ -94,7 +94,9 @@ pub(super) fn paint(
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font, colour);
     }
-    paths.paint(document, ui, &painter, rect);
+    if view.looked().is_none() {
+        paths.paint(document, ui, &painter, rect);
+    }
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
