@@ -6,7 +6,7 @@ use crate::job::render::SIZE_LIMIT;
 use crate::render_cpu::{CpuError, Isa};
 use crate::scene::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
 use anyhow::{Context, Result};
-use clap::builder::{PathBufValueParser, RangedU64ValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use glam::DVec3;
 use std::fmt::Display;
 use std::ops::{Range, RangeBounds, RangeInclusive};
@@ -77,8 +77,8 @@ pub(super) fn parse_levels(text: &str) -> Result<Auto<Vec<Isa>>, String> {
         "all" => return Ok(Some(available)),
         _ => {}
     }
-    let mut named =
-        text.split(',').map(|name| parse_level(name.trim())).collect::<Result<Vec<Isa>, String>>()?;
+    let named: Result<Vec<Isa>, String> = text.split(',').map(|name| parse_level(name.trim())).collect();
+    let mut named = named.map_err(|error| format!("{error}; or all, or some separated by commas"))?;
     named.sort_unstable();
     named.dedup();
     match named.iter().find(|isa| !available.contains(isa)) {
@@ -95,8 +95,15 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
 }
 
 /// A parser of whole numbers within `limits`.
-pub(super) fn whole<T: TryFrom<u64>>(limits: RangeInclusive<u64>) -> RangedU64ValueParser<T> {
-    RangedU64ValueParser::new().range(limits)
+pub(super) fn whole<T: TryFrom<u64>>(
+    limits: RangeInclusive<u64>,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync {
+    move |text: &str| {
+        let number = text.parse().ok().filter(|number| limits.contains(number));
+        number
+            .and_then(|number| T::try_from(number).ok())
+            .ok_or_else(|| format!("must be a whole number from {} to {}", limits.start(), limits.end()))
+    }
 }
 
 /// A parser of numbers within `limits`, which messages describe as `allowed`.

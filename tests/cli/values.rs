@@ -7,10 +7,11 @@ use crate::program_common::{outcome, weekender};
 fn bad_values_are_refused_with_value_and_limit() {
     refused(&[], &["--batch"]);
     let foreign = if cfg!(target_arch = "x86_64") { "neon" } else { "avx2" };
-    let cases: [(&[&str], &[&str]); 20] = [
+    let cases: [(&[&str], &[&str]); 21] = [
         (&["--vfov", "20,5"], &["20,5", "write a point: 20.5"]),
         (&["--size", "0x10"], &["0x10", "16384"]),
         (&["--samples", "0"], &["0", "4294967296"]),
+        (&["--samples", "1e3"], &["1e3", "4294967296"]),
         (&["--depth", "10001"], &["10001", "10000"]),
         (&["--vfov", "180"], &["180", "179"]),
         (&["--look-from", "1,2"], &["1,2", "three numbers"]),

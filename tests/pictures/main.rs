@@ -166,6 +166,8 @@ fn text_pictures_are_read_and_their_faults_named() {
     const P3: &str = "P3\n# tiny\n2 1\n255\n204 226 255\n1 2 3\n";
     let files = [
         (P3, ""),
+        ("P32 1\n255\n204 226 255\n1 2 3\n", ""),
+        ("P3 2 1 255 204 226 255 1 2 3\nP3", "1 lines"),
         ("P3\r2 1\r255\r204 226 255\r1 2 3", ""),
         ("P3\r\n2\t1 255 # c 9 9\r\n204 226 255\r\n1 2 3\r\n", ""),
         ("P3\n#a\n2 # b\n1\n# c\n255 # d\n204 # e 7\n226 255\n#f\n1 2 3#g", ""),
@@ -217,6 +219,7 @@ fn files_that_are_no_pictures_are_refused() {
         (b"P6 2 1 255\n12", "binary mode"),
         (b"P3", "header"),
         (b"P3 0 5 255", "0 x 5"),
+        (b"P3 -32 5 255", "0 x 5"),
         (b"P3 99999 99999 255", "99999x99999"),
         (b"P6 99999 99999 255\n", "99999x99999"),
         (b"GIF89a", "it is a GIF file"),

@@ -155,10 +155,11 @@ fn text(file: &[u8], format: &'static str, channels: usize, damages: &mut Vec<Da
         ));
     }
     let words = || lines.iter().flat_map(|line| line.split_ascii_whitespace());
-    let head: Vec<u64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
+    let head: Vec<i64> = words().take(3).filter_map(|word| word.trim_matches(',').parse().ok()).collect();
     let [width, height, most] = *head.as_slice() else {
         bail!("its header is not complete; {HEADER}");
     };
+    let [width, height, most] = [width, height, most].map(|number| number.max(0) as u64);
     let ((width, height, count), most) = (checked([width, height])?, checked_most(most)?);
     let needed = count * channels;
     let words = || words().skip(3);
@@ -343,11 +344,15 @@ fn without_returns(data: &[u8], needed: usize) -> Option<Vec<u8>> {
 /// Whether a picture of one of these formats begins here.
 fn is_header(bytes: &[u8]) -> bool {
     let is_end = |next: &u8| next.is_ascii_whitespace() || *next == b'#';
-    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', rest @ ..] if rest.first().is_none_or(is_end))
+    matches!(bytes, [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', rest @ ..] if rest.first().is_some_and(is_end))
 }
 
 /// Where the picture begins: at once, or at a line after some text.
 fn header(file: &[u8]) -> Option<usize> {
+    // At the start, white space may lack after the letters.
+    if let [b'P', b'2' | b'3' | b'5' | b'6' | b'F' | b'f', ..] = file {
+        return Some(0);
+    }
     let mut at = 0;
     for line in file.split_inclusive(|byte| *byte == b'\n') {
         if is_header(line) {

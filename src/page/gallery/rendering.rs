@@ -1,7 +1,7 @@
 //! Renders missing or outdated stills.
 
 use super::quality::Quality;
-use super::still::{Still, file_name, is_fresh};
+use super::still::{NO_NOISE, Still, file_name, is_fresh};
 use crate::backends::BackendChoice;
 use crate::batch::{Event, Studio};
 use crate::cli::ProgressChoice;
@@ -169,10 +169,11 @@ impl Work<'_> {
         let path = self.order.path(stage);
         let _writing = self.interrupt.while_writing(path.display().to_string());
         let mut description = describe(recipe, Some(stage), &film, &status, Some(0.0));
-        if let Some(error) = film.error().filter(|error| error.rmse > 0.0) {
+        let error = film.error().filter(|error| error.rmse > 0.0).map(|error| {
             let share = (100.0 * error.rmse_deviation / error.rmse).max(0.1);
-            description.set(key::ERROR, format!("{:.1e} ± {share:.1} %", error.rmse));
-        }
+            format!("{:.1e} ± {share:.1} %", error.rmse)
+        });
+        description.set(key::ERROR, error.unwrap_or_else(|| NO_NOISE.to_owned()));
         write_small_png(&path, &film, recipe.rules.transfer, &description)?;
         Ok(true)
     }

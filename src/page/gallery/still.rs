@@ -7,6 +7,9 @@ use crate::progressive::describe::{counted, seconds};
 use crate::stages::Stage;
 use std::path::Path;
 
+/// The error of a still without noise.
+pub(super) const NO_NOISE: &str = "no noise";
+
 /// What a still says about itself.
 #[derive(Clone, Debug)]
 pub struct Still {
@@ -15,8 +18,8 @@ pub struct Still {
     max_depth: u32,
     samples_per_pixel: u64,
     trace_seconds: f64,
-    /// The estimated error; `None` without noise.
-    error: Option<String>,
+    /// The estimated error, or [`NO_NOISE`].
+    error: String,
     /// The backend that rendered it.
     pub backend: String,
 }
@@ -27,7 +30,7 @@ pub(super) fn file_name(stage: &Stage) -> String {
 
 /// Whether the still of `stage` is whole and one of `recipes`, made by this version of the program.
 pub(super) fn is_fresh(path: &Path, recipes: &[Recipe]) -> bool {
-    recipes.iter().any(|recipe| is_whole_frame(path, recipe, SOFTWARE))
+    Still::read(path).is_some() && recipes.iter().any(|recipe| is_whole_frame(path, recipe, SOFTWARE))
 }
 
 impl Still {
@@ -42,7 +45,7 @@ impl Still {
             max_depth: settings.max_depth,
             samples_per_pixel: saved.samples()?,
             trace_seconds: saved.seconds()?,
-            error: text(key::ERROR),
+            error: text(key::ERROR)?,
             backend: text(key::BACKEND).unwrap_or_default(),
         })
     }
@@ -73,7 +76,7 @@ impl Still {
     }
 
     pub fn error_words(&self) -> String {
-        self.error.as_ref().map_or_else(|| "no noise".to_owned(), |error| format!("error {error}"))
+        if self.error == NO_NOISE { self.error.clone() } else { format!("error {}", self.error) }
     }
 }
 
@@ -83,7 +86,11 @@ pub struct Stills(Vec<(&'static Stage, Still)>);
 
 impl Stills {
     pub fn read(directory: &Path) -> Stills {
-        let still = |stage: &'static Stage| Some((stage, Still::read(&directory.join(file_name(stage)))?));
+        let still = |stage: &'static Stage| {
+            let path = directory.join(file_name(stage));
+            let is_of_stage = Saved::describe(&path).is_ok_and(|saved| saved.stage() == Some(stage));
+            Some((stage, Still::read(&path).filter(|_| is_of_stage)?))
+        };
         Stills(Stage::ALL.iter().filter_map(still).collect())
     }
 
@@ -109,7 +116,7 @@ impl Stills {
                 max_depth: settings.max_depth,
                 samples_per_pixel,
                 trace_seconds: 0.0,
-                error: None,
+                error: NO_NOISE.to_owned(),
                 backend: "cpu".to_owned(),
             };
             (stage, still)
@@ -126,7 +133,7 @@ mod tests {
     fn a_still_describes_itself() {
         let stills = Stills::of_stages(&["metal", "sky"]);
         let [metal, sky] = ["metal", "sky"].map(|id| stills.of(Stage::find(id).unwrap()).unwrap());
-        let error = Some("1.2e-3 ± 0.8 %".to_owned());
+        let error = "1.2e-3 ± 0.8 %".to_owned();
         let metal = Still { trace_seconds: 8.26, error, ..metal.clone() };
         let line = "metal                800x450, 1024 spp,           8.3 s, error 1.2e-3 ± 0.8 %\n";
         assert_eq!(metal.line(Stage::find("metal").unwrap()), line);
