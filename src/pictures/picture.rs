@@ -85,7 +85,7 @@ impl Picture {
     pub fn of_film(name: String, about: String, film: impl Into<Arc<Film>>) -> Self {
         let film = film.into();
         let (width, height) = (film.width(), film.height());
-        let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
+        let pixels = film.exact_means().collect();
         let (limit, film) = (f64::INFINITY, Some(film));
         Picture { name, about, width, height, pixels, steps: None, limit, notes: Vec::new(), film }
     }

@@ -10,7 +10,7 @@ mod judge;
 mod report;
 mod suite;
 
-pub use case::{Case, Expected, Family, Form, Watch, with_far_spheres};
+pub use case::{Case, Expected, Family, Watch, with_far_spheres};
 pub use families::{cases, shown_cases};
 pub use judge::{Difference, Level, Verdict};
 pub use report::{BookMeasured, CaseReport, Measured, StressReport};

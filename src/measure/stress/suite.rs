@@ -1,13 +1,12 @@
 //! Runs cases on the backends and judges the results.
 
 use super::super::{Candidate, Stop, Traced};
-use super::case::{Case, Expected, Form};
+use super::case::{Case, Expected};
 use super::judge::{Difference, Level, Verdict, judge};
 use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
@@ -55,17 +54,16 @@ fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -
     })
 }
 
-/// The backends under test, which are compared with the last one, the `f64` reference.
+/// The backends under test, which are compared with the last one, the `f64` reference. The first also renders the
+/// book's arithmetic in `f32`.
 pub struct Suite {
     tracers: Vec<Candidate>,
-    /// Films of scenes that several cases share, by tracer and name.
-    shared: HashMap<(usize, String), Result<Film, String>>,
 }
 
 impl Suite {
-    /// The last tracer is the reference. The first also renders the book's arithmetic in `f32`.
+    /// At least one backend and the reference, which is last.
     pub fn new(tracers: Vec<Candidate>) -> Self {
-        Suite { tracers, shared: HashMap::new() }
+        Suite { tracers }
     }
 
     /// The reference is last.
@@ -73,20 +71,55 @@ impl Suite {
         self.tracers.iter().map(|tracer| tracer.name.clone()).collect()
     }
 
-    fn reference(&self) -> usize {
-        self.tracers.len() - 1
-    }
-
     /// Runs a case in all its forms on all backends, and with the book's arithmetic.
     pub fn run(&mut self, case: &Case, interrupt: &AtomicBool) -> CaseReport {
-        let mut run = CaseRun {
-            suite: self,
-            case,
-            interrupt,
-            oracle: Err("the f64 reference has no picture".to_owned()),
+        let reference = self.tracers.len() - 1;
+        let names = self.names();
+        let mut on_all = |recipe: &Recipe| -> Vec<Result<Traced, String>> {
+            self.tracers.iter_mut().map(|tracer| trace(tracer, recipe, interrupt)).collect()
         };
-        let measured = case.forms().iter().flat_map(|form| run.form(*form)).collect();
-        let book = run.book();
+        let forms: Vec<_> = case.forms().iter().map(|(form, recipe)| (*form, on_all(recipe))).collect();
+        let same = match &case.expected {
+            Expected::Same(other) => on_all(other),
+            _ => Vec::new(),
+        };
+        // Films that must be equal are compared with that of the same backend, others with the reference's plain form.
+        let other = |tracer: usize| same.get(tracer).unwrap_or(&forms[0].1[reference]);
+        let measured = forms.iter().flat_map(|(form, traced)| {
+            let exact = traced[reference].as_ref().ok();
+            traced.iter().enumerate().map(move |(tracer, traced)| (form, exact, tracer, traced))
+        });
+        let measured = measured.map(|(form, exact, tracer, traced)| {
+            let measured = Measured { backend: names[tracer].clone(), form, ..Measured::default() };
+            let traced = match traced {
+                Ok(traced) => traced,
+                Err(reason) => return Measured { verdict: Verdict::None(reason.clone()), ..measured },
+            };
+            let (level, offset, verdict) = judged(case, &traced.film, other(tracer));
+            let exact = exact.filter(|_| tracer != reference);
+            Measured {
+                mean: Some(level.grey()),
+                offset,
+                deviation: Some(level.deviation),
+                rounding: exact.map(|exact| Difference::of(&traced.film, &exact.film)),
+                seconds: Some(traced.seconds),
+                verdict: verdict.given(&traced.warnings),
+                ..measured
+            }
+        });
+        let measured = measured.collect();
+        // The book's picture of another scene may be wrong, too, so it is compared with our own.
+        let recipe = by_the_book(&case.recipe);
+        let book = [("f32", 0), ("f64", reference)].map(|(precision, tracer)| {
+            let (mean, offset, verdict) = match trace(&mut self.tracers[tracer], &recipe, interrupt) {
+                Ok(traced) => {
+                    let (level, offset, verdict) = judged(case, &traced.film, other(reference));
+                    (Some(level.grey()), offset, verdict)
+                }
+                Err(reason) => (None, None, Verdict::None(reason)),
+            };
+            BookMeasured { precision, mean, offset, verdict }
+        });
         CaseReport {
             id: case.id.clone(),
             family: case.family.title,
@@ -95,111 +128,25 @@ impl Suite {
             why: case.why,
             tolerance: case.tolerance,
             spheres: case.recipe.scene.spheres.len(),
-            book,
             measured,
+            book: book.into(),
         }
     }
 }
 
-struct CaseRun<'a> {
-    suite: &'a mut Suite,
-    case: &'a Case,
-    interrupt: &'a AtomicBool,
-    /// The reference's picture of the plain form.
-    oracle: Result<Film, String>,
-}
-
-impl CaseRun<'_> {
-    fn trace(&mut self, tracer: usize, recipe: &Recipe) -> Result<Traced, String> {
-        trace(&mut self.suite.tracers[tracer], recipe, self.interrupt)
-    }
-
-    /// Measures the case in one form on all backends.
-    fn form(&mut self, form: Form) -> Vec<Measured> {
-        let (recipe, reference) = (self.case.recipe_in(form), self.suite.reference());
-        let exact = self.trace(reference, &recipe);
-        if let (Form::Plain, Ok(exact)) = (form, &exact) {
-            self.oracle = Ok(exact.film.clone());
+/// A film's level, how far it is off, and the verdict. `other` is the film that it may have to be equal to.
+fn judged(case: &Case, film: &Film, other: &Result<Traced, String>) -> (Level, Option<f64>, Verdict) {
+    let level = Level::of(film);
+    let difference = match (&case.expected, other) {
+        (Expected::Every(value), _) => Difference::from_every(&level, *value),
+        (Expected::Mean(value), _) => Difference::from_mean(&level, *value),
+        (Expected::Same(_) | Expected::Reference, Ok(other)) => Difference::of(film, &other.film),
+        (Expected::Same(_) | Expected::Reference, Err(reason)) => {
+            return (level, None, Verdict::None(reason.clone()));
         }
-        let mut measured = Vec::new();
-        for tracer in 0..reference {
-            let traced = self.trace(tracer, &recipe);
-            let rounding = traced.as_ref().ok().zip(exact.as_ref().ok());
-            let rounding = rounding.map(|(traced, exact)| Difference::of(&traced.film, &exact.film));
-            measured.push(Measured { rounding, ..self.measure(tracer, form, traced) });
-        }
-        measured.push(self.measure(reference, form, exact));
-        measured
-    }
-
-    fn measure(&mut self, tracer: usize, form: Form, traced: Result<Traced, String>) -> Measured {
-        let backend = self.suite.tracers[tracer].name.clone();
-        let measured = Measured { backend, form: form.name(), ..Measured::default() };
-        let traced = match traced {
-            Ok(traced) => traced,
-            Err(reason) => return Measured { verdict: Verdict::None(reason), ..measured },
-        };
-        let level = Level::of(&traced.film);
-        let (off, verdict) = self.judge(tracer, &level, &traced.film);
-        let verdict = verdict.given(&traced.warnings);
-        Measured {
-            mean: Some(level.grey()),
-            deviation: Some(level.deviation),
-            seconds: Some(traced.seconds),
-            offset: off,
-            verdict,
-            ..measured
-        }
-    }
-
-    /// How far a tracer's film is off, and the verdict.
-    fn judge(&mut self, tracer: usize, level: &Level, film: &Film) -> (Option<f64>, Verdict) {
-        let difference = match &self.case.expected {
-            Expected::Every(value) => Ok(Difference::from_every(level, *value)),
-            Expected::Mean(value) => Ok(Difference::from_mean(level, *value)),
-            Expected::Same(other) => self.shared(tracer, other).map(|other| Difference::of(film, &other)),
-            Expected::Reference => {
-                self.oracle.as_ref().map(|oracle| Difference::of(film, oracle)).map_err(Clone::clone)
-            }
-        };
-        match difference {
-            Ok(difference) => {
-                let verdict = judge(level, &difference, self.case.tolerance, film.rejected());
-                (Some(difference.bias), verdict)
-            }
-            Err(reason) => (None, Verdict::None(reason)),
-        }
-    }
-
-    /// The picture of a scene that several cases share, rendered once.
-    fn shared(&mut self, tracer: usize, recipe: &Recipe) -> Result<Film, String> {
-        let key = (tracer, recipe.name.clone());
-        if let Some(film) = self.suite.shared.get(&key) {
-            return film.clone();
-        }
-        let film = self.trace(tracer, recipe).map(|traced| traced.film);
-        self.suite.shared.insert(key, film.clone());
-        film
-    }
-
-    /// The book's own arithmetic, in `f32` on the first backend and in `f64`. Where a case expects another scene's
-    /// samples, it is compared with our picture of that scene, because the book's may be wrong, too.
-    fn book(&mut self) -> Vec<BookMeasured> {
-        let (recipe, reference) = (by_the_book(&self.case.recipe), self.suite.reference());
-        let mut measured = Vec::new();
-        let first = (reference > 0).then_some(("f32", 0));
-        for (precision, tracer) in first.into_iter().chain([("f64", reference)]) {
-            let (mean, (offset, verdict)) = match self.trace(tracer, &recipe) {
-                Ok(Traced { film, .. }) => {
-                    let level = Level::of(&film);
-                    (Some(level.grey()), self.judge(reference, &level, &film))
-                }
-                Err(reason) => (None, (None, Verdict::None(reason))),
-            };
-            measured.push(BookMeasured { precision, mean, offset, verdict });
-        }
-        measured
-    }
+    };
+    let verdict = judge(&level, &difference, case.tolerance, film.rejected());
+    (level, Some(difference.bias), verdict)
 }
 
 #[cfg(test)]

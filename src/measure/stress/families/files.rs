@@ -7,7 +7,7 @@ use crate::measure::stress::case::{Case, Expected, Family};
 pub const FILES: Family = Family {
     id: "file",
     title: "Scenes to look at",
-    lesson: "Whole pictures in which several of these difficulties meet.",
+    lesson: Some("Whole pictures in which several of these difficulties meet."),
 };
 
 /// Name, text, what makes it hard, title, and what to look for.
