@@ -3,8 +3,8 @@
 use super::baseline::Baseline;
 use crate::backends::{self, BackendChoice};
 use crate::film::Film;
-use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
-use anyhow::Result;
+use crate::job::render::{BackendInfo, RenderJob, Renderer, Stats};
+use anyhow::{Result, anyhow, ensure};
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
@@ -32,28 +32,6 @@ pub struct Traced {
     pub seconds: f64,
     /// Parts of the scene that the backend cannot represent.
     pub warnings: Vec<String>,
-}
-
-/// Why there is no film.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Stop {
-    Cancelled,
-    Failed(String),
-}
-
-impl From<RenderError> for Stop {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Cancelled => Stop::Cancelled,
-            error => Stop::Failed(error.to_string()),
-        }
-    }
-}
-
-impl From<anyhow::Error> for Stop {
-    fn from(error: anyhow::Error) -> Self {
-        Stop::Failed(format!("{error:#}"))
-    }
 }
 
 impl Candidate {
@@ -100,36 +78,32 @@ impl Candidate {
         }
     }
 
-    /// Adds samples to a film. A failed renderer is replaced for the next picture.
+    /// Adds samples to a film. Fails if `cancel` is set, too. A failed renderer is replaced for the next picture.
     pub fn add(
         &mut self,
         job: &RenderJob,
         samples: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, Stop> {
+    ) -> Result<Stats> {
         let renderer = self.start()?;
         let outcome = catch_unwind(AssertUnwindSafe(|| renderer.accumulate(job, samples, film, cancel)));
         if !matches!(outcome, Ok(Ok(_))) {
             self.renderer = None;
         }
-        Ok(outcome.map_err(|_| Stop::Failed("the tracer panicked".to_owned()))??)
+        Ok(outcome.map_err(|_| anyhow!("the tracer panicked"))??)
     }
 
     /// Traces a new film.
-    pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced, Stop> {
+    pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced> {
         self.start()?;
         let mut film = self.new_film(job);
         let begin = Instant::now();
         let stats = self.add(job, 0..samples, &mut film, cancel)?;
         let seconds = begin.elapsed().as_secs_f64();
         let warnings = self.start()?.take_messages();
-        if film.sample_count() != samples {
-            let held = film.sample_count();
-            return Err(Stop::Failed(format!(
-                "the film holds {held} samples per pixel instead of {samples}"
-            )));
-        }
+        let held = film.sample_count();
+        ensure!(held == samples, "the film holds {held} samples per pixel instead of {samples}");
         Ok(Traced { film, stats, seconds, warnings })
     }
 }

@@ -11,7 +11,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, Source, Stop, write_json};
+use super::{Candidate, Source, write_json};
 use crate::cli::terminal::print;
 use crate::cli::{ReportOptions, command_line};
 use crate::denoise;
@@ -23,9 +23,9 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{check_writable, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use data::{Measured, Run};
-use reference::{ReferencePicture, film_means};
+use reference::ReferencePicture;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -42,14 +42,12 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     report.progress.clear();
     // Keep the measured results even if the report failed.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
-    match outcome {
-        Err(Stop::Failed(reason)) => return Err(Failure::Run(anyhow!(reason))),
-        Ok(()) | Err(Stop::Cancelled) => written.map_err(Failure::Run)?,
-    }
     if report.interrupt.is_set() {
+        written.map_err(Failure::Run)?;
         console::note("interrupted: the report has what was measured before");
         return Ok(report.interrupt.exit_code());
     }
+    outcome.and(written).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -78,10 +76,10 @@ impl<'a> Report<'a> {
         Ok(Report { options, scenes, machine, data, candidates, interrupt, progress })
     }
 
-    fn measure(&mut self) -> Result<(), Stop> {
+    fn measure(&mut self) -> Result<()> {
         let scenes = std::mem::take(&mut self.scenes);
         let references: Vec<ReferencePicture> =
-            scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_, _>>()?;
+            scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_>>()?;
         self.data.references = references.iter().map(|reference| reference.used.clone()).collect();
         // Loop over seeds on the outside, so that load from other programs affects all curves alike.
         for seed in 0..self.options.seeds {
@@ -96,14 +94,14 @@ impl<'a> Report<'a> {
         Ok(())
     }
 
-    fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
+    fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture> {
         self.progress.at(&format!("reference of {}", recipe.name));
         let job = reference::job_of(recipe, SamplerKind::Sobol, reference::SEED)?;
         let mut exact = Candidate::backend("reference", self.options.reference()?);
         let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
         self.progress.finished(EXPECTED_SECONDS);
         let about = exact.info().map_or_else(String::new, |info| format!("{} {}", info.name, info.device));
-        Ok(ReferencePicture::of_film(&recipe.name, &about, &film)?)
+        ReferencePicture::of_film(&recipe.name, &about, &film)
     }
 
     fn picture(
@@ -113,7 +111,7 @@ impl<'a> Report<'a> {
         candidate: usize,
         sampler: SamplerKind,
         seed: u32,
-    ) -> Result<(), Stop> {
+    ) -> Result<()> {
         let candidate = &mut self.candidates[candidate];
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
@@ -186,7 +184,7 @@ fn measured(
     seconds: f64,
     most_samples: u64,
     cancel: &AtomicBool,
-) -> Result<(String, f64, [Vec<Measured>; 2]), Stop> {
+) -> Result<(String, f64, [Vec<Measured>; 2])> {
     let begin = Instant::now();
     let renderer = candidate.start()?;
     renderer.prepare(job, cancel)?;
@@ -208,14 +206,14 @@ fn measured(
         total.add(&stats);
         let device = candidate.start()?.device_time().zip(device_begin);
         let point = |film: &Film, mse_estimate, filter: Duration| {
-            let errors = reference.errors(&film_means(film));
+            let [mse, rel_mse] = reference.errors(film);
             Measured {
                 samples,
                 trace_seconds: total.trace.as_secs_f64(),
                 wall_seconds: (wall + filter).as_secs_f64(),
                 device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
-                mse: errors.mse,
-                rel_mse: errors.rel_mse,
+                mse,
+                rel_mse,
                 mse_estimate,
                 rejected: total.rejected,
             }
@@ -287,8 +285,7 @@ mod tests {
         assert_eq!(points.iter().map(|point| point.samples).collect::<Vec<_>>(), [1, 2, 4]);
         for point in &points {
             let film = film_of(point.samples);
-            let errors = reference.errors(&film_means(&film));
-            assert_eq!((point.mse, point.rel_mse), (errors.mse, errors.rel_mse));
+            assert_eq!([point.mse, point.rel_mse], reference.errors(&film));
             assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
             assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
         }
@@ -299,6 +296,6 @@ mod tests {
         assert!(points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{points:?}");
         assert_eq!(steps(1e-9, 64).2[0].len(), 2, "two samples are always taken");
         let cancelled = measured(&mut candidate, &job, &reference, 1e9, 64, &AtomicBool::new(true));
-        assert_eq!(cancelled.err(), Some(Stop::Cancelled));
+        assert!(cancelled.is_err());
     }
 }

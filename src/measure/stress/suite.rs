@@ -1,6 +1,6 @@
 //! Runs cases on the backends and judges the results.
 
-use super::super::{Candidate, Stop, Traced};
+use super::super::{Candidate, Traced};
 use super::case::{Case, Expected};
 use super::judge::{Difference, Level, Verdict, judge};
 use super::report::{BookMeasured, CaseReport, Measured};
@@ -25,12 +25,13 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
 /// Traces all samples of a picture. The error is a sentence: it was refused, failed, panicked or took too long.
 pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
     let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
-    within_time(interrupt, |cancel| tracer.trace(&job, recipe.samples_per_pixel, cancel)).map_err(|stop| {
-        match stop {
-            Stop::Failed(reason) => reason,
-            Stop::Cancelled if interrupt.load(Ordering::Relaxed) => "interrupted".to_owned(),
-            Stop::Cancelled => format!("took more than {} s", TIME_LIMIT.as_secs()),
-        }
+    within_time(interrupt, |cancel| {
+        let traced = tracer.trace(&job, recipe.samples_per_pixel, cancel);
+        traced.map_err(|error| match cancel.load(Ordering::Relaxed) {
+            true if interrupt.load(Ordering::Relaxed) => "interrupted".to_owned(),
+            true => format!("took more than {} s", TIME_LIMIT.as_secs()),
+            false => format!("{error:#}"),
+        })
     })
 }
 
