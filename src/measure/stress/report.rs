@@ -4,15 +4,12 @@ use super::super::table::{counted, or_dash, text_row};
 use super::judge::{Difference, Verdict};
 use serde::Serialize;
 
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub struct StressReport {
     /// Names of the tested backends.
     pub backends: Vec<String>,
     /// Wall time of the run.
     pub seconds: f64,
-    /// Number of cases selected.
-    #[serde(skip)]
-    pub chosen: usize,
     pub interrupted: bool,
     /// In the table's order.
     pub cases: Vec<CaseReport>,
@@ -136,8 +133,8 @@ impl StressReport {
         self.cases.iter().all(CaseReport::is_right)
     }
 
-    /// Sums up the run in one line.
-    pub fn summary(&self) -> String {
+    /// Sums up the run of `chosen` cases in one line.
+    pub fn summary(&self, chosen: usize) -> String {
         let count = self.cases.len();
         let right = self.cases.iter().filter(|case| case.is_right()).count();
         let by_the_book = |precision: &str| {
@@ -155,7 +152,7 @@ impl StressReport {
             by_the_book("f64"),
         );
         if self.interrupted {
-            let missing = self.chosen.saturating_sub(count);
+            let missing = chosen.saturating_sub(count);
             text += &format!("interrupted: {} not run\n", counted(missing, "case"));
         }
         text
@@ -202,14 +199,8 @@ mod tests {
         found.measured[1].verdict = Verdict::Wrong("off".to_owned());
         let text = found.text();
         assert!(text.contains(" WRONG\n    cpu, plain: thin\n    cpu, plain: off\n"), "{text}");
-        let report = |cases| StressReport {
-            backends: vec!["cpu".to_owned()],
-            seconds: 1.0,
-            chosen: 2,
-            interrupted: true,
-            cases,
-        };
-        assert!(report(Vec::new()).summary().contains("interrupted: 2 cases not run"));
+        let report = StressReport { interrupted: true, ..StressReport::default() };
+        assert!(report.summary(2).contains("interrupted: 2 cases not run"));
     }
 
     #[test]

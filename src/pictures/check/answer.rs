@@ -149,20 +149,11 @@ impl Finding {
                 percent(self.right.differing)
             ));
         }
-        match &self.mistake {
-            Some(found) if self.right.differing == 0.0 => {
-                let shown = if found.hypothesis.mistake.is_some_and(super::Mistake::is_at_edges) {
-                    "at edges, pixel by pixel"
-                } else {
-                    "in the values of the pixels"
-                };
-                evidence.push(format!("The means of blocks hardly differ; the mistake shows {shown}"));
-            }
-            Some(found) if found.differing < self.right.differing => evidence.push(format!(
+        if let Some(found) = self.mistake.as_ref().filter(|found| found.differing < self.right.differing) {
+            evidence.push(format!(
                 "With the mistake built into ours, they differ in {}",
                 percent(found.differing)
-            )),
-            _ => {}
+            ));
         }
         if let Some(alike) = self.alike {
             let remedy = capitalised(alike.remedy);

@@ -293,59 +293,59 @@ fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> O
 
 /// Adds the reasons for calling the pictures different.
 fn judge(comparison: &mut Comparison) {
-    let Comparison { test, non_finite, reasons, .. } = comparison;
-    if let NonFinite { differing, differing_pixels, first: Some([column, row]), .. } = non_finite {
-        reasons.push(format!(
-            "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
-             {column},{row}: find out what made them"
-        ));
-    }
-    let excess = test.largest_excess();
-    if excess > SUM_DEVIATIONS {
-        reasons.push(format!(
-            "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
-             {SUM_DEVIATIONS:.0}"
-        ));
-    }
-    let (largest, limit) = (test.largest, test.largest_limit);
-    if largest > limit {
-        reasons.push(format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}"));
-    }
+    let Comparison { test, non_finite: NonFinite { differing, differing_pixels, first, .. }, .. } =
+        comparison;
+    let (excess, largest, limit) = (test.largest_excess(), test.largest, test.largest_limit);
     let off = comparison.bias_deviation.map_or(0.0, |deviation| comparison.bias.abs() / deviation);
-    if off > SUM_DEVIATIONS {
-        reasons.push(format!(
-            "the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"
-        ));
-    }
+    let reasons = [
+        first.map(|[column, row]| {
+            format!(
+                "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
+                 {column},{row}: find out what made them"
+            )
+        }),
+        (excess > SUM_DEVIATIONS).then(|| {
+            format!(
+                "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
+                 {SUM_DEVIATIONS:.0}"
+            )
+        }),
+        (largest > limit)
+            .then(|| format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}")),
+        (off > SUM_DEVIATIONS).then(|| {
+            format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}")
+        }),
+    ];
+    comparison.reasons.extend(reasons.into_iter().flatten());
 }
 
+/// Adds what to know about the figures.
 fn note(comparison: &mut Comparison) {
-    let Comparison { test, notes, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
-    if comparison.noise.is_none() && !*is_same {
-        notes.push(
+    let Comparison { test, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
+    let notes = [
+        (comparison.noise.is_none() && !*is_same).then(|| {
             "the noise is estimated from the spread of the differences within each block, so differences finer than 8 \
              pixels pass for noise; films with two halves (--checkpoint) give a sharper comparison"
-                .to_owned(),
-        );
-    }
-    if test.is_too_near() {
-        notes.push(
+                .to_owned()
+        }),
+        test.is_too_near().then(|| {
             "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern \
              finer than 8 pixels, or their halves do not belong together"
-                .to_owned(),
-        );
-    }
-    if *alike > 0 {
-        notes.push(format!(
-            "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
-        ));
-    }
-    if *left_out > 0 {
-        notes.push(format!(
-            "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the largest \
-             value of an integer format"
-        ));
-    }
+                .to_owned()
+        }),
+        (*alike > 0).then(|| {
+            format!(
+                "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
+            )
+        }),
+        (*left_out > 0).then(|| {
+            format!(
+                "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the \
+                 largest value of an integer format"
+            )
+        }),
+    ];
+    comparison.notes.extend(notes.into_iter().flatten());
 }
 
 /// Withholds the verdict if too little can be compared.

@@ -1,14 +1,12 @@
 //! Compares two records of the same path: where they differ, in which quantity, and by how much.
 
+use crate::backends::explain::{Event, Lobe, steps};
 use crate::film::FIXED_POINT_SCALE;
 use crate::job::render::RenderJob;
-use crate::kernel::path_record::{PathRecord, RecordedRay};
-use crate::scene::Look;
-use crate::stages::Shading;
+use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::system::console::printable;
 use glam::DVec3;
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -128,25 +126,17 @@ impl Pair<'_> {
     /// What happens to a path after the ray at `index`, as a word that can follow "is"; `None` if the ray hits no
     /// sphere.
     fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
-        let ray = path.rays.get(index)?;
-        let sphere = self.job.scene().spheres.get(ray.hit?.sphere)?;
-        let look = self.job.scene().material_of(sphere).look();
-        let is_last = index + 1 >= self.job.settings().max_depth as usize;
-        Some(match (path.rays.get(index + 1), look) {
-            (Some(next), Look::Glass { .. }) => {
-                let outward = DVec3::from(next.origin) - sphere.center;
-                let side = |ray: &RecordedRay| DVec3::from(ray.direction).dot(outward) > 0.0;
-                if side(ray) == side(next) { "refracted" } else { "reflected" }
-            }
-            (Some(_), Look::Matte) => "scattered",
-            (Some(_), Look::Mirror { .. }) => "reflected",
-            // Such a stage traces no further rays.
-            (None, _) if self.job.rules().shading != Shading::Path => "shown",
-            (None, _) if is_last => "cut off",
-            // The fuzzy reflection points into the surface.
-            (None, Look::Mirror { .. }) => "absorbed",
-            (None, _) => "shown",
-        })
+        // The words need no random numbers, so any pixel and sample will do.
+        let step = steps(self.job, [0, 0], 0, path).into_iter().nth(index)?;
+        match step.event {
+            Event::Sky => None,
+            Event::Shown => Some("shown"),
+            Event::Limit => Some("cut off"),
+            Event::Absorbed(_) => Some("absorbed"),
+            Event::Scattered(Lobe::Hemisphere | Lobe::Lambertian) => Some("scattered"),
+            Event::Scattered(Lobe::Glass { refracts: true, .. }) => Some("refracted"),
+            Event::Scattered(Lobe::Glass { .. } | Lobe::Metal { .. }) => Some("reflected"),
+        }
     }
 
     /// The verdict in one or two sentences.
@@ -171,40 +161,26 @@ impl Pair<'_> {
     /// count from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
         let Difference { ray, quantity, amount } = *difference;
+        let allowed = format!("by {amount:.1e}, but only {:.0e} is allowed", self.tolerance);
         if quantity == "radiance" {
-            return format!(
-                "the radiances differ by {amount:.1e}, but only {:.0e} is allowed, although the rays agree",
-                self.tolerance
-            );
+            return format!("the radiances differ {allowed}, although the rays agree");
         }
         if amount.is_finite() {
-            return format!(
-                "ray {}: {quantity} differs by {amount:.1e}, but only {:.0e} is allowed",
-                ray + 1,
-                self.tolerance
-            );
+            return format!("ray {}: {quantity} differs {allowed}", ray + 1);
         }
         let row = self.rows(ray).into_iter().find(|row| row.label == quantity);
-        let values =
-            row.map_or([None, None], |row| row.values).map(|value| value.unwrap_or("nothing".to_owned()));
-        let ([a, b], [value_a, value_b]) = (self.names, values.map(|value| value.trim().to_owned()));
-        format!("ray {}: the paths part by {quantity}: {a} {value_a}, {b} {value_b}", ray + 1)
+        let values = row.map_or([None, None], |row| row.values);
+        let [a, b] = values.map(|value| value.unwrap_or("nothing".to_owned()).trim().to_owned());
+        let [name_a, name_b] = self.names;
+        format!("ray {}: the paths part by {quantity}: {name_a} {a}, {name_b} {b}", ray + 1)
     }
 
-    /// `#7 glass (dielectric)`, or the sky.
+    /// `#7 glass (dielectric)`, with a printable name of the material, or the sky.
     fn numbered(&self, ray: &RecordedRay) -> String {
-        let Some(hit) = ray.hit else { return "the sky".to_owned() };
-        match self.material(hit.sphere) {
-            Some((name, kind)) => format!("#{} {name} ({kind})", hit.sphere),
-            None => format!("#{}", hit.sphere),
-        }
-    }
-
-    /// Name (made printable) and kind of a sphere's material.
-    fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
+        let Some(RecordedHit { sphere, .. }) = ray.hit else { return "the sky".to_owned() };
         let scene = self.job.scene();
-        let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
-        Some((printable(&named.name), named.material.kind()))
+        let named = &scene.materials[scene.spheres[sphere].material];
+        format!("#{sphere} {} ({})", printable(&named.name), named.material.kind())
     }
 }
 

@@ -126,7 +126,6 @@ fn departure_follows_material_and_next_ray() {
         (glass, up, 0, "reflected"),
         (glass, down, 0, "refracted"),
         (metal, None, 0, "absorbed"),
-        (matte, None, 0, "shown"),
         (metal, None, last, "cut off"),
         (metal, None, last - 1, "absorbed"),
     ] {
