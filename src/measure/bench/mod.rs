@@ -82,9 +82,7 @@ impl Bench<'_> {
         for scene in scenes.iter().take_while(|_| !self.is_cancelled()) {
             let rows = self.rows(scene, &mut candidates, &mut progress);
             let denoising = if self.options.features { None } else { self.denoising(&scene.job) };
-            figures
-                .scenes
-                .push(SceneFigures { denoising, ..SceneFigures::new(&scene.name, &scene.job, rows) });
+            figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows, denoising));
         }
         progress.clear();
         figures
@@ -149,10 +147,8 @@ impl Bench<'_> {
     }
 
     fn gpu(&self) -> Option<GpuOptions> {
-        match BackendChoice::gpu_if_present(self.options.adapter.as_deref())? {
-            BackendChoice::Gpu(options) => Some(options),
-            _ => None,
-        }
+        let adapter = self.options.adapter.as_deref();
+        BackendChoice::gpu_if_present(adapter).map(|_| GpuOptions::of_adapter(adapter))
     }
 
     /// Runs all candidates in turn, so that drift affects all alike.

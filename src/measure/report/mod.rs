@@ -115,17 +115,15 @@ impl<'a> Report<'a> {
         let candidate = &mut self.candidates[candidate];
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
-        let seconds = self.options.time_limit / f64::from(self.options.seeds);
         self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler));
+        let seconds = self.options.time_limit / f64::from(self.options.seeds);
+        let limits = (seconds, self.options.max_samples);
         let job = reference::job_of(recipe, sampler, seed)?;
-        let limit = self.options.max_samples;
-        let (about, prepare_seconds, [raw, denoised]) =
-            measured(candidate, &job, reference, seconds, limit, self.interrupt.flag())?;
-        let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
-        self.data.runs.push(with(curve.clone(), raw));
+        let [raw, denoised] = measured(candidate, &job, reference, curve, limits, self.interrupt.flag())?;
+        self.data.runs.push(raw);
         // One denoised curve for each backend suffices.
-        if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
-            self.data.runs.push(with(curve.denoised(), denoised));
+        if !denoised.points.is_empty() && self.options.samplers.first() == Some(&sampler) {
+            self.data.runs.push(denoised);
         }
         self.progress.finished(seconds);
         Ok(())
@@ -175,28 +173,29 @@ fn settings(options: &ReportOptions) -> Settings {
 }
 
 /// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
-/// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the backend's
-/// name, the preparation time in seconds, and the figures raw and denoised.
+/// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the figures
+/// raw and denoised. The limits are seconds of tracing and samples per pixel.
 fn measured(
     candidate: &mut Candidate,
     job: &RenderJob,
     reference: &ReferencePicture,
-    seconds: f64,
-    most_samples: u64,
+    curve: Curve,
+    (seconds, most_samples): (f64, u64),
     cancel: &AtomicBool,
-) -> Result<(String, f64, [Vec<Measured>; 2])> {
+) -> Result<[Run; 2]> {
     let begin = Instant::now();
     let renderer = candidate.start()?;
     renderer.prepare(job, cancel)?;
     let prepare_seconds = begin.elapsed().as_secs_f64();
     let info = renderer.info();
     let about = format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads);
+    let mut raw = Run { curve, seed: job.settings().seed, about, prepare_seconds, points: Vec::new() };
+    let mut denoised = Run { curve: raw.curve.denoised(), ..raw.clone() };
     // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
     let device_begin = candidate.start()?.device_time();
     let mut film = candidate.new_film(job);
-    let (mut total, mut wall, [mut raw, mut denoised]) =
-        (Stats::default(), Duration::ZERO, [const { Vec::new() }; 2]);
+    let (mut total, mut wall) = (Stats::default(), Duration::ZERO);
     let mut samples = 1;
     while samples <= most_samples.max(2) {
         let begin = Instant::now();
@@ -218,10 +217,10 @@ fn measured(
                 rejected: total.rejected,
             }
         };
-        raw.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
+        raw.points.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
         let begin = Instant::now();
         if let Ok(found) = denoise::of_film(&film) {
-            denoised.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
+            denoised.points.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
         }
         // Assumes that twice the samples take twice as long.
         if samples >= 2 && 2.0 * wall.as_secs_f64() > seconds {
@@ -229,7 +228,7 @@ fn measured(
         }
         samples *= 2;
     }
-    Ok((about, prepare_seconds, [raw, denoised]))
+    Ok([raw, denoised])
 }
 
 /// The chart of a report, with the times to an error of `target` marked.
@@ -278,9 +277,11 @@ mod tests {
         let film_of = |samples| Candidate::backend("", cpu()).trace(&job, samples, &go_on).unwrap().film;
         let reference = ReferencePicture::of_film("metals", "", &film_of(64)).unwrap();
         let mut candidate = Candidate::backend("cpu", cpu());
-        let mut steps =
-            |seconds, samples| measured(&mut candidate, &job, &reference, seconds, samples, &go_on).unwrap();
-        let (about, _, [points, denoised]) = steps(1e9, 5);
+        let mut steps = |limits, cancel: &AtomicBool| {
+            measured(&mut candidate, &job, &reference, curve("cpu", "sobol"), limits, cancel)
+        };
+        let [raw, denoised] = steps((1e9, 5), &go_on).unwrap();
+        let (about, points, denoised) = (raw.about, raw.points, denoised.points);
         assert!(about.starts_with("cpu ") && about.ends_with(" 1 threads"), "{about}");
         assert_eq!(points.iter().map(|point| point.samples).collect::<Vec<_>>(), [1, 2, 4]);
         for point in &points {
@@ -294,8 +295,8 @@ mod tests {
             denoised.iter().zip(&points[1..]).all(|(denoised, raw)| denoised.wall_seconds > raw.wall_seconds)
         );
         assert!(points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{points:?}");
-        assert_eq!(steps(1e-9, 64).2[0].len(), 2, "two samples are always taken");
-        let cancelled = measured(&mut candidate, &job, &reference, 1e9, 64, &AtomicBool::new(true));
-        assert!(cancelled.is_err());
+        let [raw, _] = steps((1e-9, 64), &go_on).unwrap();
+        assert_eq!(raw.points.len(), 2, "two samples are always taken");
+        assert!(steps((1e9, 64), &AtomicBool::new(true)).is_err());
     }
 }

@@ -236,8 +236,9 @@ pub struct Compared {
 impl Compared {
     /// The same, if a mistake explains the difference.
     pub fn blamed_on(&self, mistake: &'static Mistake) -> Compared {
-        let hypothesis = Hypothesis { mistake: Some(mistake), ..self.hypothesis.clone() };
-        Compared { hypothesis, is_noise: true, ..self.clone() }
+        let mut found = Compared { is_noise: true, ..self.clone() };
+        found.hypothesis.mistake = Some(mistake);
+        found
     }
 }
 

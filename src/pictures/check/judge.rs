@@ -62,19 +62,20 @@ impl Finding {
 
     /// Ranks findings of different stages: lower is closer.
     fn rank(&self) -> (u8, f64) {
-        match &self.mistake {
-            None if self.right.is_noise => (0, self.right.misfit),
-            Some(found) if self.explains_all() => (1, found.misfit),
-            Some(found) if found.is_noise => (2, found.misfit),
-            Some(found) => (3, found.misfit),
-            None => (3, self.right.misfit),
-        }
+        let found = self.mistake.as_ref().unwrap_or(&self.right);
+        let class = match found.is_noise {
+            true if self.mistake.is_none() => 0,
+            true if self.explains_all() => 1,
+            true => 2,
+            false => 3,
+        };
+        (class, found.misfit)
     }
 
     /// Whether a mistake, rather than a step of a later section, explains all differences.
     fn explains_all(&self) -> bool {
-        let found = self.mistake.as_ref().filter(|found| found.is_noise);
-        found.and_then(|found| found.hypothesis.mistake).is_some_and(|mistake| !mistake.is_early())
+        self.mistake.as_ref().is_some_and(|found| found.is_noise)
+            && self.named().is_some_and(|mistake| !mistake.is_early())
     }
 }
 

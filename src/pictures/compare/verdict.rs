@@ -108,12 +108,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
         notes: Vec::new(),
         unclear: None,
     };
-    if clipped > 0 {
-        comparison.reasons.push(format!(
-            "{clipped} blocks are at the largest value of an integer format in one picture, but are darker in the other"
-        ));
-    }
-    judge(&mut comparison);
+    judge(&mut comparison, clipped);
     note(&mut comparison);
     if !comparison.is_same {
         doubt(&mut comparison, few, [a.width as usize, values.len()]);
@@ -292,12 +287,17 @@ fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> O
 }
 
 /// Adds the reasons for calling the pictures different.
-fn judge(comparison: &mut Comparison) {
+fn judge(comparison: &mut Comparison, clipped: usize) {
     let Comparison { test, non_finite: NonFinite { differing, differing_pixels, first, .. }, .. } =
         comparison;
     let (excess, largest, limit) = (test.largest_excess(), test.largest, test.largest_limit);
     let off = comparison.bias_deviation.map_or(0.0, |deviation| comparison.bias.abs() / deviation);
     let reasons = [
+        (clipped > 0).then(|| {
+            format!(
+                "{clipped} blocks are at the largest value of an integer format in one picture, but are darker in the other"
+            )
+        }),
         first.map(|[column, row]| {
             format!(
                 "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
@@ -316,7 +316,7 @@ fn judge(comparison: &mut Comparison) {
             format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}")
         }),
     ];
-    comparison.reasons.extend(reasons.into_iter().flatten());
+    comparison.reasons = reasons.into_iter().flatten().collect();
 }
 
 /// Adds what to know about the figures.
@@ -345,7 +345,7 @@ fn note(comparison: &mut Comparison) {
             )
         }),
     ];
-    comparison.notes.extend(notes.into_iter().flatten());
+    comparison.notes = notes.into_iter().flatten().collect();
 }
 
 /// Withholds the verdict if too little can be compared.
