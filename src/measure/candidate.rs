@@ -10,16 +10,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    Backend(BackendChoice),
-    /// The plain C program.
-    C89,
-}
-
 pub struct Candidate {
     pub name: String,
-    source: Source,
+    /// `None` is the plain C program.
+    backend: Option<BackendChoice>,
     /// `None` before the first picture and after a failure.
     renderer: Option<Box<dyn Renderer>>,
 }
@@ -35,17 +29,17 @@ pub struct Traced {
 }
 
 impl Candidate {
-    /// Starts on first use.
-    pub fn new(name: impl Into<String>, source: Source) -> Self {
-        Candidate { name: name.into(), source, renderer: None }
+    /// A backend, or the plain C program, which starts on first use.
+    pub fn new(name: impl Into<String>, backend: Option<BackendChoice>) -> Self {
+        Candidate { name: name.into(), backend, renderer: None }
     }
 
     pub fn backend(name: impl Into<String>, choice: BackendChoice) -> Self {
-        Candidate::new(name, Source::Backend(choice))
+        Candidate::new(name, Some(choice))
     }
 
     pub fn is_baseline(&self) -> bool {
-        self.source == Source::C89
+        self.backend.is_none()
     }
 
     /// Starts the backend unless it is running. Fails if it is unavailable.
@@ -53,9 +47,9 @@ impl Candidate {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer.as_mut()),
             none => {
-                let mut renderer: Box<dyn Renderer> = match &self.source {
-                    Source::Backend(choice) => backends::create(choice)?,
-                    Source::C89 => Box::new(Baseline::compile()?),
+                let mut renderer: Box<dyn Renderer> = match &self.backend {
+                    Some(choice) => backends::create(choice)?,
+                    None => Box::new(Baseline::compile()?),
                 };
                 // Whoever named a software adapter knows what it is; later messages are about scenes.
                 drop(renderer.take_messages());
@@ -112,7 +106,7 @@ impl Candidate {
 impl Candidate {
     /// Renders with `renderer` until it fails, then with the reference.
     pub(super) fn of_renderer(name: &str, renderer: Box<dyn Renderer>) -> Self {
-        let source = Source::Backend(BackendChoice::Reference { threads: Some(1) });
-        Candidate { name: name.to_owned(), source, renderer: Some(renderer) }
+        let backend = Some(BackendChoice::Reference { threads: Some(1) });
+        Candidate { name: name.to_owned(), backend, renderer: Some(renderer) }
     }
 }

@@ -7,7 +7,7 @@ mod text;
 use super::machine::Machine;
 use super::progress::Progress;
 use super::table::counted;
-use super::{Candidate, Source, write_json};
+use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene};
@@ -84,7 +84,7 @@ impl Bench<'_> {
             let denoising = if self.options.features { None } else { self.denoising(&scene.job) };
             figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows, denoising));
         }
-        progress.clear();
+        progress.display.clear();
         figures
     }
 
@@ -106,7 +106,7 @@ impl Bench<'_> {
 
     /// All candidates in the table's order.
     fn candidates(&self) -> Vec<(Kind, Candidate)> {
-        let mut c89 = Candidate::new("C89, 1 thread", Source::C89);
+        let mut c89 = Candidate::new("C89, 1 thread", None);
         if let Ok(renderer) = c89.start() {
             c89.name = format!("C89, {}, 1 thread", renderer.info().device);
         }

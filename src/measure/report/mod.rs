@@ -11,7 +11,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, Source, write_json};
+use super::{Candidate, write_json};
 use crate::cli::terminal::print;
 use crate::cli::{ReportOptions, command_line};
 use crate::denoise;
@@ -39,7 +39,7 @@ const EXPECTED_SECONDS: f64 = 40.0;
 pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let mut report = Report::open(options).map_err(Failure::Input)?;
     let outcome = report.measure();
-    report.progress.clear();
+    report.progress.display.clear();
     // Keep the measured results even if the report failed.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
     if report.interrupt.is_set() {
@@ -144,8 +144,7 @@ impl<'a> Report<'a> {
 fn candidates(options: &ReportOptions) -> Result<Vec<Candidate>> {
     let mut candidates = Vec::new();
     for name in options.backends() {
-        let source = options.backend(&name)?.map_or(Source::C89, Source::Backend);
-        let mut candidate = Candidate::new(name.clone(), source);
+        let mut candidate = Candidate::new(name.clone(), options.backend(&name)?);
         match candidate.start().err() {
             None => candidates.push(candidate),
             Some(_) if candidate.is_baseline() && !options.names_backends() => {}

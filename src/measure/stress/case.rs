@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What a family's cases share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Family {
     /// First part of the ids of its cases.
     pub id: &'static str,
@@ -15,6 +15,8 @@ pub struct Family {
     pub title: &'static str,
     /// What it teaches, in a sentence or two, if the window shows cases of it.
     pub lesson: Option<&'static str>,
+    /// Builds its cases.
+    pub cases: fn(&'static Family) -> Vec<Case>,
 }
 
 /// The result that a case must have. Radiance is linear.
@@ -179,10 +181,9 @@ pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
 
 #[cfg(test)]
 mod tests {
+    use super::super::families::FAMILIES;
     use super::super::families::build::one_ball;
     use super::*;
-
-    const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: None };
 
     #[test]
     fn small_scenes_also_get_hierarchy() {
@@ -190,7 +191,7 @@ mod tests {
             let mut recipe = one_ball();
             let scene = Arc::make_mut(&mut recipe.scene);
             scene.spheres = vec![scene.spheres[0]; count];
-            let case = Case::new(&FAMILY, count, "copies", recipe);
+            let case = Case::new(&FAMILIES[0], count, "copies", recipe);
             let found = case.forms();
             assert_eq!(found.iter().map(|(form, _)| *form).collect::<Vec<_>>(), forms, "{count}");
             assert_eq!(found[0].1.scene.spheres.len(), count);

@@ -27,9 +27,9 @@ pub struct Difference {
 impl Difference {
     /// From the radiance of every sample, linear RGB: that of the worst channel.
     pub fn from_every(level: &Level, value: [f64; 3]) -> Self {
-        let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
-        let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
-        Difference { bias: farther(farther(red, green), blue), ..Difference::default() }
+        let offsets = (0..3).map(|channel| level.mean[channel] - value[channel]);
+        let worst = offsets.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        Difference { bias: worst.unwrap_or_default(), ..Difference::default() }
     }
 
     /// From the mean over pixels and channels.

@@ -37,7 +37,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     options.json.as_deref().map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
-        let ids: Vec<&str> = families::families().map(|family| family.id).collect();
+        let ids: Vec<&str> = families::FAMILIES.iter().map(|family| family.id).collect();
         let error =
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
@@ -90,11 +90,11 @@ fn suite(
             break;
         }
         let row = || terminal::print_beside(json, &found.text());
-        printed = printed.and(progress.above(row));
+        printed = printed.and(progress.display.above(row));
         progress.finished(1.0);
         report.cases.push(found);
     }
-    progress.clear();
+    progress.display.clear();
     report.seconds = begin.elapsed().as_secs_f64();
     printed = printed.and(terminal::print_beside(json, &report.summary(chosen.len())));
     json.map_or(Ok(()), |target| write_json(target, &machine, &report))?;

@@ -84,38 +84,25 @@ impl CaseReport {
         self.measured.iter().all(|measured| measured.verdict.is_right())
     }
 
-    /// The measurement farthest off, of those with a picture.
-    fn worst(&self) -> Option<&Measured> {
-        let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
-        self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
-    }
-
-    /// The longest time.
-    fn seconds(&self) -> Option<f64> {
-        self.measured.iter().filter_map(|measured| measured.seconds).max_by(f64::total_cmp)
-    }
-
-    /// The measurements that are not right.
-    pub fn complaints(&self) -> impl Iterator<Item = &Measured> {
-        self.measured.iter().filter(|measured| measured.verdict != Verdict::Right)
-    }
-
     /// One line, and one more for each backend that is not right.
     pub fn text(&self) -> String {
-        let worst = self.worst();
-        let complaint = self.complaints().find(|m| !m.verdict.is_right()).or(self.complaints().next());
+        let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
+        let worst = self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        let seconds = self.measured.iter().filter_map(|measured| measured.seconds).max_by(f64::total_cmp);
+        let complaints = || self.measured.iter().filter(|measured| measured.verdict != Verdict::Right);
+        let complaint = complaints().find(|measured| !measured.verdict.is_right()).or(complaints().next());
         let book: Vec<String> = self.book.iter().map(|book| or_dash(book.offset, brief)).collect();
         let cells = [
             self.id.clone(),
             self.expected.clone(),
             or_dash(worst.and_then(|worst| worst.mean), |mean| format!("{mean:.6}")),
             or_dash(worst.and_then(|worst| worst.offset), brief),
-            or_dash(self.seconds(), |seconds| format!("{seconds:.2} s")),
+            or_dash(seconds, |seconds| format!("{seconds:.2} s")),
             complaint.map_or("right", |measured| measured.verdict.name()).to_owned(),
             book.join(", "),
         ];
         let mut text = text_row(&WIDTHS, &cells);
-        for Measured { backend, form, verdict, .. } in self.complaints() {
+        for Measured { backend, form, verdict, .. } in complaints() {
             text += &format!("    {backend}, {form}: {}\n", verdict.reason());
         }
         text

@@ -7,15 +7,10 @@ use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
 
 /// Time limit of one picture.
-const TIME_LIMIT: Duration = Duration::from_secs(20);
-
-/// How often to check the time limit and the user's interrupt.
-const GLANCE: Duration = Duration::from_millis(50);
+const SECONDS_MAX: f64 = 20.0;
 
 /// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
@@ -25,34 +20,12 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
 /// Traces all samples of a picture. The error is a sentence: it was refused, failed, panicked or took too long.
 pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
     let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
-    within_time(interrupt, |cancel| {
-        let traced = tracer.trace(&job, recipe.samples_per_pixel, cancel);
-        traced.map_err(|error| match cancel.load(Ordering::Relaxed) {
-            true if interrupt.load(Ordering::Relaxed) => "interrupted".to_owned(),
-            true => format!("took more than {} s", TIME_LIMIT.as_secs()),
-            false => format!("{error:#}"),
-        })
-    })
-}
-
-/// Runs `work` with a flag that is set on timeout or when the user interrupts.
-fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
-    let cancel = AtomicBool::new(false);
-    let begin = Instant::now();
-    std::thread::scope(|scope| {
-        let (done, is_done) = channel::<()>();
-        let cancel = &cancel;
-        scope.spawn(move || {
-            while is_done.recv_timeout(GLANCE) == Err(RecvTimeoutError::Timeout) {
-                if interrupt.load(Ordering::Relaxed) || begin.elapsed() > TIME_LIMIT {
-                    cancel.store(true, Ordering::Relaxed);
-                }
-            }
-        });
-        // Dropped when the work ends, even by a panic.
-        let _done = done;
-        work(cancel)
-    })
+    match tracer.trace(&job, recipe.samples_per_pixel, interrupt) {
+        Ok(Traced { seconds, .. }) if seconds > SECONDS_MAX => {
+            Err(format!("took {seconds:.0} s, more than {SECONDS_MAX} s"))
+        }
+        traced => traced.map_err(|error| format!("{error:#}")),
+    }
 }
 
 /// The backends under test, which are compared with the last one, the `f64` reference. The first also renders the
@@ -153,7 +126,7 @@ fn judged(case: &Case, film: &Film, other: &Result<Traced, String>) -> (Level, O
 #[cfg(test)]
 mod tests {
     use super::super::families::build::{one_ball, sized, tame};
-    use super::super::families::{cases, families};
+    use super::super::families::{FAMILIES, cases};
     use super::*;
     use crate::backends::BackendChoice;
     use crate::film::fixed_point;
@@ -248,7 +221,7 @@ mod tests {
 
     /// Form, mean, offset and verdict of each measurement of a small picture.
     fn figures(tracers: Vec<Candidate>, expected: Expected) -> Vec<(&'static str, f64, f64, &'static str)> {
-        let case = Case::new(families().next().unwrap(), "made-up", "nothing", sized(one_ball(), [4, 3], 4));
+        let case = Case::new(&FAMILIES[0], "made-up", "nothing", sized(one_ball(), [4, 3], 4));
         let mut suite = Suite::new(tracers);
         let report = suite.run(&case.expect(expected, "it is", 1e-6), &AtomicBool::new(false));
         let rounded = |x: Option<f64>| (1000.0 * x.unwrap_or(f64::NAN)).round() / 1000.0;
@@ -300,13 +273,5 @@ mod tests {
         // The reference takes its place.
         let traced = trace(&mut broken, &small, &go_on).unwrap();
         assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (4, [0.5; 3]));
-        let was_set = within_time(&AtomicBool::new(true), |cancel| {
-            let begin = Instant::now();
-            while !cancel.load(Ordering::Relaxed) && begin.elapsed() < Duration::from_secs(10) {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            cancel.load(Ordering::Relaxed)
-        });
-        assert!(was_set);
     }
 }

@@ -88,7 +88,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
             values[pixel][channel].abs() > rounding(step)
         };
         narrow(&mut test, a.width, is_moved);
-        few = few_pixels(&values, is_moved);
+        few = few_pixels(&values, a.width, is_moved);
         clipped = add_clipped(&mut test, a, b, &differences);
     }
     let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
@@ -111,7 +111,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
     judge(&mut comparison, clipped);
     note(&mut comparison);
     if !comparison.is_same {
-        doubt(&mut comparison, few, [a.width as usize, values.len()]);
+        doubt(&mut comparison, few);
     }
     comparison
 }
@@ -273,17 +273,25 @@ fn differences(a: &Picture, b: &Picture) -> (Vec<[f64; 3]>, NonFinite) {
     (values, found)
 }
 
-/// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): their number, the
-/// worst of them and its difference.
-fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> Option<(usize, usize, f64)> {
+/// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): the largest
+/// difference, and a sentence about it.
+fn few_pixels(
+    values: &[[f64; 3]],
+    width: u32,
+    is_moved: impl Fn(usize, usize) -> bool,
+) -> Option<(f64, String)> {
     let by = |pixel: usize| {
         let moved = (0..3).filter(|channel| is_moved(pixel, *channel));
         moved.map(|channel| values[pixel][channel].abs()).fold(0.0, f64::max)
     };
     let moved = (0..values.len()).map(|pixel| (pixel, by(pixel))).filter(|(_, by)| *by > 0.0);
-    let count = moved.clone().count();
+    let (count, all) = (moved.clone().count(), values.len());
     let (pixel, largest) = moved.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (count as f64 <= (FEW_PIXELS * values.len() as f64).max(1.0)).then_some((count, pixel, largest))
+    let (column, row) = (pixel % width as usize, pixel / width as usize);
+    (count as f64 <= (FEW_PIXELS * all as f64).max(1.0)).then(|| {
+        let what = format!("only {count} of {all} pixels differ by more than rounding");
+        (largest, format!("{what}, most by {largest:.1e} at {column},{row}"))
+    })
 }
 
 /// Adds the reasons for calling the pictures different.
@@ -349,7 +357,7 @@ fn note(comparison: &mut Comparison) {
 }
 
 /// Withholds the verdict if too little can be compared.
-fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, pixels]: [usize; 2]) {
+fn doubt(comparison: &mut Comparison, few: Option<(f64, String)>) {
     let known: usize = comparison.test.counts.iter().sum();
     let all = 3 * comparison.test.blocks.len();
     let mut unclear = (2 * known < all).then(|| {
@@ -358,20 +366,12 @@ fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, 
              value of an integer format; compare films, or render both with a darker sky"
         )
     });
-    if let Some((count, pixel, largest)) = few {
-        let (column, row) = (pixel % width, pixel / width);
-        let text = format!(
-            "only {count} of {pixels} pixels differ by more than rounding, most by {largest:.1e} at {column},{row}"
-        );
-        if largest > LOUD {
-            unclear.get_or_insert_with(|| {
-                format!(
-                    "{text}: too few to tell noise from a fault; look there, or compare films with two halves"
-                )
-            });
-        } else {
-            comparison.notes.push(text);
+    match few {
+        Some((largest, text)) if largest > LOUD => {
+            let hint = "too few to tell noise from a fault; look there, or compare films with two halves";
+            unclear.get_or_insert_with(|| format!("{text}: {hint}"));
         }
+        few => comparison.notes.extend(few.map(|(_, text)| text)),
     }
     comparison.unclear = unclear.filter(|_| comparison.reasons.is_empty());
 }

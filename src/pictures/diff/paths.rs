@@ -83,43 +83,34 @@ impl Pair<'_> {
     /// The quantities of the ray at `index`.
     pub fn rows(&self, index: usize) -> [Row; 6] {
         let rays = self.paths.map(|path| path.rays.get(index));
-        // If only one side has this ray, the paths have parted.
-        let amount = |of: &dyn Fn(&RecordedRay, &RecordedRay) -> f64| match rays {
-            [Some(a), Some(b)] => of(a, b),
-            _ => f64::INFINITY,
-        };
-        let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
-        let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
         let departures = self.paths.map(|path| self.departure(path, index));
-        let row = |label, values, amount| Row { label, values, amount };
         // Positions are only as exact as the largest coordinate the path has passed through.
         let length = |ray: &RecordedRay| DVec3::from(ray.origin).length();
         let extent = self.paths[0].rays.iter().take(index + 1).map(length).fold(0.0, f64::max);
-        let origins = |a: &RecordedRay, b: &RecordedRay| {
-            share((DVec3::from(a.origin) - DVec3::from(b.origin)).length(), extent.max(length(b)))
+        let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
+        let amounts = match rays {
+            [Some(a), Some(b)] => [
+                share((DVec3::from(a.origin) - DVec3::from(b.origin)).length(), extent.max(length(b))),
+                (DVec3::from(a.direction) - DVec3::from(b.direction)).length(),
+                vector_share(a.throughput, b.throughput, 0.0),
+                apart(a.hit.map(|hit| hit.sphere) != b.hit.map(|hit| hit.sphere)),
+                a.hit.zip(b.hit).map_or(0.0, |(a, b)| {
+                    share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
+                }),
+                apart(departures[0] != departures[1]),
+            ],
+            // If only one side has this ray, the paths have parted.
+            _ => [f64::INFINITY; 6],
         };
-        let directions =
-            |a: &RecordedRay, b: &RecordedRay| (DVec3::from(a.direction) - DVec3::from(b.direction)).length();
-        let throughputs = |a: &RecordedRay, b: &RecordedRay| vector_share(a.throughput, b.throughput, 0.0);
-        let spheres = |a: &RecordedRay, b: &RecordedRay| {
-            apart(a.hit.map(|hit| hit.sphere) != b.hit.map(|hit| hit.sphere))
-        };
-        let distances = |a: &RecordedRay, b: &RecordedRay| match (a.hit, b.hit) {
-            (Some(a), Some(b)) => {
-                share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
-            }
-            _ => 0.0,
-        };
-        let meets = rays.map(|ray| ray.map(|ray| self.numbered(ray)));
-        let reaches = rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()));
-        let continues = departures.map(|word| word.map(str::to_owned));
+        let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
+        let row = |place: usize, label, values| Row { label, values, amount: amounts[place] };
         [
-            row("origin", vectors(|ray| ray.origin), amount(&origins)),
-            row("direction", vectors(|ray| ray.direction), amount(&directions)),
-            row("throughput", vectors(|ray| ray.throughput), amount(&throughputs)),
-            row("object", meets, amount(&spheres)),
-            row("distance", reaches, amount(&distances)),
-            row("departure", continues, amount(&|_, _| apart(departures[0] != departures[1]))),
+            row(0, "origin", vectors(|ray| ray.origin)),
+            row(1, "direction", vectors(|ray| ray.direction)),
+            row(2, "throughput", vectors(|ray| ray.throughput)),
+            row(3, "object", rays.map(|ray| ray.map(|ray| self.numbered(ray)))),
+            row(4, "distance", rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()))),
+            row(5, "departure", departures.map(|word| word.map(str::to_owned))),
         ]
     }
 
