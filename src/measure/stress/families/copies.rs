@@ -3,7 +3,7 @@
 use super::build::{Ball, around, grouped, in_front, matte, named, of_scene, picture, scene, sized};
 use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
-use crate::scene::{Material, Scene, Sky};
+use crate::scene::{Camera, Material, Scene, Sky};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -97,44 +97,25 @@ fn overlapping(family: &'static Family) -> Case {
 pub fn odd_ones(family: &'static Family) -> Vec<Case> {
     let Some(field) = Recipe::builtin("field:4000") else { return Vec::new() };
     let field = named(sized(field, [48, 32], 16), "field:4000");
-    let with = |change: &dyn Fn(&mut Scene, &mut Recipe)| {
-        let mut recipe = field.clone();
-        let mut scene = Scene::clone(&recipe.scene);
-        change(&mut scene, &mut recipe);
-        Recipe { scene: Arc::new(scene), ..recipe }
-    };
-    let cases = [
-        (
-            "tiny",
-            "one ball of radius 1e-4 among 4,000 of about .3",
-            with(&|scene, recipe| scene.add_sphere(recipe.camera.look_at + 2.0 * DVec3::Y, 1e-4, 0)),
-        ),
-        (
-            "focus",
-            "a focus 1e-4 in front of the eye",
-            with(&|_, recipe| recipe.camera.focus_distance = Some(1e-4)),
-        ),
-        (
-            "eye",
-            "the eye 1e-4 from a ball",
-            with(&|scene, recipe| {
-                let eye = recipe.camera.look_from;
-                scene.add_sphere(eye + 0.3001 * DVec3::Y, 0.3, 0);
-            }),
-        ),
-        (
-            "huge",
-            "a second ground of radius 1e9 below",
-            with(&|scene, _| scene.add_sphere(DVec3::new(0.0, -1e9 - 50.0, 0.0), 1e9, 0)),
-        ),
-        (
-            "copies",
-            "a hundred copies of one ball",
-            with(&|scene, _| {
-                let ball = scene.spheres[1];
-                scene.spheres.extend(vec![ball; 100]);
-            }),
-        ),
+    let changes: [(&str, &str, fn(&mut Scene, &mut Camera)); 5] = [
+        ("tiny", "one ball of radius 1e-4 among 4,000 of about .3", |scene, camera| {
+            scene.add_sphere(camera.look_at + 2.0 * DVec3::Y, 1e-4, 0);
+        }),
+        ("focus", "a focus 1e-4 in front of the eye", |_, camera| camera.focus_distance = Some(1e-4)),
+        ("eye", "the eye 1e-4 from a ball", |scene, camera| {
+            scene.add_sphere(camera.look_from + 0.3001 * DVec3::Y, 0.3, 0);
+        }),
+        ("huge", "a second ground of radius 1e9 below", |scene, _| {
+            scene.add_sphere(DVec3::new(0.0, -1e9 - 50.0, 0.0), 1e9, 0);
+        }),
+        ("copies", "a hundred copies of one ball", |scene, _| {
+            scene.spheres.extend(vec![scene.spheres[1]; 100]);
+        }),
     ];
-    cases.into_iter().map(|(name, stiff, recipe)| Case::new(family, name, stiff, recipe)).collect()
+    let case = |(name, stiff, change): (&str, &str, fn(&mut Scene, &mut Camera))| {
+        let mut recipe = field.clone();
+        change(Arc::make_mut(&mut recipe.scene), &mut recipe.camera);
+        Case::new(family, name, stiff, recipe)
+    };
+    changes.into_iter().map(case).collect()
 }

@@ -20,14 +20,12 @@ pub fn indices(family: &'static Family) -> Vec<Case> {
         of_scene(scene(balls, Sky::default()), eye(look_from, DVec3::ZERO, 40.0))
     };
     let outside = DVec3::new(0.0, 0.3, 3.0);
-    let mut cases: Vec<Case> = [1.0 + 1e-6, 1.0 + 1e-3, 2.4, 10.0, 100.0, 1e4, 1e6, 1e-4]
-        .into_iter()
-        .map(|index| {
-            let name = if index == 1.0 + 1e-6 { "1+1e-6".to_owned() } else { format!("{index}") };
-            let stiff = format!("glass of index {index}, seen from outside");
-            Case::new(family, name, stiff, ball(index, outside))
-        })
-        .collect();
+    let mut cases = Vec::new();
+    for index in [1.0 + 1e-6, 1.0 + 1e-3, 2.4, 10.0, 100.0, 1e4, 1e6, 1e-4] {
+        let name = if index == 1.0 + 1e-6 { "1+1e-6".to_owned() } else { format!("{index}") };
+        let stiff = format!("glass of index {index}, seen from outside");
+        cases.push(Case::new(family, name, stiff, ball(index, outside)));
+    }
     for (name, index) in [("1.5", 1.5), ("100", 100.0), ("1e4", 1e4)] {
         let stiff = format!("the eye inside glass of index {name}");
         // Near the centre, so that some rays fall within the cone through which light leaves.
@@ -69,14 +67,12 @@ pub fn depths(family: &'static Family) -> Vec<Case> {
         deep(picture(balls, eye(DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.0, 0.5, 0.0), 40.0)), 10_000)
     };
     let why = "the mirrors reflect all light, and every path finds its way out to a sky of 1";
-    let mut cases: Vec<Case> = [("mirrors", 0.05), ("mirrors-1e-6-apart", 1e-6), ("mirrors-touching", 0.0)]
-        .into_iter()
-        .map(|(name, gap)| {
-            let apart = if gap == 0.0 { "that touch".to_owned() } else { format!("{gap:e} apart") };
-            let stiff = format!("three mirrors {apart}: each reflection multiplies errors");
-            Case::new(family, name, stiff, mirrors(gap)).expect(Expected::Mean(1.0), why, 2e-6)
-        })
-        .collect();
+    let mut cases = Vec::new();
+    for (name, gap) in [("mirrors", 0.05), ("mirrors-1e-6-apart", 1e-6), ("mirrors-touching", 0.0)] {
+        let apart = if gap == 0.0 { "that touch".to_owned() } else { format!("{gap:e} apart") };
+        let stiff = format!("three mirrors {apart}: each reflection multiplies errors");
+        cases.push(Case::new(family, name, stiff, mirrors(gap)).expect(Expected::Mean(1.0), why, 2e-6));
+    }
     let well = |depth: u32| {
         // A white ball, open at the top: its lid is slightly too small.
         let balls = [(DVec3::ZERO, 1.0, matte(0.9)), (DVec3::new(0.0, -101.0, 0.0), 100.0, matte(0.5))];
@@ -100,16 +96,13 @@ pub fn shells(family: &'static Family) -> Vec<Case> {
     let nested = |count: usize| -> Vec<Ball> {
         (0..count).map(|index| (DVec3::ZERO, 1.0 - 0.9 * index as f64 / count as f64, matte(0.5))).collect()
     };
-    let mut cases: Vec<Case> = [1, 50, 105, 108, 1000, 10_000]
-        .into_iter()
-        .map(|count| {
-            let recipe =
-                sized(picture(nested(count), in_front()), [24, 16], if count > 1000 { 4 } else { 32 });
-            let stiff = format!("{}: no box lies beside another", counted(count, "concentric shell"));
-            let why = "only the outermost shell is seen, a convex ball of albedo .5 under a sky of 1";
-            Case::new(family, count, stiff, recipe).every(0.5, why)
-        })
-        .collect();
+    let mut cases = Vec::new();
+    for count in [1, 50, 105, 108, 1000, 10_000] {
+        let recipe = sized(picture(nested(count), in_front()), [24, 16], if count > 1000 { 4 } else { 32 });
+        let stiff = format!("{}: no box lies beside another", counted(count, "concentric shell"));
+        let why = "only the outermost shell is seen, a convex ball of albedo .5 under a sky of 1";
+        cases.push(Case::new(family, count, stiff, recipe).every(0.5, why));
+    }
     for pairs in [1, 5, 50] {
         let mut balls: Vec<Ball> = Vec::new();
         for pair in 0..pairs {
@@ -135,13 +128,13 @@ pub fn coats(family: &'static Family) -> Vec<Case> {
         of_scene(scene(balls, Sky::default()), around(offset))
     };
     let why = "in f64, the thickness keeps nine digits";
-    let mut cases: Vec<Case> = (3..=7)
-        .map(|exponent| {
-            let stiff = format!("a coat of 1e-{exponent} over a ball of radius 1");
-            let recipe = coat(10.0_f64.powi(-exponent), DVec3::ZERO);
-            Case::new(family, format!("1e-{exponent}"), stiff, recipe).expect(Expected::Reference, why, 2e-6)
-        })
-        .collect();
+    let mut cases = Vec::new();
+    for exponent in 3..=7 {
+        let stiff = format!("a coat of 1e-{exponent} over a ball of radius 1");
+        let case =
+            Case::new(family, format!("1e-{exponent}"), stiff, coat(10.0_f64.powi(-exponent), DVec3::ZERO));
+        cases.push(case.expect(Expected::Reference, why, 2e-6));
+    }
     for (exponent, distance) in [(3, 4), (3, 5), (4, 4), (4, 5)] {
         let offset = 10.0_f64.powi(distance) * DVec3::new(1.0, 0.5, -0.7);
         let stiff = format!("a coat of 1e-{exponent} close to the eye, 1e{distance} from the origin");

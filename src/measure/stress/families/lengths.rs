@@ -1,7 +1,6 @@
 //! The whole scene moved or scaled, and extreme cameras.
 
 use super::build::{eye, glass, matte, moved, of_scene, scene, sized, tame};
-use crate::job::recipe::Recipe;
 use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::{Camera, Material, Sky};
 use glam::DVec3;
@@ -64,43 +63,30 @@ pub fn scaled_scenes(family: &'static Family) -> Vec<Case> {
 
 /// Extreme fields of view, lenses and focus distances.
 pub fn lenses(family: &'static Family) -> Vec<Case> {
-    let with = |change: fn(&mut Camera)| -> Recipe {
+    let changes: [(&str, &str, fn(&mut Camera)); 6] = [
+        ("narrowest", "a field of view of .01 degrees", |camera| camera.vfov_degrees = 0.01),
+        ("widest", "a field of view of 179 degrees", |camera| camera.vfov_degrees = 179.0),
+        ("wide-lens", "a lens of 178 degrees: most rays are almost parallel to its plane", |camera| {
+            camera.defocus_angle_degrees = 178.0;
+        }),
+        ("near-focus", "a focus 1e-4 in front of the eye, through a lens of 20 degrees", |camera| {
+            camera.defocus_angle_degrees = 20.0;
+            camera.focus_distance = Some(1e-4);
+        }),
+        ("far-focus", "a focus at 1e9, through a lens of 1e-7 degrees", |camera| {
+            camera.defocus_angle_degrees = 1e-7;
+            camera.focus_distance = Some(1e9);
+        }),
+        ("up-almost-along-the-view", "the up vector is a millionth off the view", |camera| {
+            camera.vup = camera.look_at - camera.look_from + 1e-6 * DVec3::Y;
+        }),
+    ];
+    let mut cases = Vec::new();
+    for (name, stiff, change) in changes {
         let mut recipe = tame();
         change(&mut recipe.camera);
-        recipe
-    };
-    let cases: [(&str, &str, Recipe); 6] = [
-        ("narrowest", "a field of view of .01 degrees", with(|camera| camera.vfov_degrees = 0.01)),
-        ("widest", "a field of view of 179 degrees", with(|camera| camera.vfov_degrees = 179.0)),
-        (
-            "wide-lens",
-            "a lens of 178 degrees: most rays are almost parallel to its plane",
-            with(|camera| camera.defocus_angle_degrees = 178.0),
-        ),
-        (
-            "near-focus",
-            "a focus 1e-4 in front of the eye, through a lens of 20 degrees",
-            with(|camera| {
-                camera.defocus_angle_degrees = 20.0;
-                camera.focus_distance = Some(1e-4);
-            }),
-        ),
-        (
-            "far-focus",
-            "a focus at 1e9, through a lens of 1e-7 degrees",
-            with(|camera| {
-                camera.defocus_angle_degrees = 1e-7;
-                camera.focus_distance = Some(1e9);
-            }),
-        ),
-        (
-            "up-almost-along-the-view",
-            "the up vector is a millionth off the view",
-            with(|camera| camera.vup = camera.look_at - camera.look_from + 1e-6 * DVec3::Y),
-        ),
-    ];
-    let mut cases: Vec<Case> =
-        cases.into_iter().map(|(name, stiff, recipe)| Case::new(family, name, stiff, recipe)).collect();
+        cases.push(Case::new(family, name, stiff, recipe));
+    }
     let balls = [
         (DVec3::new(0.0, -1e6, 0.0), 1e6, matte(0.5)),
         (DVec3::new(0.0, 2e-4, 0.0), 1e-4, glass(1.5)),
