@@ -6,8 +6,6 @@ use crate::measure::stress::case::{Case, Expected, Family};
 use crate::scene::Material;
 use glam::DVec3;
 
-const WHY: &str = "the room is closed: no path leaves it";
-
 /// Alone, touching the ground, and cut by it; near the origin and far from it.
 pub fn cavities(family: &'static Family) -> Vec<Case> {
     let materials = [
@@ -26,35 +24,31 @@ pub fn cavities(family: &'static Family) -> Vec<Case> {
                 _ => format!("the eye in a {phrase} ball that the ground cuts"),
             };
             let name = format!("{material_name}-{place}");
-            cases.push(Case::new(family, name, stiff, room(material, ground)).every(0.0, WHY));
+            cases.push(Case::new(family, name, stiff, room(material, ground)));
         }
     }
     let touching = room(matte(1.0), Some(-1001.0));
+    let away = |recipe: &Recipe| moved(recipe, 1.0, DVec3::new(800.0, 0.0, 600.0));
+    let many_rays = |recipe: Recipe| sized(deep(recipe, 2000), [8, 8], 8);
     let stiff = "a white ball that touches the ground, up to 2,000 rays per path: each bounce is a chance to slip out";
-    let recipe = sized(deep(touching.clone(), 2000), [8, 8], 8);
-    cases.push(Case::new(family, "white-touching-deep", stiff, recipe).every(0.0, WHY));
-    let away = DVec3::new(800.0, 0.0, 600.0);
-    let recipe = moved(&touching, 1.0, away);
+    cases.push(Case::new(family, "white-touching-deep", stiff, many_rays(touching.clone())));
     let stiff = "a white ball that touches the ground, 1,000 units from the origin";
-    let case = Case::new(family, "white-touching-at-1000", stiff, recipe).every(0.0, WHY);
-    cases.push(case.watched(
+    cases.push(Case::new(family, "white-touching-at-1000", stiff, away(&touching)).watched(
         "A closed room, a thousand units from the origin",
         "Nothing: the room is closed and black. With the book's arithmetic in f32, some paths slip through the wall, \
          each of them a bright speck.",
     ));
-    let recipe = sized(deep(moved(&touching, 1.0, away), 2000), [8, 8], 8);
     let stiff = "the same, up to 2,000 rays per path";
-    cases.push(Case::new(family, "white-touching-at-1000-deep", stiff, recipe).every(0.0, WHY));
-    let recipe = moved(&room(matte(1.0), None), 1.0, away);
+    cases.push(Case::new(family, "white-touching-at-1000-deep", stiff, many_rays(away(&touching))));
     let stiff = "a white ball alone, 1,000 units from the origin";
-    cases.push(Case::new(family, "white-at-1000", stiff, recipe).every(0.0, WHY));
+    cases.push(Case::new(family, "white-at-1000", stiff, away(&room(matte(1.0), None))));
     for factor in [1e-6, 1e-3, 1e6] {
         let recipe = moved(&touching, factor, DVec3::ZERO);
         let stiff = format!("a white ball of radius {factor:e} that touches the ground");
-        let case = Case::new(family, format!("white-touching-of-{factor:e}"), stiff, recipe);
-        cases.push(case.of_unit(factor).every(0.0, WHY));
+        let name = format!("white-touching-of-{factor:e}");
+        cases.push(Case::new(family, name, stiff, recipe).of_unit(factor));
     }
-    cases
+    cases.into_iter().map(|case| case.every(0.0, "the room is closed: no path leaves it")).collect()
 }
 
 /// A unit ball at the origin around the eye, and a ground of radius 1000 centred at this height.
