@@ -97,7 +97,8 @@ fn overlapping(family: &'static Family) -> Case {
 pub fn odd_ones(family: &'static Family) -> Vec<Case> {
     let Some(field) = Recipe::builtin("field:4000") else { return Vec::new() };
     let field = named(sized(field, [48, 32], 16), "field:4000");
-    let changes: [(&str, &str, fn(&mut Scene, &mut Camera)); 5] = [
+    type Change = (&'static str, &'static str, fn(&mut Scene, &mut Camera));
+    let changes: [Change; 5] = [
         ("tiny", "one ball of radius 1e-4 among 4,000 of about .3", |scene, camera| {
             scene.add_sphere(camera.look_at + 2.0 * DVec3::Y, 1e-4, 0);
         }),
@@ -112,7 +113,7 @@ pub fn odd_ones(family: &'static Family) -> Vec<Case> {
             scene.spheres.extend(vec![scene.spheres[1]; 100]);
         }),
     ];
-    let case = |(name, stiff, change): (&str, &str, fn(&mut Scene, &mut Camera))| {
+    let case = |(name, stiff, change): Change| {
         let mut recipe = field.clone();
         change(Arc::make_mut(&mut recipe.scene), &mut recipe.camera);
         Case::new(family, name, stiff, recipe)

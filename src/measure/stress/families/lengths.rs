@@ -63,7 +63,8 @@ pub fn scaled_scenes(family: &'static Family) -> Vec<Case> {
 
 /// Extreme fields of view, lenses and focus distances.
 pub fn lenses(family: &'static Family) -> Vec<Case> {
-    let changes: [(&str, &str, fn(&mut Camera)); 6] = [
+    type Change = (&'static str, &'static str, fn(&mut Camera));
+    let changes: [Change; 6] = [
         ("narrowest", "a field of view of .01 degrees", |camera| camera.vfov_degrees = 0.01),
         ("widest", "a field of view of 179 degrees", |camera| camera.vfov_degrees = 179.0),
         ("wide-lens", "a lens of 178 degrees: most rays are almost parallel to its plane", |camera| {
