@@ -96,7 +96,7 @@ impl Verdict {
 
 fn compared(kept: &Kept, recipe: Recipe, film: Film) -> Result<Answer, String> {
     let picture = |name: &str, recipe: Recipe, film| {
-        Picture::of_rendered(name.to_owned(), &recipe, film).map_err(|error| error.to_string())
+        Picture::of_rendered(name.to_owned(), Some(&recipe), film).map_err(|error| error.to_string())
     };
     let sides = [
         picture("kept", kept.document.recipe(), Arc::clone(&kept.film))?,

@@ -104,7 +104,7 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts) {
     for (heading, text) in [
         ("Watch", watch),
         ("What is difficult", case.stiff.as_str()),
-        ("What it teaches", case.family.lesson),
+        ("What it teaches", case.family.lesson.unwrap_or_default()),
     ] {
         paragraph(ui, heading, text);
     }

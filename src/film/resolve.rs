@@ -11,6 +11,11 @@ impl Film {
         self.pixel_sum(index).radiance().map(|x| x / count)
     }
 
+    /// The mean of each pixel, as [`Film::mean`].
+    pub fn exact_means(&self) -> impl Iterator<Item = [f64; 3]> {
+        (0..self.halves()[0].len()).map(|pixel| self.mean(pixel))
+    }
+
     /// The whole picture, linear RGB, row by row from the top.
     pub fn means(&self) -> Vec<[f32; 3]> {
         let unit = self.fixed_point_of_1();

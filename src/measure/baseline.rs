@@ -13,7 +13,6 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -21,8 +20,8 @@ pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
 
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
-/// How often to check for cancellation.
-const POLL: Duration = Duration::from_millis(20);
+/// How often to check for cancellation and the end.
+const POLL: Duration = Duration::from_millis(5);
 
 /// The compiled program. As a renderer it draws its own random numbers, and its films have one half.
 pub struct Baseline {
@@ -82,32 +81,25 @@ impl Baseline {
         command.arg("--scene").arg(self.file("scene.txt")).arg("--out").arg(self.file("picture.pfm"));
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(failed)?;
-        let (lines, received) = mpsc::channel();
-        let reader = child.stdout.take().map(|pipe| {
-            std::thread::spawn(move || {
-                for line in BufReader::new(pipe).lines().map_while(Result::ok) {
-                    // After a cancellation, nobody receives this.
-                    let _ = lines.send((Instant::now(), line));
+        let stdout = child.stdout.take();
+        let stats = std::thread::scope(|scope| {
+            let reader = scope.spawn(|| {
+                let mut lines = BufReader::new(stdout?).lines().map_while(Result::ok);
+                lines.find(|line| line == "tracing")?;
+                let begin = Instant::now();
+                let line = lines.next()?;
+                figures(&line, begin.elapsed())
+            });
+            while !reader.is_finished() {
+                if cancel.load(Ordering::Relaxed) {
+                    // Fails if the process has just ended by itself.
+                    let _ = child.kill();
                 }
-            })
+                std::thread::sleep(POLL);
+            }
+            // A panic of the reader leaves the run without figures.
+            reader.join().ok().flatten()
         });
-        let (mut begin, mut stats) = (None, None);
-        loop {
-            match received.recv_timeout(POLL) {
-                Ok((now, line)) if line == "tracing" => begin = Some(now),
-                Ok((now, line)) => stats = begin.and_then(|begin| figures(&line, now - begin)).or(stats),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break,
-            }
-            if cancel.load(Ordering::Relaxed) {
-                // Fails if the process has just ended by itself.
-                let _ = child.kill();
-            }
-        }
-        if let Some(reader) = reader {
-            // The thread only reads, so its panic does not affect the run.
-            let _ = reader.join();
-        }
         let output = child.wait_with_output().map_err(failed)?;
         match stats {
             _ if cancel.load(Ordering::Relaxed) => Err(RenderError::Cancelled),

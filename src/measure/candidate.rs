@@ -3,23 +3,17 @@
 use super::baseline::Baseline;
 use crate::backends::{self, BackendChoice};
 use crate::film::Film;
-use crate::job::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
-use anyhow::Result;
+use crate::job::render::{BackendInfo, RenderJob, Renderer, Stats};
+use anyhow::{Result, anyhow, ensure};
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
-    Backend(BackendChoice),
-    /// The plain C program.
-    C89,
-}
-
 pub struct Candidate {
     pub name: String,
-    source: Source,
+    /// `None` is the plain C program.
+    backend: Option<BackendChoice>,
     /// `None` before the first picture and after a failure.
     renderer: Option<Box<dyn Renderer>>,
 }
@@ -34,40 +28,18 @@ pub struct Traced {
     pub warnings: Vec<String>,
 }
 
-/// Why there is no film.
-#[derive(Debug, PartialEq, Eq)]
-pub enum Stop {
-    Cancelled,
-    Failed(String),
-}
-
-impl From<RenderError> for Stop {
-    fn from(error: RenderError) -> Self {
-        match error {
-            RenderError::Cancelled => Stop::Cancelled,
-            error => Stop::Failed(error.to_string()),
-        }
-    }
-}
-
-impl From<anyhow::Error> for Stop {
-    fn from(error: anyhow::Error) -> Self {
-        Stop::Failed(format!("{error:#}"))
-    }
-}
-
 impl Candidate {
-    /// Starts on first use.
-    pub fn new(name: impl Into<String>, source: Source) -> Self {
-        Candidate { name: name.into(), source, renderer: None }
+    /// A backend, or the plain C program, which starts on first use.
+    pub fn new(name: impl Into<String>, backend: Option<BackendChoice>) -> Self {
+        Candidate { name: name.into(), backend, renderer: None }
     }
 
     pub fn backend(name: impl Into<String>, choice: BackendChoice) -> Self {
-        Candidate::new(name, Source::Backend(choice))
+        Candidate::new(name, Some(choice))
     }
 
     pub fn is_baseline(&self) -> bool {
-        self.source == Source::C89
+        self.backend.is_none()
     }
 
     /// Starts the backend unless it is running. Fails if it is unavailable.
@@ -75,9 +47,9 @@ impl Candidate {
         match &mut self.renderer {
             Some(renderer) => Ok(renderer.as_mut()),
             none => {
-                let mut renderer: Box<dyn Renderer> = match &self.source {
-                    Source::Backend(choice) => backends::create(choice)?,
-                    Source::C89 => Box::new(Baseline::compile()?),
+                let mut renderer: Box<dyn Renderer> = match &self.backend {
+                    Some(choice) => backends::create(choice)?,
+                    None => Box::new(Baseline::compile()?),
                 };
                 // Whoever named a software adapter knows what it is; later messages are about scenes.
                 drop(renderer.take_messages());
@@ -100,36 +72,32 @@ impl Candidate {
         }
     }
 
-    /// Adds samples to a film. A failed renderer is replaced for the next picture.
+    /// Adds samples to a film. Fails if `cancel` is set, too. A failed renderer is replaced for the next picture.
     pub fn add(
         &mut self,
         job: &RenderJob,
         samples: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, Stop> {
+    ) -> Result<Stats> {
         let renderer = self.start()?;
         let outcome = catch_unwind(AssertUnwindSafe(|| renderer.accumulate(job, samples, film, cancel)));
         if !matches!(outcome, Ok(Ok(_))) {
             self.renderer = None;
         }
-        Ok(outcome.map_err(|_| Stop::Failed("the tracer panicked".to_owned()))??)
+        Ok(outcome.map_err(|_| anyhow!("the tracer panicked"))??)
     }
 
     /// Traces a new film.
-    pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced, Stop> {
+    pub fn trace(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Traced> {
         self.start()?;
         let mut film = self.new_film(job);
         let begin = Instant::now();
         let stats = self.add(job, 0..samples, &mut film, cancel)?;
         let seconds = begin.elapsed().as_secs_f64();
         let warnings = self.start()?.take_messages();
-        if film.sample_count() != samples {
-            let held = film.sample_count();
-            return Err(Stop::Failed(format!(
-                "the film holds {held} samples per pixel instead of {samples}"
-            )));
-        }
+        let held = film.sample_count();
+        ensure!(held == samples, "the film holds {held} samples per pixel instead of {samples}");
         Ok(Traced { film, stats, seconds, warnings })
     }
 }
@@ -138,7 +106,7 @@ impl Candidate {
 impl Candidate {
     /// Renders with `renderer` until it fails, then with the reference.
     pub(super) fn of_renderer(name: &str, renderer: Box<dyn Renderer>) -> Self {
-        let source = Source::Backend(BackendChoice::Reference { threads: Some(1) });
-        Candidate { name: name.to_owned(), source, renderer: Some(renderer) }
+        let backend = Some(BackendChoice::Reference { threads: Some(1) });
+        Candidate { name: name.to_owned(), backend, renderer: Some(renderer) }
     }
 }

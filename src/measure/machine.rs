@@ -24,7 +24,9 @@ impl Machine {
             processor: processor(&fs::read_to_string("/proc/cpuinfo").unwrap_or_default()),
             cores: std::thread::available_parallelism().map_or(1, usize::from),
             levels: Isa::available().into_iter().map(Isa::name).collect(),
-            load_at_start: fs::read_to_string("/proc/loadavg").ok().and_then(|averages| load(&averages)),
+            load_at_start: fs::read_to_string("/proc/loadavg")
+                .ok()
+                .and_then(|averages| averages.split_whitespace().next()?.parse().ok()),
         }
     }
 
@@ -44,9 +46,4 @@ fn processor(info: &str) -> String {
         || format!("unnamed {} processor", std::env::consts::ARCH),
         |name| name.trim().to_owned(),
     )
-}
-
-/// Finds the last minute's load in `/proc/loadavg`.
-fn load(averages: &str) -> Option<f64> {
-    averages.split_whitespace().next()?.parse().ok()
 }

@@ -10,7 +10,7 @@ pub mod report;
 pub mod stress;
 mod table;
 
-pub use candidate::{Candidate, Source, Stop, Traced};
+pub use candidate::{Candidate, Traced};
 pub use table::grouped;
 
 use crate::cli::terminal::write_figures;

@@ -8,7 +8,7 @@ const BAR_STEPS: f64 = 1000.0;
 
 /// Shows the current step, the share done and the remaining time.
 pub(super) struct Progress {
-    display: Display,
+    pub display: Display,
     done: f64,
     total: f64,
 }
@@ -29,15 +29,5 @@ impl Progress {
 
     pub fn finished(&mut self, amount: f64) {
         self.done += amount;
-    }
-
-    /// Hides the bar while `print` writes to the terminal.
-    pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
-        self.display.above(print)
-    }
-
-    /// Removes the bar.
-    pub fn clear(&self) {
-        self.display.clear();
     }
 }

@@ -52,8 +52,7 @@ impl Picture {
         let samples = described(key::SAMPLES).map_or_else(String::new, |count| format!(", {count} samples"));
         let denoised = described(key::DENOISED).or_else(|| (layer == Some(DENOISED_LAYER)).then(String::new));
         if let Some(film) = saved.and_then(|saved| saved.film) {
-            check_memory(film.width(), film.height())?;
-            return Ok(Picture::of_film(name, about_film(&film, recipe.as_ref()), film));
+            return Picture::of_rendered(name, recipe.as_ref(), film.into());
         }
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let read = read_picture(path, layer)?;
@@ -85,15 +84,29 @@ impl Picture {
     pub fn of_film(name: String, about: String, film: impl Into<Arc<Film>>) -> Self {
         let film = film.into();
         let (width, height) = (film.width(), film.height());
-        let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
+        let pixels = film.exact_means().collect();
         let (limit, film) = (f64::INFINITY, Some(film));
         Picture { name, about, width, height, pixels, steps: None, limit, notes: Vec::new(), film }
     }
 
-    /// The picture of a film rendered by this program. Fails if a comparison of this size does not fit into memory.
-    pub fn of_rendered(name: String, recipe: &Recipe, film: Arc<Film>) -> Result<Self> {
-        check_memory(film.width(), film.height())?;
-        Ok(Picture::of_film(name, about_film(&film, Some(recipe)), film))
+    /// The picture of a film, and what its recipe says about it. Fails if a comparison of this size does not fit into
+    /// memory.
+    pub fn of_rendered(name: String, recipe: Option<&Recipe>, film: Arc<Film>) -> Result<Self> {
+        let (width, height) = (film.width(), film.height());
+        let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+        memory::check(
+            || format!("comparing pictures of {width}x{height}"),
+            bytes,
+            "compare smaller pictures",
+        )?;
+        let size = format!("{width}x{height}, {} samples", film.sample_count());
+        let about = match recipe {
+            Some(Recipe { name, settings, .. }) => {
+                format!("film, {name}, {size}, {}, seed {}", settings.sampler.name(), settings.seed)
+            }
+            None => format!("film, {size}"),
+        };
+        Ok(Picture::of_film(name, about, film))
     }
 
     /// A channel's value; `None` if it is at or above an integer format's limit.
@@ -106,20 +119,3 @@ impl Picture {
 /// Bytes per pixel during a comparison, without films: both pictures, the difference, the halves' differences or the
 /// steps and bounds, and the noise.
 const BYTES_PER_PIXEL: u64 = 8 * 18;
-
-/// Fails unless a comparison of this size fits into memory.
-fn check_memory(width: u32, height: u32) -> Result<()> {
-    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
-    let what = || format!("comparing pictures of {width}x{height}");
-    Ok(memory::check(what, bytes, "compare smaller pictures")?)
-}
-
-fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
-    let size = format!("{}x{}, {} samples", film.width(), film.height(), film.sample_count());
-    match recipe {
-        Some(Recipe { name, settings, .. }) => {
-            format!("film, {name}, {size}, {}, seed {}", settings.sampler.name(), settings.seed)
-        }
-        None => format!("film, {size}"),
-    }
-}

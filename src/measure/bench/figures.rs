@@ -149,7 +149,7 @@ impl Row {
 
 impl SceneFigures {
     /// Relates the rows to what they are compared with, which comes before them.
-    pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>) -> Self {
+    pub fn new(scene: &str, job: &RenderJob, mut rows: Vec<Row>, denoising: Option<Denoising>) -> Self {
         let speed = |row: &Row| row.paths_per_second.map(|spread| spread.median);
         let mut baseline = None;
         for row in &mut rows {
@@ -159,7 +159,7 @@ impl SceneFigures {
             row.ratio_to_baseline = speed(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
         let (scene, spheres) = (scene.to_owned(), job.scene().spheres.len());
-        SceneFigures { scene, settings: *job.settings(), spheres, rows, denoising: None }
+        SceneFigures { scene, settings: *job.settings(), spheres, rows, denoising }
     }
 }
 
@@ -183,7 +183,11 @@ mod tests {
             |paths| Run { seconds: 2.0, paths, rays: 7 * paths, busy_lanes: 0, offered_lanes: 0, rmse: None };
         let job = Recipe::builtin("metals").unwrap().job().unwrap();
         let ratios = |rows: Vec<Row>| -> Vec<Option<f64>> {
-            SceneFigures::new("metals", &job, rows).rows.iter().map(|row| row.ratio_to_baseline).collect()
+            SceneFigures::new("metals", &job, rows, None)
+                .rows
+                .iter()
+                .map(|row| row.ratio_to_baseline)
+                .collect()
         };
         let first = vec![
             row(Kind::Baseline, vec![run(20), run(10), run(90)]),

@@ -7,7 +7,7 @@ mod text;
 use super::machine::Machine;
 use super::progress::Progress;
 use super::table::counted;
-use super::{Candidate, Source, Stop, write_json};
+use super::{Candidate, write_json};
 use crate::backends::BackendChoice;
 use crate::cli::terminal;
 use crate::cli::{BenchOptions, BenchScene};
@@ -17,8 +17,8 @@ use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 use crate::system::failure::Failure;
 use crate::system::interrupt::Interrupt;
+use anyhow::Result;
 use figures::{BenchFigures, Denoising, Kind, Row, Run, SceneFigures, Spread};
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -43,29 +43,19 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     options.check().map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let machine = Machine::look();
-    let progress = Progress::new(options.progress, 1.0);
-    let figures = BenchFigures::default();
-    let mut bench = Bench { options, levels, cancel: interrupt.flag(), progress, figures };
-    bench.scenes(&scenes);
-    bench.progress.clear();
-    let mut figures = bench.figures;
+    let mut figures = Bench { options, levels, cancel: interrupt.flag() }.scenes(&scenes);
     figures.interrupted = interrupt.is_set();
     figures.warnings.extend(machine.load_at_start.filter(|load| *load > LOAD_LIMIT).map(|load| {
         format!(
             "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
         )
     }));
-    write(json, &machine, &figures).map_err(Failure::Run)?;
-    Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
-}
-
-fn write(json: Option<&Path>, machine: &Machine, figures: &BenchFigures) -> anyhow::Result<()> {
     // Write the file even if printing failed.
-    let printed = terminal::print_beside(json, &text::text(machine, figures));
-    if let Some(target) = json {
-        write_json(target, machine, figures)?;
-    }
-    printed
+    let printed = terminal::print_beside(json, &text::text(&machine, &figures));
+    json.map_or(Ok(()), |target| write_json(target, &machine, &figures))
+        .and(printed)
+        .map_err(Failure::Run)?;
+    Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
 struct Bench<'a> {
@@ -73,8 +63,6 @@ struct Bench<'a> {
     /// Never empty; the most capable level is last.
     levels: Vec<Isa>,
     cancel: &'a AtomicBool,
-    progress: Progress,
-    figures: BenchFigures,
 }
 
 impl Bench<'_> {
@@ -86,19 +74,18 @@ impl Bench<'_> {
         self.levels.last().copied().unwrap_or(Isa::Portable)
     }
 
-    fn scenes(&mut self, scenes: &[BenchScene]) {
+    fn scenes(&self, scenes: &[BenchScene]) -> BenchFigures {
         let mut candidates = if self.options.features { self.kernels() } else { self.candidates() };
         let runs = scenes.len() * candidates.len() * (1 + self.options.runs);
-        self.progress = Progress::new(self.options.progress, runs as f64);
-        for BenchScene { name, job, samples, .. } in scenes {
-            let rows = self.rows(name, job, *samples, &mut candidates);
-            let mut figures = SceneFigures::new(name, job, rows);
-            figures.denoising = if self.options.features { None } else { self.denoising(job) };
-            self.figures.scenes.push(figures);
-            if self.is_cancelled() {
-                break;
-            }
+        let mut progress = Progress::new(self.options.progress, runs as f64);
+        let mut figures = BenchFigures::default();
+        for scene in scenes.iter().take_while(|_| !self.is_cancelled()) {
+            let rows = self.rows(scene, &mut candidates, &mut progress);
+            let denoising = if self.options.features { None } else { self.denoising(&scene.job) };
+            figures.scenes.push(SceneFigures::new(&scene.name, &scene.job, rows, denoising));
         }
+        progress.display.clear();
+        figures
     }
 
     /// How long the filter takes for a film of the scene; `None` if it cannot be rendered or denoised.
@@ -119,7 +106,7 @@ impl Bench<'_> {
 
     /// All candidates in the table's order.
     fn candidates(&self) -> Vec<(Kind, Candidate)> {
-        let mut c89 = Candidate::new("C89, 1 thread", Source::C89);
+        let mut c89 = Candidate::new("C89, 1 thread", None);
         if let Ok(renderer) = c89.start() {
             c89.name = format!("C89, {}, 1 thread", renderer.info().device);
         }
@@ -160,60 +147,60 @@ impl Bench<'_> {
     }
 
     fn gpu(&self) -> Option<GpuOptions> {
-        match BackendChoice::gpu_if_present(self.options.adapter.as_deref())? {
-            BackendChoice::Gpu(options) => Some(options),
-            _ => None,
-        }
+        let adapter = self.options.adapter.as_deref();
+        BackendChoice::gpu_if_present(adapter).map(|_| GpuOptions::of_adapter(adapter))
     }
 
     /// Runs all candidates in turn, so that drift affects all alike.
     fn rows(
-        &mut self,
-        scene: &str,
-        job: &RenderJob,
-        samples: u64,
+        &self,
+        BenchScene { name, job, samples, .. }: &BenchScene,
         candidates: &mut [(Kind, Candidate)],
+        progress: &mut Progress,
     ) -> Vec<Row> {
         let mut rows: Vec<Row> =
             candidates.iter_mut().map(|(kind, candidate)| Row::new(*kind, candidate)).collect();
-        let mut most = samples;
+        let mut most = *samples;
         'turns: for turn in 0..=self.options.runs {
             for (row, (_, candidate)) in rows.iter_mut().zip(&mut *candidates) {
                 if row.skipped.is_none() {
-                    self.progress.at(&format!("{scene}: {}", row.name));
+                    progress.at(&format!("{name}: {}", row.name));
                     let outcome = match turn {
                         0 => self.warm_up(candidate, job, most, row),
                         _ => self.run(candidate, job, row),
                     };
-                    match outcome {
-                        Ok(()) => {}
-                        Err(Stop::Cancelled) => break 'turns,
-                        Err(Stop::Failed(reason)) => row.skipped = Some(reason),
+                    if self.is_cancelled() {
+                        break 'turns;
                     }
+                    row.skipped = outcome.err().map(|error| format!("{error:#}"));
                 }
                 // A scene's own kernel takes as many samples as the general one.
                 let is_general = row.kind == Kind::General && row.skipped.is_none();
-                most = if is_general { row.samples_per_pixel } else { samples };
-                self.progress.finished(1.0);
+                most = if is_general { row.samples_per_pixel } else { *samples };
+                progress.finished(1.0);
             }
         }
         rows.iter_mut().for_each(Row::sum_up);
         rows
     }
 
-    fn warm_up(
-        &self,
-        candidate: &mut Candidate,
-        job: &RenderJob,
-        samples: u64,
-        row: &mut Row,
-    ) -> Result<(), Stop> {
-        row.samples_per_pixel = self.affordable_samples(candidate, job, samples)?;
-        row.left_out = candidate.start()?.kernel().left_out;
-        Ok(())
+    /// Warms up with growing sample counts, up to `samples`, and sets how many fit the time limit.
+    fn warm_up(&self, candidate: &mut Candidate, job: &RenderJob, samples: u64, row: &mut Row) -> Result<()> {
+        let limit = self.options.run_limit_seconds();
+        let least = job.settings().half_count() as u64;
+        let mut tried = least.min(samples);
+        loop {
+            let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
+            if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
+                row.samples_per_pixel = affordable(samples, least, seconds / tried as f64, limit);
+                row.left_out = candidate.start()?.kernel().left_out;
+                return Ok(());
+            }
+            tried = (4 * tried).min(samples);
+        }
     }
 
-    fn run(&self, candidate: &mut Candidate, job: &RenderJob, row: &mut Row) -> Result<(), Stop> {
+    fn run(&self, candidate: &mut Candidate, job: &RenderJob, row: &mut Row) -> Result<()> {
         // An idle GPU lowers its clock and takes a while to raise it.
         let begin = Instant::now();
         while row.kind == Kind::Gpu && begin.elapsed() < WAKING {
@@ -221,25 +208,6 @@ impl Bench<'_> {
         }
         row.runs.push(Run::of(&candidate.trace(job, row.samples_per_pixel, self.cancel)?));
         Ok(())
-    }
-
-    /// Warms up with growing sample counts. Returns the most samples, up to `samples`, that fit the time limit.
-    fn affordable_samples(
-        &self,
-        candidate: &mut Candidate,
-        job: &RenderJob,
-        samples: u64,
-    ) -> Result<u64, Stop> {
-        let limit = self.options.run_limit_seconds();
-        let least = job.settings().half_count() as u64;
-        let mut tried = least.min(samples);
-        loop {
-            let seconds = Run::of(&candidate.trace(job, tried, self.cancel)?).seconds;
-            if seconds >= WARM_UP_SECONDS.min(0.25 * limit) || tried >= samples {
-                return Ok(affordable(samples, least, seconds / tried as f64, limit));
-            }
-            tried = (4 * tried).min(samples);
-        }
     }
 }
 

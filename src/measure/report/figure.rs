@@ -32,7 +32,17 @@ fn chart(scene: &str, curves: &[CurveSummary], target: f64) -> LineChart {
     let times = [least(|p| p.wall_seconds), most(|p| p.wall_seconds)];
     let errors = [least(|p| p.rmse), most(|p| p.rmse)];
     let bottom = 0.7 * errors[0];
-    let mut series = guides(times, errors, bottom, &of_scene, target);
+    // The slope of independent samples, from the upper left corner down to the edge of the chart.
+    let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
+    let at = |time: f64| errors[1] * (times[0] / time).sqrt();
+    let guide = |name: &str, ends: [(f64, f64); 2]| Series::new(name, Look::Guide, ends);
+    let mut series = vec![guide("", [(times[0], at(times[0])), (end, at(end))])];
+    if target > bottom && target < errors[1] {
+        series.push(guide(&format!("target: {target}"), [(times[0], target), (times[1], target)]));
+        let reached = of_scene.iter().filter_map(|c| c.times.first().copied().flatten());
+        let reached = reached.filter(|crossing| !crossing.is_extrapolated);
+        series.extend(reached.map(|at| guide("", [(at.time, target), (at.time, bottom)])));
+    }
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
     let axis = |label: &str, limits: [f64; 2]| {
         // A chart without points has no limits.
@@ -58,32 +68,4 @@ fn measured(curve: &CurveSummary, bottom: f64) -> Series {
         points: points.collect(),
         look: Look::Measured,
     }
-}
-
-fn guide(name: &str, ends: [(f64, f64); 2]) -> Series {
-    Series::new(name, Look::Guide, ends)
-}
-
-/// Guides: the slope of independent samples, the target, and the time each curve reaches it.
-fn guides(
-    times: [f64; 2],
-    errors: [f64; 2],
-    bottom: f64,
-    curves: &[&CurveSummary],
-    target: f64,
-) -> Vec<Series> {
-    let mut guides = Vec::new();
-    // From the upper left corner down to the edge of the chart.
-    let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
-    let at = |time: f64| errors[1] * (times[0] / time).sqrt();
-    guides.push(guide("", [(times[0], at(times[0])), (end, at(end))]));
-    if target > bottom && target < errors[1] {
-        guides.push(guide(&format!("target: {target}"), [(times[0], target), (times[1], target)]));
-        for crossing in
-            curves.iter().filter_map(|c| c.times.first().copied().flatten()).filter(|c| !c.is_extrapolated)
-        {
-            guides.push(guide("", [(crossing.time, target), (crossing.time, bottom)]));
-        }
-    }
-    guides
 }

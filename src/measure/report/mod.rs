@@ -11,7 +11,7 @@ pub use summary::{CurvePoint, CurveSummary, curves};
 
 use super::machine::Machine;
 use super::progress::Progress;
-use super::{Candidate, Source, Stop, write_json};
+use super::{Candidate, write_json};
 use crate::cli::terminal::print;
 use crate::cli::{ReportOptions, command_line};
 use crate::denoise;
@@ -23,9 +23,9 @@ use crate::system::console;
 use crate::system::failure::Failure;
 use crate::system::files::{check_writable, make_directory, write_text};
 use crate::system::interrupt::Interrupt;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use data::{Measured, Run};
-use reference::{ReferencePicture, film_means};
+use reference::ReferencePicture;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -39,17 +39,15 @@ const EXPECTED_SECONDS: f64 = 40.0;
 pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let mut report = Report::open(options).map_err(Failure::Input)?;
     let outcome = report.measure();
-    report.progress.clear();
+    report.progress.display.clear();
     // Keep the measured results even if the report failed.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
-    match outcome {
-        Err(Stop::Failed(reason)) => return Err(Failure::Run(anyhow!(reason))),
-        Ok(()) | Err(Stop::Cancelled) => written.map_err(Failure::Run)?,
-    }
     if report.interrupt.is_set() {
+        written.map_err(Failure::Run)?;
         console::note("interrupted: the report has what was measured before");
         return Ok(report.interrupt.exit_code());
     }
+    outcome.and(written).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -78,10 +76,10 @@ impl<'a> Report<'a> {
         Ok(Report { options, scenes, machine, data, candidates, interrupt, progress })
     }
 
-    fn measure(&mut self) -> Result<(), Stop> {
+    fn measure(&mut self) -> Result<()> {
         let scenes = std::mem::take(&mut self.scenes);
         let references: Vec<ReferencePicture> =
-            scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_, _>>()?;
+            scenes.iter().map(|recipe| self.reference(recipe)).collect::<Result<_>>()?;
         self.data.references = references.iter().map(|reference| reference.used.clone()).collect();
         // Loop over seeds on the outside, so that load from other programs affects all curves alike.
         for seed in 0..self.options.seeds {
@@ -96,14 +94,14 @@ impl<'a> Report<'a> {
         Ok(())
     }
 
-    fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture, Stop> {
+    fn reference(&mut self, recipe: &Recipe) -> Result<ReferencePicture> {
         self.progress.at(&format!("reference of {}", recipe.name));
         let job = reference::job_of(recipe, SamplerKind::Sobol, reference::SEED)?;
         let mut exact = Candidate::backend("reference", self.options.reference()?);
         let film = exact.trace(&job, self.options.reference_samples(), self.interrupt.flag())?.film;
         self.progress.finished(EXPECTED_SECONDS);
         let about = exact.info().map_or_else(String::new, |info| format!("{} {}", info.name, info.device));
-        Ok(ReferencePicture::of_film(&recipe.name, &about, &film)?)
+        ReferencePicture::of_film(&recipe.name, &about, &film)
     }
 
     fn picture(
@@ -113,21 +111,19 @@ impl<'a> Report<'a> {
         candidate: usize,
         sampler: SamplerKind,
         seed: u32,
-    ) -> Result<(), Stop> {
+    ) -> Result<()> {
         let candidate = &mut self.candidates[candidate];
         let (scene, backend) = (recipe.name.clone(), candidate.name.clone());
         let curve = Curve { scene, backend, sampler: sampler.name().to_owned() };
-        let seconds = self.options.time_limit / f64::from(self.options.seeds);
         self.progress.at(&format!("{}, {}, {}, seed {seed}", curve.scene, curve.backend, curve.sampler));
+        let seconds = self.options.time_limit / f64::from(self.options.seeds);
+        let limits = (seconds, self.options.max_samples);
         let job = reference::job_of(recipe, sampler, seed)?;
-        let limit = self.options.max_samples;
-        let (about, prepare_seconds, [raw, denoised]) =
-            measured(candidate, &job, reference, seconds, limit, self.interrupt.flag())?;
-        let with = |curve, points| Run { curve, seed, about: about.clone(), prepare_seconds, points };
-        self.data.runs.push(with(curve.clone(), raw));
+        let [raw, denoised] = measured(candidate, &job, reference, curve, limits, self.interrupt.flag())?;
+        self.data.runs.push(raw);
         // One denoised curve for each backend suffices.
-        if !denoised.is_empty() && self.options.samplers.first() == Some(&sampler) {
-            self.data.runs.push(with(curve.denoised(), denoised));
+        if !denoised.points.is_empty() && self.options.samplers.first() == Some(&sampler) {
+            self.data.runs.push(denoised);
         }
         self.progress.finished(seconds);
         Ok(())
@@ -148,8 +144,7 @@ impl<'a> Report<'a> {
 fn candidates(options: &ReportOptions) -> Result<Vec<Candidate>> {
     let mut candidates = Vec::new();
     for name in options.backends() {
-        let source = options.backend(&name)?.map_or(Source::C89, Source::Backend);
-        let mut candidate = Candidate::new(name.clone(), source);
+        let mut candidate = Candidate::new(name.clone(), options.backend(&name)?);
         match candidate.start().err() {
             None => candidates.push(candidate),
             Some(_) if candidate.is_baseline() && !options.names_backends() => {}
@@ -177,28 +172,29 @@ fn settings(options: &ReportOptions) -> Settings {
 }
 
 /// Renders 1, 2, 4 ... samples and measures each picture. Stops when the next doubling would exceed the limits, but
-/// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the backend's
-/// name, the preparation time in seconds, and the figures raw and denoised.
+/// renders at least two. Measures each picture denoised as well; the time of its filter then counts. Returns the figures
+/// raw and denoised. The limits are seconds of tracing and samples per pixel.
 fn measured(
     candidate: &mut Candidate,
     job: &RenderJob,
     reference: &ReferencePicture,
-    seconds: f64,
-    most_samples: u64,
+    curve: Curve,
+    (seconds, most_samples): (f64, u64),
     cancel: &AtomicBool,
-) -> Result<(String, f64, [Vec<Measured>; 2]), Stop> {
+) -> Result<[Run; 2]> {
     let begin = Instant::now();
     let renderer = candidate.start()?;
     renderer.prepare(job, cancel)?;
     let prepare_seconds = begin.elapsed().as_secs_f64();
     let info = renderer.info();
     let about = format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads);
+    let mut raw = Run { curve, seed: job.settings().seed, about, prepare_seconds, points: Vec::new() };
+    let mut denoised = Run { curve: raw.curve.denoised(), ..raw.clone() };
     // The first picture pays for caches, threads and memory, so trace it off the clock.
     candidate.trace(job, 1, cancel)?;
     let device_begin = candidate.start()?.device_time();
     let mut film = candidate.new_film(job);
-    let (mut total, mut wall, [mut raw, mut denoised]) =
-        (Stats::default(), Duration::ZERO, [const { Vec::new() }; 2]);
+    let (mut total, mut wall) = (Stats::default(), Duration::ZERO);
     let mut samples = 1;
     while samples <= most_samples.max(2) {
         let begin = Instant::now();
@@ -208,22 +204,22 @@ fn measured(
         total.add(&stats);
         let device = candidate.start()?.device_time().zip(device_begin);
         let point = |film: &Film, mse_estimate, filter: Duration| {
-            let errors = reference.errors(&film_means(film));
+            let [mse, rel_mse] = reference.errors(film);
             Measured {
                 samples,
                 trace_seconds: total.trace.as_secs_f64(),
                 wall_seconds: (wall + filter).as_secs_f64(),
                 device_seconds: device.map(|(now, begin)| now.saturating_sub(begin).as_secs_f64()),
-                mse: errors.mse,
-                rel_mse: errors.rel_mse,
+                mse,
+                rel_mse,
                 mse_estimate,
                 rejected: total.rejected,
             }
         };
-        raw.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
+        raw.points.push(point(&film, film.error().map(|error| error.rmse.powi(2)), Duration::ZERO));
         let begin = Instant::now();
         if let Ok(found) = denoise::of_film(&film) {
-            denoised.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
+            denoised.points.push(point(&found.film, Some(found.error.mse), begin.elapsed()));
         }
         // Assumes that twice the samples take twice as long.
         if samples >= 2 && 2.0 * wall.as_secs_f64() > seconds {
@@ -231,7 +227,7 @@ fn measured(
         }
         samples *= 2;
     }
-    Ok((about, prepare_seconds, [raw, denoised]))
+    Ok([raw, denoised])
 }
 
 /// The chart of a report, with the times to an error of `target` marked.
@@ -280,15 +276,16 @@ mod tests {
         let film_of = |samples| Candidate::backend("", cpu()).trace(&job, samples, &go_on).unwrap().film;
         let reference = ReferencePicture::of_film("metals", "", &film_of(64)).unwrap();
         let mut candidate = Candidate::backend("cpu", cpu());
-        let mut steps =
-            |seconds, samples| measured(&mut candidate, &job, &reference, seconds, samples, &go_on).unwrap();
-        let (about, _, [points, denoised]) = steps(1e9, 5);
+        let mut steps = |limits, cancel: &AtomicBool| {
+            measured(&mut candidate, &job, &reference, curve("cpu", "sobol"), limits, cancel)
+        };
+        let [raw, denoised] = steps((1e9, 5), &go_on).unwrap();
+        let (about, points, denoised) = (raw.about, raw.points, denoised.points);
         assert!(about.starts_with("cpu ") && about.ends_with(" 1 threads"), "{about}");
         assert_eq!(points.iter().map(|point| point.samples).collect::<Vec<_>>(), [1, 2, 4]);
         for point in &points {
             let film = film_of(point.samples);
-            let errors = reference.errors(&film_means(&film));
-            assert_eq!((point.mse, point.rel_mse), (errors.mse, errors.rel_mse));
+            assert_eq!([point.mse, point.rel_mse], reference.errors(&film));
             assert_eq!(point.mse_estimate, film.error().map(|error| error.rmse.powi(2)));
             assert!(0.0 < point.trace_seconds && point.trace_seconds <= point.wall_seconds, "{point:?}");
         }
@@ -297,8 +294,8 @@ mod tests {
             denoised.iter().zip(&points[1..]).all(|(denoised, raw)| denoised.wall_seconds > raw.wall_seconds)
         );
         assert!(points.is_sorted_by(|a, b| a.wall_seconds < b.wall_seconds), "{points:?}");
-        assert_eq!(steps(1e-9, 64).2[0].len(), 2, "two samples are always taken");
-        let cancelled = measured(&mut candidate, &job, &reference, 1e9, 64, &AtomicBool::new(true));
-        assert_eq!(cancelled.err(), Some(Stop::Cancelled));
+        let [raw, _] = steps((1e-9, 64), &go_on).unwrap();
+        assert_eq!(raw.points.len(), 2, "two samples are always taken");
+        assert!(steps((1e9, 64), &AtomicBool::new(true)).is_err());
     }
 }

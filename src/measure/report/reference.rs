@@ -15,13 +15,6 @@ pub struct ReferencePicture {
     means: Vec<[f64; 3]>,
 }
 
-/// See the fields of [`super::data::Measured`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Errors {
-    pub mse: f64,
-    pub rel_mse: f64,
-}
-
 impl ReferencePicture {
     /// Uses a film as the reference of a scene. Fails if the film has no error estimate.
     pub fn of_film(scene: &str, about: &str, film: &Film) -> Result<Self> {
@@ -33,7 +26,7 @@ impl ReferencePicture {
             );
         };
         Ok(ReferencePicture {
-            means: film_means(film),
+            means: film.exact_means().collect(),
             used: ReferenceUsed {
                 scene: scene.to_owned(),
                 about: about.to_owned(),
@@ -44,22 +37,19 @@ impl ReferencePicture {
         })
     }
 
-    /// The errors of a picture of equal size, from its pixel means: linear RGB, row by row from the top.
-    pub fn errors(&self, means: &[[f64; 3]]) -> Errors {
+    /// Mean squared error and relative one of a film of equal size, without the reference's own.
+    pub fn errors(&self, film: &Film) -> [f64; 2] {
         let (mut squares, mut relative) = (0.0, 0.0);
-        for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
-            let square = (x - expected).powi(2);
-            squares += square;
-            relative += square / (expected * expected + 1e-2);
+        for (mean, expected) in film.exact_means().zip(&self.means) {
+            for (x, expected) in mean.iter().zip(expected) {
+                let square = (x - expected).powi(2);
+                squares += square;
+                relative += square / (expected * expected + 1e-2);
+            }
         }
-        let count = (3 * means.len()) as f64;
-        Errors { mse: squares / count - self.used.mse, rel_mse: relative / count - self.used.rel_mse }
+        let count = (3 * self.means.len()) as f64;
+        [squares / count - self.used.mse, relative / count - self.used.rel_mse]
     }
-}
-
-/// Pixel means of a film: linear RGB, row by row from the top.
-pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
-    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
 /// The job of a reference, or of a picture that is compared with one.
@@ -85,11 +75,12 @@ mod tests {
         // The mean is 0.5, and the error a quarter of the halves' squared difference.
         let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
         assert!(near(reference.used.mse, 0.0625) && near(reference.used.rel_mse, 0.0625 / 0.26));
-        let errors = reference.errors(&[[1.0; 3]; 16 * 9]);
-        assert!(near(errors.mse, 0.25 - 0.0625), "{errors:?}");
-        assert!(near(errors.rel_mse, (0.25 - 0.0625) / 0.26), "{errors:?}");
+        let mut white = Film::new(16, 9, 1);
+        white.halves_mut()[0].fill(fixed_point([1.0; 3]).unwrap());
+        white.record(0..1, 0).unwrap();
+        let [mse, rel_mse] = reference.errors(&white);
+        assert!(near(mse, 0.25 - 0.0625) && near(rel_mse, (0.25 - 0.0625) / 0.26), "{mse} {rel_mse}");
         // A picture closer than the reference can be has a negative error.
-        let errors = reference.errors(&film_means(&film));
-        assert!(near(errors.mse, -0.0625), "{errors:?}");
+        assert!(near(reference.errors(&film)[0], -0.0625));
     }
 }

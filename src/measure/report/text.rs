@@ -108,25 +108,15 @@ fn calibration(rows: &[Calibration]) -> String {
         deviations().filter(|deviation| *deviation <= TOLERANCE).count(),
         rows.len(),
         deviations().fold(0.0, f64::max),
-        markdown_table(&heads, 3, cells)
+        markdown_table(&heads.map(str::to_owned), 3, cells)
     )
 }
 
-fn markdown_row(cells: &[impl AsRef<str>]) -> String {
-    let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
-    format!("| {} |\n", cells.join(" | "))
-}
-
 /// A Markdown table. Columns after the first `texts` are right-aligned.
-fn markdown_table<H: AsRef<str>, C: AsRef<str>>(
-    heads: &[H],
-    texts: usize,
-    rows: impl IntoIterator<Item = Vec<C>>,
-) -> String {
-    let rule: Vec<&str> =
-        (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }).collect();
-    let rows = rows.into_iter().map(|cells| markdown_row(&cells)).collect::<String>();
-    markdown_row(heads) + &markdown_row(&rule) + &rows
+fn markdown_table(heads: &[String], texts: usize, rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let rule = (0..heads.len()).map(|column| if column < texts { "---" } else { "---:" }.to_owned());
+    let rows = [heads.to_vec(), rule.collect()].into_iter().chain(rows);
+    rows.map(|cells| format!("| {} |\n", cells.join(" | "))).collect()
 }
 
 /// Three significant digits.

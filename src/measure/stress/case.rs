@@ -7,14 +7,16 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What a family's cases share.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Family {
     /// First part of the ids of its cases.
     pub id: &'static str,
     /// What the family tests, as a heading.
     pub title: &'static str,
-    /// What it teaches, in a sentence or two.
-    pub lesson: &'static str,
+    /// What it teaches, in a sentence or two, if the window shows cases of it.
+    pub lesson: Option<&'static str>,
+    /// Builds its cases.
+    pub cases: fn(&'static Family) -> Vec<Case>,
 }
 
 /// The result that a case must have. Radiance is linear.
@@ -71,8 +73,6 @@ pub struct Case {
     pub tolerance: f64,
     /// How the window shows it; `None` if there is nothing to see.
     pub watch: Option<Watch>,
-    /// Whether `cargo test` runs it.
-    pub is_quick: bool,
 }
 
 impl PartialEq for Case {
@@ -85,23 +85,6 @@ impl Eq for Case {}
 
 /// From this many spheres on, every backend builds a hierarchy anyway, so distant ones change nothing.
 const HIERARCHY_SPHERES: usize = 24;
-
-/// Whether to add distant spheres, which switch the hierarchy on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    Plain,
-    WithFar,
-}
-
-impl Form {
-    /// Name in the table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Form::Plain => "plain",
-            Form::WithFar => "+40",
-        }
-    }
-}
 
 impl Case {
     /// Expects the `f64` reference's result unless a builder method below changes that.
@@ -122,7 +105,6 @@ impl Case {
             why: "f64 has digits to spare at these scales",
             tolerance: 2e-6,
             watch: None,
-            is_quick: false,
         }
     }
 
@@ -143,12 +125,6 @@ impl Case {
         Case { watch: Some(Watch { title, look_for }), ..self }
     }
 
-    /// Whether `cargo test` runs the case.
-    #[must_use]
-    pub fn quick_if(self, is_quick: bool) -> Self {
-        Case { is_quick, ..self }
-    }
-
     /// Sets the typical length near the eye.
     #[must_use]
     pub fn of_unit(self, unit: f64) -> Self {
@@ -167,20 +143,13 @@ impl Case {
         self.watch.map_or(&self.id, |watch| watch.title)
     }
 
-    /// The forms to render.
-    pub fn forms(&self) -> &'static [Form] {
+    /// The names and recipes to render: a small scene also with distant spheres, which switch the hierarchy on.
+    pub fn forms(&self) -> Vec<(&'static str, Recipe)> {
+        let mut forms = vec![("plain", self.recipe.clone())];
         if self.recipe.scene.spheres.len() < HIERARCHY_SPHERES {
-            &[Form::Plain, Form::WithFar]
-        } else {
-            &[Form::Plain]
+            forms.push(("+40", with_far_spheres(&self.recipe, self.unit)));
         }
-    }
-
-    pub fn recipe_in(&self, form: Form) -> Recipe {
-        match form {
-            Form::Plain => self.recipe.clone(),
-            Form::WithFar => with_far_spheres(&self.recipe, self.unit),
-        }
+        forms
     }
 }
 
@@ -212,20 +181,20 @@ pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
 
 #[cfg(test)]
 mod tests {
+    use super::super::families::FAMILIES;
     use super::super::families::build::one_ball;
     use super::*;
 
-    const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
-
     #[test]
     fn small_scenes_also_get_hierarchy() {
-        for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
+        for (count, forms) in [(23, &["plain", "+40"][..]), (24, &["plain"][..])] {
             let mut recipe = one_ball();
             let scene = Arc::make_mut(&mut recipe.scene);
             scene.spheres = vec![scene.spheres[0]; count];
-            let case = Case::new(&FAMILY, count, "copies", recipe);
-            assert_eq!(case.forms(), forms, "{count}");
-            assert_eq!(case.recipe_in(Form::Plain).scene.spheres.len(), count);
+            let case = Case::new(&FAMILIES[0], count, "copies", recipe);
+            let found = case.forms();
+            assert_eq!(found.iter().map(|(form, _)| *form).collect::<Vec<_>>(), forms, "{count}");
+            assert_eq!(found[0].1.scene.spheres.len(), count);
         }
     }
 

@@ -27,9 +27,9 @@ pub struct Difference {
 impl Difference {
     /// From the radiance of every sample, linear RGB: that of the worst channel.
     pub fn from_every(level: &Level, value: [f64; 3]) -> Self {
-        let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
-        let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
-        Difference { bias: farther(farther(red, green), blue), ..Difference::default() }
+        let offsets = (0..3).map(|channel| level.mean[channel] - value[channel]);
+        let worst = offsets.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        Difference { bias: worst.unwrap_or_default(), ..Difference::default() }
     }
 
     /// From the mean over pixels and channels.
@@ -39,17 +39,15 @@ impl Difference {
 
     /// From a film of the same samples, pixel by pixel. Both must have the same size.
     pub fn of(film: &Film, exact: &Film) -> Self {
-        let count = pixel_count(film);
-        let (mut sum, mut sum_of_squares, mut squares) = (0.0, 0.0, 0.0);
-        for pixel in 0..count {
-            let (a, b) = (film.mean(pixel), exact.mean(pixel));
+        let (mut sum, mut sum_of_squares, mut squares, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for (a, b) in film.exact_means().zip(exact.exact_means()) {
             let difference = [0, 1, 2].map(|channel| a[channel] - b[channel]);
             let mean = grey(difference);
             sum += mean;
             sum_of_squares += mean * mean;
             squares += grey(difference.map(|x| x * x));
+            count += 1.0;
         }
-        let count = count as f64;
         let bias = sum / count;
         let variance = (sum_of_squares / count - bias * bias).max(0.0);
         Difference {
@@ -74,18 +72,16 @@ pub struct Level {
 
 impl Level {
     pub fn of(film: &Film) -> Self {
-        let count = pixel_count(film);
-        let mut sum = [0.0; 3];
-        for pixel in 0..count {
-            let mean = film.mean(pixel);
+        let (mut sum, mut count) = ([0.0; 3], 0.0);
+        for mean in film.exact_means() {
             (0..3).for_each(|channel| sum[channel] += mean[channel]);
+            count += 1.0;
         }
         let (mut variance_of_sum, mut squares) = (0.0, 0.0);
         for difference in half_differences(film).unwrap_or_default() {
             variance_of_sum += grey(difference).powi(2);
             squares += grey(difference.map(|x| x * x));
         }
-        let count = count as f64;
         Level {
             mean: sum.map(|x| x / count),
             deviation: variance_of_sum.sqrt() / count,
@@ -101,10 +97,6 @@ impl Level {
 
 fn grey(channels: [f64; 3]) -> f64 {
     channels.iter().sum::<f64>() / 3.0
-}
-
-fn pixel_count(film: &Film) -> usize {
-    film.width() as usize * film.height() as usize
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

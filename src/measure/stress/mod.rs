@@ -10,7 +10,7 @@ mod judge;
 mod report;
 mod suite;
 
-pub use case::{Case, Expected, Family, Form, Watch, with_far_spheres};
+pub use case::{Case, Expected, Family, Watch, with_far_spheres};
 pub use families::{cases, shown_cases};
 pub use judge::{Difference, Level, Verdict};
 pub use report::{BookMeasured, CaseReport, Measured, StressReport};
@@ -37,7 +37,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     options.json.as_deref().map_or(Ok(()), check_writable).map_err(Failure::input)?;
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
-        let ids: Vec<&str> = families::families().map(|family| family.id).collect();
+        let ids: Vec<&str> = families::FAMILIES.iter().map(|family| family.id).collect();
         let error =
             anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
@@ -46,29 +46,26 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     let tracers = tracers(&levels, options.adapter.as_deref()).map_err(Failure::Input)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let report = suite(options, &chosen, tracers, interrupt.flag()).map_err(Failure::Run)?;
-    Ok(match (interrupt.is_set(), report.is_right()) {
-        (true, _) => interrupt.exit_code(),
-        (false, true) => ExitCode::SUCCESS,
-        (false, false) => ExitCode::FAILURE,
+    Ok(match report.is_right() {
+        _ if report.interrupted => interrupt.exit_code(),
+        true => ExitCode::SUCCESS,
+        false => ExitCode::FAILURE,
     })
-}
-
-fn cpu(isa: Isa) -> BackendChoice {
-    BackendChoice::Cpu(CpuOptions { isa: Some(isa), ..CpuOptions::default() })
 }
 
 /// The CPU levels, a GPU if there is one, and the `f64` reference.
 fn tracers(levels: &[Isa], adapter: Option<&str>) -> Result<Vec<Candidate>> {
-    let mut tracers: Vec<Candidate> =
-        levels.iter().map(|isa| Candidate::backend(isa.name(), cpu(*isa))).collect();
+    let cpu = |isa: &Isa| {
+        let options = CpuOptions { isa: Some(*isa), ..CpuOptions::default() };
+        Candidate::backend(isa.name(), BackendChoice::Cpu(options))
+    };
+    let mut tracers: Vec<Candidate> = levels.iter().map(cpu).collect();
     if let Some(gpu) = BackendChoice::gpu_if_present(adapter) {
         tracers.push(Candidate::backend(adapter.unwrap_or("gpu"), gpu));
     }
     tracers.push(Candidate::backend("f64", BackendChoice::Reference { threads: None }));
     // Report unavailable backends before anything runs.
-    for tracer in &mut tracers {
-        tracer.start()?;
-    }
+    tracers.iter_mut().try_for_each(|tracer| tracer.start().map(drop))?;
     Ok(tracers)
 }
 
@@ -81,16 +78,10 @@ fn suite(
     let (begin, machine) = (Instant::now(), Machine::look());
     let mut progress = Progress::new(options.progress, chosen.len() as f64);
     let mut suite = Suite::new(tracers);
-    let mut report = StressReport {
-        backends: suite.names(),
-        seconds: 0.0,
-        chosen: chosen.len(),
-        interrupted: false,
-        cases: Vec::new(),
-    };
-    let json = &options.json;
+    let mut report = StressReport { backends: suite.names(), ..StressReport::default() };
+    let json = options.json.as_deref();
     // Write the figures even if the table cannot be printed.
-    let mut printed = terminal::print_beside(json.as_deref(), &report::head());
+    let mut printed = terminal::print_beside(json, &report::head());
     for case in chosen {
         progress.at(&case.id);
         let found = suite.run(case, interrupt);
@@ -98,16 +89,14 @@ fn suite(
             report.interrupted = true;
             break;
         }
-        let row = || terminal::print_beside(json.as_deref(), &found.text());
-        printed = printed.and(progress.above(row));
+        let row = || terminal::print_beside(json, &found.text());
+        printed = printed.and(progress.display.above(row));
         progress.finished(1.0);
         report.cases.push(found);
     }
-    progress.clear();
+    progress.display.clear();
     report.seconds = begin.elapsed().as_secs_f64();
-    printed = printed.and(terminal::print_beside(json.as_deref(), &report.summary()));
-    if let Some(target) = &json {
-        write_json(target, &machine, &report)?;
-    }
+    printed = printed.and(terminal::print_beside(json, &report.summary(chosen.len())));
+    json.map_or(Ok(()), |target| write_json(target, &machine, &report))?;
     printed.map(|()| report)
 }

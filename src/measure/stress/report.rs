@@ -4,15 +4,12 @@ use super::super::table::{counted, or_dash, text_row};
 use super::judge::{Difference, Verdict};
 use serde::Serialize;
 
-#[derive(Serialize)]
+#[derive(Default, Serialize)]
 pub struct StressReport {
     /// Names of the tested backends.
     pub backends: Vec<String>,
     /// Wall time of the run.
     pub seconds: f64,
-    /// Number of cases selected.
-    #[serde(skip)]
-    pub chosen: usize,
     pub interrupted: bool,
     /// In the table's order.
     pub cases: Vec<CaseReport>,
@@ -74,11 +71,10 @@ pub struct BookMeasured {
     pub verdict: Verdict,
 }
 
-const WIDTHS: [i32; 8] = [-30, -12, -12, -9, -18, -7, -7, -18];
+const WIDTHS: [i32; 7] = [-30, -12, -12, -9, -7, -7, -18];
 
 pub fn head() -> String {
-    let heads =
-        ["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book's f32, f64"];
+    let heads = ["case", "expected", "measured", "off by", "time", "verdict", "book's f32, f64"];
     text_row(&WIDTHS, &heads)
 }
 
@@ -88,49 +84,25 @@ impl CaseReport {
         self.measured.iter().all(|measured| measured.verdict.is_right())
     }
 
-    /// The measurement farthest off, of those with a picture.
-    fn worst(&self) -> Option<&Measured> {
-        let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
-        self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
-    }
-
-    /// The rounding with the largest bias.
-    fn rounding(&self) -> Option<Difference> {
-        let all = self.measured.iter().filter_map(|measured| measured.rounding);
-        all.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
-    }
-
-    /// The longest time.
-    fn seconds(&self) -> Option<f64> {
-        self.measured.iter().filter_map(|measured| measured.seconds).max_by(f64::total_cmp)
-    }
-
-    /// The measurements that are not right.
-    pub fn complaints(&self) -> impl Iterator<Item = &Measured> {
-        self.measured.iter().filter(|measured| measured.verdict != Verdict::Right)
-    }
-
     /// One line, and one more for each backend that is not right.
     pub fn text(&self) -> String {
-        let worst = self.worst();
-        let complaint = self.complaints().find(|m| !m.verdict.is_right()).or(self.complaints().next());
-        let rounding = |by: Difference| {
-            let rms = if by.rms == 0.0 { "0".to_owned() } else { format!("{:.0e}", by.rms) };
-            format!("{} ({rms})", brief(by.bias))
-        };
+        let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
+        let worst = self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        let seconds = self.measured.iter().filter_map(|measured| measured.seconds).max_by(f64::total_cmp);
+        let complaints = || self.measured.iter().filter(|measured| measured.verdict != Verdict::Right);
+        let complaint = complaints().find(|measured| !measured.verdict.is_right()).or(complaints().next());
         let book: Vec<String> = self.book.iter().map(|book| or_dash(book.offset, brief)).collect();
         let cells = [
             self.id.clone(),
             self.expected.clone(),
             or_dash(worst.and_then(|worst| worst.mean), |mean| format!("{mean:.6}")),
             or_dash(worst.and_then(|worst| worst.offset), brief),
-            or_dash(self.rounding(), rounding),
-            or_dash(self.seconds(), |seconds| format!("{seconds:.2} s")),
+            or_dash(seconds, |seconds| format!("{seconds:.2} s")),
             complaint.map_or("right", |measured| measured.verdict.name()).to_owned(),
             book.join(", "),
         ];
         let mut text = text_row(&WIDTHS, &cells);
-        for Measured { backend, form, verdict, .. } in self.complaints() {
+        for Measured { backend, form, verdict, .. } in complaints() {
             text += &format!("    {backend}, {form}: {}\n", verdict.reason());
         }
         text
@@ -148,8 +120,8 @@ impl StressReport {
         self.cases.iter().all(CaseReport::is_right)
     }
 
-    /// Sums up the run in one line.
-    pub fn summary(&self) -> String {
+    /// Sums up the run of `chosen` cases in one line.
+    pub fn summary(&self, chosen: usize) -> String {
         let count = self.cases.len();
         let right = self.cases.iter().filter(|case| case.is_right()).count();
         let by_the_book = |precision: &str| {
@@ -158,10 +130,8 @@ impl StressReport {
             };
             self.cases.iter().filter(is_right).count()
         };
-        let so_far =
-            if self.interrupted { format!(" run so far, of {},", self.chosen) } else { String::new() };
         let mut text = format!(
-            "\n{right} of {}{so_far} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
+            "\n{right} of {} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
             counted(count, "case"),
             self.backends.join(", "),
             self.seconds,
@@ -169,7 +139,7 @@ impl StressReport {
             by_the_book("f64"),
         );
         if self.interrupted {
-            let missing = self.chosen.saturating_sub(count);
+            let missing = chosen.saturating_sub(count);
             text += &format!("interrupted: {} not run\n", counted(missing, "case"));
         }
         text
@@ -210,20 +180,14 @@ mod tests {
         let offsets = [(Some(0.1), 3.0), (Some(-0.5), 8.0), (None, 2.0)];
         let mut found = case(offsets.map(|(offset, seconds)| measured(offset, seconds)).into());
         let words = |case: &CaseReport| case.text().split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(words(&found).starts_with("a 1 - -5.0e-1 -5.0e-1 (0) 8.00 s right"), "{}", words(&found));
-        assert_eq!(words(&case(Vec::new())), "a 1 - - - - right");
+        assert!(words(&found).starts_with("a 1 - -5.0e-1 8.00 s right"), "{}", words(&found));
+        assert_eq!(words(&case(Vec::new())), "a 1 - - - right");
         found.measured[0].verdict = Verdict::Warned("thin".to_owned());
         found.measured[1].verdict = Verdict::Wrong("off".to_owned());
         let text = found.text();
         assert!(text.contains(" WRONG\n    cpu, plain: thin\n    cpu, plain: off\n"), "{text}");
-        let report = |cases| StressReport {
-            backends: vec!["cpu".to_owned()],
-            seconds: 1.0,
-            chosen: 2,
-            interrupted: true,
-            cases,
-        };
-        assert!(report(Vec::new()).summary().contains("interrupted: 2 cases not run"));
+        let report = StressReport { interrupted: true, ..StressReport::default() };
+        assert!(report.summary(2).contains("interrupted: 2 cases not run"));
     }
 
     #[test]

@@ -1,22 +1,16 @@
 //! Runs cases on the backends and judges the results.
 
-use super::super::{Candidate, Stop, Traced};
-use super::case::{Case, Expected, Form};
+use super::super::{Candidate, Traced};
+use super::case::{Case, Expected};
 use super::judge::{Difference, Level, Verdict, judge};
 use super::report::{BookMeasured, CaseReport, Measured};
 use crate::film::Film;
 use crate::job::recipe::Recipe;
 use crate::stages::{Rules, SurfaceRule};
-use std::collections::HashMap;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::{Duration, Instant};
+use std::sync::atomic::AtomicBool;
 
 /// Time limit of one picture.
-const TIME_LIMIT: Duration = Duration::from_secs(20);
-
-/// How often to check the time limit and the user's interrupt.
-const GLANCE: Duration = Duration::from_millis(50);
+const SECONDS_MAX: f64 = 20.0;
 
 /// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
@@ -26,46 +20,24 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
 /// Traces all samples of a picture. The error is a sentence: it was refused, failed, panicked or took too long.
 pub fn trace(tracer: &mut Candidate, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
     let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
-    within_time(interrupt, |cancel| tracer.trace(&job, recipe.samples_per_pixel, cancel)).map_err(|stop| {
-        match stop {
-            Stop::Failed(reason) => reason,
-            Stop::Cancelled if interrupt.load(Ordering::Relaxed) => "interrupted".to_owned(),
-            Stop::Cancelled => format!("took more than {} s", TIME_LIMIT.as_secs()),
+    match tracer.trace(&job, recipe.samples_per_pixel, interrupt) {
+        Ok(Traced { seconds, .. }) if seconds > SECONDS_MAX => {
+            Err(format!("took {seconds:.0} s, more than {SECONDS_MAX} s"))
         }
-    })
+        traced => traced.map_err(|error| format!("{error:#}")),
+    }
 }
 
-/// Runs `work` with a flag that is set on timeout or when the user interrupts.
-fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
-    let cancel = AtomicBool::new(false);
-    let begin = Instant::now();
-    std::thread::scope(|scope| {
-        let (done, is_done) = channel::<()>();
-        let cancel = &cancel;
-        scope.spawn(move || {
-            while is_done.recv_timeout(GLANCE) == Err(RecvTimeoutError::Timeout) {
-                if interrupt.load(Ordering::Relaxed) || begin.elapsed() > TIME_LIMIT {
-                    cancel.store(true, Ordering::Relaxed);
-                }
-            }
-        });
-        // Dropped when the work ends, even by a panic.
-        let _done = done;
-        work(cancel)
-    })
-}
-
-/// The backends under test, which are compared with the last one, the `f64` reference.
+/// The backends under test, which are compared with the last one, the `f64` reference. The first also renders the
+/// book's arithmetic in `f32`.
 pub struct Suite {
     tracers: Vec<Candidate>,
-    /// Films of scenes that several cases share, by tracer and name.
-    shared: HashMap<(usize, String), Result<Film, String>>,
 }
 
 impl Suite {
-    /// The last tracer is the reference. The first also renders the book's arithmetic in `f32`.
+    /// At least one backend and the reference, which is last.
     pub fn new(tracers: Vec<Candidate>) -> Self {
-        Suite { tracers, shared: HashMap::new() }
+        Suite { tracers }
     }
 
     /// The reference is last.
@@ -73,20 +45,55 @@ impl Suite {
         self.tracers.iter().map(|tracer| tracer.name.clone()).collect()
     }
 
-    fn reference(&self) -> usize {
-        self.tracers.len() - 1
-    }
-
     /// Runs a case in all its forms on all backends, and with the book's arithmetic.
     pub fn run(&mut self, case: &Case, interrupt: &AtomicBool) -> CaseReport {
-        let mut run = CaseRun {
-            suite: self,
-            case,
-            interrupt,
-            oracle: Err("the f64 reference has no picture".to_owned()),
+        let reference = self.tracers.len() - 1;
+        let names = self.names();
+        let mut on_all = |recipe: &Recipe| -> Vec<Result<Traced, String>> {
+            self.tracers.iter_mut().map(|tracer| trace(tracer, recipe, interrupt)).collect()
         };
-        let measured = case.forms().iter().flat_map(|form| run.form(*form)).collect();
-        let book = run.book();
+        let forms: Vec<_> = case.forms().iter().map(|(form, recipe)| (*form, on_all(recipe))).collect();
+        let same = match &case.expected {
+            Expected::Same(other) => on_all(other),
+            _ => Vec::new(),
+        };
+        // Films that must be equal are compared with that of the same backend, others with the reference's plain form.
+        let other = |tracer: usize| same.get(tracer).unwrap_or(&forms[0].1[reference]);
+        let measured = forms.iter().flat_map(|(form, traced)| {
+            let exact = traced[reference].as_ref().ok();
+            traced.iter().enumerate().map(move |(tracer, traced)| (form, exact, tracer, traced))
+        });
+        let measured = measured.map(|(form, exact, tracer, traced)| {
+            let measured = Measured { backend: names[tracer].clone(), form, ..Measured::default() };
+            let traced = match traced {
+                Ok(traced) => traced,
+                Err(reason) => return Measured { verdict: Verdict::None(reason.clone()), ..measured },
+            };
+            let (level, offset, verdict) = judged(case, &traced.film, other(tracer));
+            let exact = exact.filter(|_| tracer != reference);
+            Measured {
+                mean: Some(level.grey()),
+                offset,
+                deviation: Some(level.deviation),
+                rounding: exact.map(|exact| Difference::of(&traced.film, &exact.film)),
+                seconds: Some(traced.seconds),
+                verdict: verdict.given(&traced.warnings),
+                ..measured
+            }
+        });
+        let measured = measured.collect();
+        // The book's picture of another scene may be wrong, too, so it is compared with our own.
+        let recipe = by_the_book(&case.recipe);
+        let book = [("f32", 0), ("f64", reference)].map(|(precision, tracer)| {
+            let (mean, offset, verdict) = match trace(&mut self.tracers[tracer], &recipe, interrupt) {
+                Ok(traced) => {
+                    let (level, offset, verdict) = judged(case, &traced.film, other(reference));
+                    (Some(level.grey()), offset, verdict)
+                }
+                Err(reason) => (None, None, Verdict::None(reason)),
+            };
+            BookMeasured { precision, mean, offset, verdict }
+        });
         CaseReport {
             id: case.id.clone(),
             family: case.family.title,
@@ -95,117 +102,31 @@ impl Suite {
             why: case.why,
             tolerance: case.tolerance,
             spheres: case.recipe.scene.spheres.len(),
-            book,
             measured,
+            book: book.into(),
         }
     }
 }
 
-struct CaseRun<'a> {
-    suite: &'a mut Suite,
-    case: &'a Case,
-    interrupt: &'a AtomicBool,
-    /// The reference's picture of the plain form.
-    oracle: Result<Film, String>,
-}
-
-impl CaseRun<'_> {
-    fn trace(&mut self, tracer: usize, recipe: &Recipe) -> Result<Traced, String> {
-        trace(&mut self.suite.tracers[tracer], recipe, self.interrupt)
-    }
-
-    /// Measures the case in one form on all backends.
-    fn form(&mut self, form: Form) -> Vec<Measured> {
-        let (recipe, reference) = (self.case.recipe_in(form), self.suite.reference());
-        let exact = self.trace(reference, &recipe);
-        if let (Form::Plain, Ok(exact)) = (form, &exact) {
-            self.oracle = Ok(exact.film.clone());
+/// A film's level, how far it is off, and the verdict. `other` is the film that it may have to be equal to.
+fn judged(case: &Case, film: &Film, other: &Result<Traced, String>) -> (Level, Option<f64>, Verdict) {
+    let level = Level::of(film);
+    let difference = match (&case.expected, other) {
+        (Expected::Every(value), _) => Difference::from_every(&level, *value),
+        (Expected::Mean(value), _) => Difference::from_mean(&level, *value),
+        (Expected::Same(_) | Expected::Reference, Ok(other)) => Difference::of(film, &other.film),
+        (Expected::Same(_) | Expected::Reference, Err(reason)) => {
+            return (level, None, Verdict::None(reason.clone()));
         }
-        let mut measured = Vec::new();
-        for tracer in 0..reference {
-            let traced = self.trace(tracer, &recipe);
-            let rounding = traced.as_ref().ok().zip(exact.as_ref().ok());
-            let rounding = rounding.map(|(traced, exact)| Difference::of(&traced.film, &exact.film));
-            measured.push(Measured { rounding, ..self.measure(tracer, form, traced) });
-        }
-        measured.push(self.measure(reference, form, exact));
-        measured
-    }
-
-    fn measure(&mut self, tracer: usize, form: Form, traced: Result<Traced, String>) -> Measured {
-        let backend = self.suite.tracers[tracer].name.clone();
-        let measured = Measured { backend, form: form.name(), ..Measured::default() };
-        let traced = match traced {
-            Ok(traced) => traced,
-            Err(reason) => return Measured { verdict: Verdict::None(reason), ..measured },
-        };
-        let level = Level::of(&traced.film);
-        let (off, verdict) = self.judge(tracer, &level, &traced.film);
-        let verdict = verdict.given(&traced.warnings);
-        Measured {
-            mean: Some(level.grey()),
-            deviation: Some(level.deviation),
-            seconds: Some(traced.seconds),
-            offset: off,
-            verdict,
-            ..measured
-        }
-    }
-
-    /// How far a tracer's film is off, and the verdict.
-    fn judge(&mut self, tracer: usize, level: &Level, film: &Film) -> (Option<f64>, Verdict) {
-        let difference = match &self.case.expected {
-            Expected::Every(value) => Ok(Difference::from_every(level, *value)),
-            Expected::Mean(value) => Ok(Difference::from_mean(level, *value)),
-            Expected::Same(other) => self.shared(tracer, other).map(|other| Difference::of(film, &other)),
-            Expected::Reference => {
-                self.oracle.as_ref().map(|oracle| Difference::of(film, oracle)).map_err(Clone::clone)
-            }
-        };
-        match difference {
-            Ok(difference) => {
-                let verdict = judge(level, &difference, self.case.tolerance, film.rejected());
-                (Some(difference.bias), verdict)
-            }
-            Err(reason) => (None, Verdict::None(reason)),
-        }
-    }
-
-    /// The picture of a scene that several cases share, rendered once.
-    fn shared(&mut self, tracer: usize, recipe: &Recipe) -> Result<Film, String> {
-        let key = (tracer, recipe.name.clone());
-        if let Some(film) = self.suite.shared.get(&key) {
-            return film.clone();
-        }
-        let film = self.trace(tracer, recipe).map(|traced| traced.film);
-        self.suite.shared.insert(key, film.clone());
-        film
-    }
-
-    /// The book's own arithmetic, in `f32` on the first backend and in `f64`. Where a case expects another scene's
-    /// samples, it is compared with our picture of that scene, because the book's may be wrong, too.
-    fn book(&mut self) -> Vec<BookMeasured> {
-        let (recipe, reference) = (by_the_book(&self.case.recipe), self.suite.reference());
-        let mut measured = Vec::new();
-        let first = (reference > 0).then_some(("f32", 0));
-        for (precision, tracer) in first.into_iter().chain([("f64", reference)]) {
-            let (mean, (offset, verdict)) = match self.trace(tracer, &recipe) {
-                Ok(Traced { film, .. }) => {
-                    let level = Level::of(&film);
-                    (Some(level.grey()), self.judge(reference, &level, &film))
-                }
-                Err(reason) => (None, (None, Verdict::None(reason))),
-            };
-            measured.push(BookMeasured { precision, mean, offset, verdict });
-        }
-        measured
-    }
+    };
+    let verdict = judge(&level, &difference, case.tolerance, film.rejected());
+    (level, Some(difference.bias), verdict)
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::families::build::{one_ball, sized, tame};
-    use super::super::families::{cases, families};
+    use super::super::families::{FAMILIES, cases};
     use super::*;
     use crate::backends::BackendChoice;
     use crate::film::fixed_point;
@@ -300,7 +221,7 @@ mod tests {
 
     /// Form, mean, offset and verdict of each measurement of a small picture.
     fn figures(tracers: Vec<Candidate>, expected: Expected) -> Vec<(&'static str, f64, f64, &'static str)> {
-        let case = Case::new(families().next().unwrap(), "made-up", "nothing", sized(one_ball(), [4, 3], 4));
+        let case = Case::new(&FAMILIES[0], "made-up", "nothing", sized(one_ball(), [4, 3], 4));
         let mut suite = Suite::new(tracers);
         let report = suite.run(&case.expect(expected, "it is", 1e-6), &AtomicBool::new(false));
         let rounded = |x: Option<f64>| (1000.0 * x.unwrap_or(f64::NAN)).round() / 1000.0;
@@ -352,13 +273,5 @@ mod tests {
         // The reference takes its place.
         let traced = trace(&mut broken, &small, &go_on).unwrap();
         assert_eq!((traced.film.sample_count(), traced.film.mean(3)), (4, [0.5; 3]));
-        let was_set = within_time(&AtomicBool::new(true), |cancel| {
-            let begin = Instant::now();
-            while !cancel.load(Ordering::Relaxed) && begin.elapsed() < Duration::from_secs(10) {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            cancel.load(Ordering::Relaxed)
-        });
-        assert!(was_set);
     }
 }

@@ -85,52 +85,42 @@ impl Answer {
 
 impl Finding {
     pub fn answer(&self, mine: &Mine) -> Answer {
-        let mut damages = mine.damages.clone();
-        let (kind, title, explanation, remedy, section);
-        if let (Some(found), Some(mistake)) = (&self.mistake, self.named()) {
-            let name = capitalised(mistake.title);
-            (kind, title, explanation) = match found.is_noise {
-                true => (AnswerKind::Mistake, name, "It is the only mistake; all else matches"),
-                false => (
-                    AnswerKind::LikelyMistake,
-                    format!("{name}, most likely"),
-                    "It does not explain everything, so there may be a second mistake",
-                ),
-            };
-            remedy = Some(mistake.remedy);
-            section = Section::find(mistake.section);
-        } else if !self.is_right() {
-            kind = AnswerKind::Unknown;
-            title = "Something differs, and none of the known mistakes explains it".to_owned();
-            explanation = "It may be a picture of another section";
-            remedy = Some(
-                "choose the section that your picture belongs to, and look where it differs; the final picture of section \
-                 14.1 cannot be checked: its small spheres are at random places",
-            );
-            section = None;
-        } else if !damages.is_empty() {
-            let damage = damages.remove(0);
-            kind = AnswerKind::Mistake;
-            title = capitalised(&damage.title);
-            explanation = "The picture itself is right: it differs from ours by noise only";
-            remedy = Some(damage.remedy);
-            section = Section::find("2.2");
-        } else {
-            kind = AnswerKind::Right;
-            title = "It is right".to_owned();
-            explanation = "It differs from ours by noise only";
-            (remedy, section) = (None, None);
-        }
-        Answer {
-            kind,
-            title,
-            explanation: explanation.to_owned(),
-            remedy: remedy.map(capitalised),
-            section,
+        let mut answer = Answer {
+            kind: AnswerKind::Right,
+            title: "It is right".to_owned(),
+            explanation: "It differs from ours by noise only".to_owned(),
+            remedy: None,
+            section: None,
             stage: Some(self.stage),
             evidence: self.evidence(mine),
-            damages,
+            damages: mine.damages.clone(),
+        };
+        if let (Some(found), Some(mistake)) = (&self.mistake, self.named()) {
+            let title = capitalised(mistake.title);
+            (answer.kind, answer.title, answer.explanation) = if found.is_noise {
+                (AnswerKind::Mistake, title, "It is the only mistake; all else matches".to_owned())
+            } else {
+                let doubt = "It does not explain everything, so there may be a second mistake".to_owned();
+                (AnswerKind::LikelyMistake, format!("{title}, most likely"), doubt)
+            };
+            answer.remedy = Some(capitalised(mistake.remedy));
+            answer.section = Section::find(mistake.section);
+        } else if !self.is_right() {
+            answer.kind = AnswerKind::Unknown;
+            answer.title = "Something differs, and none of the known mistakes explains it".to_owned();
+            answer.explanation = "It may be a picture of another section".to_owned();
+            let remedy = "Choose the section that your picture belongs to, and look where it differs; the final picture of \
+                          section 14.1 cannot be checked: its small spheres are at random places";
+            answer.remedy = Some(remedy.to_owned());
+        } else if !answer.damages.is_empty() {
+            let damage = answer.damages.remove(0);
+            answer.kind = AnswerKind::Mistake;
+            answer.title = capitalised(&damage.title);
+            answer.explanation = "The picture itself is right: it differs from ours by noise only".to_owned();
+            answer.remedy = Some(capitalised(damage.remedy));
+            answer.section = Section::find("2.2");
         }
+        answer
     }
 
     fn evidence(&self, mine: &Mine) -> Vec<String> {
@@ -149,20 +139,11 @@ impl Finding {
                 percent(self.right.differing)
             ));
         }
-        match &self.mistake {
-            Some(found) if self.right.differing == 0.0 => {
-                let shown = if found.hypothesis.mistake.is_some_and(super::Mistake::is_at_edges) {
-                    "at edges, pixel by pixel"
-                } else {
-                    "in the values of the pixels"
-                };
-                evidence.push(format!("The means of blocks hardly differ; the mistake shows {shown}"));
-            }
-            Some(found) if found.differing < self.right.differing => evidence.push(format!(
+        if let Some(found) = self.mistake.as_ref().filter(|found| found.differing < self.right.differing) {
+            evidence.push(format!(
                 "With the mistake built into ours, they differ in {}",
                 percent(found.differing)
-            )),
-            _ => {}
+            ));
         }
         if let Some(alike) = self.alike {
             let remedy = capitalised(alike.remedy);

@@ -6,15 +6,12 @@ use super::hypothesis::Compared;
 /// Whether nearly all bytes are 0 or 255, though the picture should have values in between. Converting to an integer
 /// too early turns dark values into 0 but never into 255.
 pub fn is_truncated(mine: &Mine, right: &Compared) -> bool {
-    let is_end = |byte: u8| byte <= 1 || byte >= 254;
-    let should_be = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
-    let bytes = || mine.bytes.iter().flatten().copied().zip(should_be.iter().flatten().copied());
-    let count = |is_so: &dyn Fn(u8, u8) -> bool| bytes().filter(|(mine, ours)| is_so(*mine, *ours)).count();
-    let all = bytes().count();
-    let ends = count(&|mine, _| is_end(mine));
-    let expected_ends = count(&|_, ours| is_end(ours));
-    let too_bright = count(&|mine, ours| mine >= 254 && ours < 128);
-    !right.is_noise && 100 * ends >= 99 * all && 2 * expected_ends < all && 100 * too_bright <= all
+    let ours = right.hypothesis.written.bytes_of(&right.expected, [mine.width, mine.height]);
+    let (mine, ours) = (mine.bytes.as_flattened(), ours.as_flattened());
+    let ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte <= 1 || **byte >= 254).count();
+    let too_bright = mine.iter().zip(ours).filter(|(mine, ours)| **mine >= 254 && **ours < 128).count();
+    let all = mine.len();
+    !right.is_noise && 100 * ends(mine) >= 99 * all && 2 * ends(ours) < all && 100 * too_bright <= all
 }
 
 /// Whether bytes were scaled by 255 instead of 256 and truncated: all values are then smaller by 1/256.

@@ -28,34 +28,35 @@ pub struct Mistake {
     pub remedy: &'static str,
     /// Whether the mistake can show in a picture of this recipe.
     pub applies: fn(&Recipe) -> bool,
-    pub change: Change,
+    pub shows: Shows,
+    /// Each makes one variant of the mistake out of the right picture.
+    pub changes: &'static [fn(&mut Hypothesis)],
 }
 
-/// How to render a picture with the mistake.
+/// Where a mistake shows.
 #[derive(Debug)]
-pub enum Change {
-    /// Changes how the linear picture becomes bytes.
-    Written(fn(&mut Written)),
-    /// Changes the recipe of the program's own tracer.
-    Recipe(fn(&mut Recipe)),
-    /// Changes a step of the plain tracer.
-    Steps(fn(&mut Steps)),
-    /// Any of several variants.
-    Several(fn(&Recipe) -> Vec<Hypothesis>),
-    /// Compared pixel by pixel at edges, because block means hardly show it.
-    AtEdges(&'static Change),
-    /// Detected in the bytes, even where blocks differ only by noise.
-    InBytes(fn(&Mine, &Compared) -> bool, &'static Change),
-    /// Detected, if nothing else explains the picture, in the difference from the right one, with a picture of one sample
-    /// a pixel. Other random numbers give another picture, so it is not compared with one.
-    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool, &'static Change),
+pub enum Shows {
+    /// In the means of blocks.
+    InBlocks,
+    /// At edges, pixel by pixel; block means hardly show it.
+    AtEdges,
+    /// In the bytes, even where blocks differ only by noise.
+    InBytes(fn(&Mine, &Compared) -> bool),
+    /// If nothing else explains the picture, in the difference from the right one, with a picture of one sample a pixel.
+    /// Other random numbers give another picture, so it is not compared with one.
+    InNoise(fn(&Mine, &Compared, &[[f64; 3]]) -> bool),
 }
 
 impl Mistake {
-    /// One hypothesis per variant.
+    /// One hypothesis per variant, without those that change nothing in this recipe.
     pub fn pictures(&'static self, recipe: &Recipe) -> Vec<Hypothesis> {
-        let blame = |picture| Hypothesis { mistake: Some(self), ..picture };
-        self.change.pictures(recipe).into_iter().map(blame).collect()
+        let right = Hypothesis::right(recipe);
+        let picture = |change: &fn(&mut Hypothesis)| {
+            let mut picture = Hypothesis { mistake: Some(self), ..right.clone() };
+            change(&mut picture);
+            (picture.written != right.written || !picture.is_right_before_writing(recipe)).then_some(picture)
+        };
+        self.changes.iter().filter_map(picture).collect()
     }
 
     /// Whether it is a step of a later section rather than a fault.
@@ -64,31 +65,7 @@ impl Mistake {
     }
 
     pub fn is_at_edges(&self) -> bool {
-        matches!(self.change, Change::AtEdges(_))
-    }
-}
-
-impl Change {
-    fn pictures(&self, recipe: &Recipe) -> Vec<Hypothesis> {
-        let mut picture = Hypothesis::right(recipe);
-        let mut changed = recipe.clone();
-        match self {
-            Change::Several(pictures) => return pictures(recipe),
-            Change::AtEdges(change) | Change::InBytes(_, change) | Change::InNoise(_, change) => {
-                return change.pictures(recipe);
-            }
-            Change::Written(change) => {
-                change(&mut picture.written);
-                return vec![picture];
-            }
-            Change::Steps(change) => {
-                let mut steps = Steps::OF_THE_BOOK;
-                change(&mut steps);
-                return vec![Hypothesis { making: Making::Plain(steps), ..picture }];
-            }
-            Change::Recipe(change) => change(&mut changed),
-        }
-        vec![Hypothesis { making: Making::Fast(Box::new(changed)), ..picture }]
+        matches!(self.shows, Shows::AtEdges)
     }
 }
 
@@ -99,18 +76,10 @@ pub struct Hypothesis {
     pub mistake: Option<&'static Mistake>,
     /// An extra remark for the reader.
     pub note: Option<String>,
-    pub making: Making,
+    pub recipe: Recipe,
+    /// The steps of the plain tracer; without, the program's own tracer renders the recipe.
+    pub steps: Option<Steps>,
     pub written: Written,
-}
-
-#[derive(Clone, Debug)]
-pub enum Making {
-    /// The program's own tracer, with the right recipe.
-    Right,
-    /// The program's own tracer, with a changed recipe.
-    Fast(Box<Recipe>),
-    /// The plain tracer, with these steps.
-    Plain(Steps),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,7 +101,17 @@ impl Hypothesis {
         let curve = Encoding::Book(recipe.rules.transfer);
         let (is_flipped, is_mirrored, wraps) = (false, false, false);
         let written = Written { is_flipped, is_mirrored, channels: [0, 1, 2], curve, levels: 256.0, wraps };
-        Hypothesis { mistake: None, note: None, making: Making::Right, written }
+        Hypothesis { mistake: None, note: None, recipe: recipe.clone(), steps: None, written }
+    }
+
+    /// The steps of the plain tracer, which is then the one to render the picture.
+    pub fn plain(&mut self) -> &mut Steps {
+        self.steps.get_or_insert(Steps::OF_THE_BOOK)
+    }
+
+    /// Whether the linear picture is the right one of `recipe`, so that only its bytes may be wrong.
+    pub fn is_right_before_writing(&self, recipe: &Recipe) -> bool {
+        self.steps.is_none() && self.recipe == *recipe
     }
 }
 
@@ -215,18 +194,18 @@ impl Studio {
             true => 1,
             false => (samples * PIXELS / (u64::from(width) * u64::from(height))).clamp(1, samples),
         };
-        let linear = match &hypothesis.making {
-            Making::Plain(steps) => {
-                Tracer::new(&self.recipe, *steps).means(count((samples / 8).clamp(1, 16)) as u32)
+        let linear = match hypothesis.steps {
+            Some(steps) => {
+                Tracer::new(&hypothesis.recipe, steps).means(count((samples / 8).clamp(1, 16)) as u32)
             }
-            Making::Fast(recipe) => means(&mut self.fast, recipe, count(samples))?,
-            Making::Right => {
+            None if hypothesis.is_right_before_writing(&self.recipe) => {
                 let count = count(samples);
-                let kept = self.right.take().filter(|(samples, _)| *samples >= count);
-                let kept = kept
-                    .map_or_else(|| means(&mut self.fast, &self.recipe, count).map(|it| (count, it)), Ok)?;
-                self.right.insert(kept).1.clone()
+                if self.right.as_ref().is_none_or(|(samples, _)| *samples < count) {
+                    self.right = Some((count, means(&mut self.fast, &self.recipe, count)?));
+                }
+                self.right.as_ref().map_or_else(Vec::new, |(_, linear)| linear.clone())
             }
+            None => means(&mut self.fast, &hypothesis.recipe, count(samples))?,
         };
         Ok(hypothesis.written.laid_out(&linear, width as usize))
     }
@@ -257,8 +236,9 @@ pub struct Compared {
 impl Compared {
     /// The same, if a mistake explains the difference.
     pub fn blamed_on(&self, mistake: &'static Mistake) -> Compared {
-        let hypothesis = Hypothesis { mistake: Some(mistake), ..self.hypothesis.clone() };
-        Compared { hypothesis, is_noise: true, ..self.clone() }
+        let mut found = Compared { is_noise: true, ..self.clone() };
+        found.hypothesis.mistake = Some(mistake);
+        found
     }
 }
 

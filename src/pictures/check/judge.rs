@@ -1,9 +1,8 @@
 //! Decides which stage a picture shows, and whether it is right or which mistake explains it best.
 
 use super::Mine;
-use super::hypothesis::{Change, Compared, Hypothesis, Making, Mistake, Studio, compare};
+use super::hypothesis::{Compared, Hypothesis, Mistake, Shows, Studio, compare};
 use super::mistakes::{MISTAKES, applying_to};
-use super::tracer::Steps;
 use crate::job::recipe::Recipe;
 use crate::stages::Stage;
 use anyhow::{Context, Result, bail};
@@ -63,19 +62,20 @@ impl Finding {
 
     /// Ranks findings of different stages: lower is closer.
     fn rank(&self) -> (u8, f64) {
-        match &self.mistake {
-            None if self.right.is_noise => (0, self.right.misfit),
-            Some(found) if self.explains_all() => (1, found.misfit),
-            Some(found) if found.is_noise => (2, found.misfit),
-            Some(found) => (3, found.misfit),
-            None => (3, self.right.misfit),
-        }
+        let found = self.mistake.as_ref().unwrap_or(&self.right);
+        let class = match found.is_noise {
+            true if self.mistake.is_none() => 0,
+            true if self.explains_all() => 1,
+            true => 2,
+            false => 3,
+        };
+        (class, found.misfit)
     }
 
     /// Whether a mistake, rather than a step of a later section, explains all differences.
     fn explains_all(&self) -> bool {
-        let found = self.mistake.as_ref().filter(|found| found.is_noise);
-        found.and_then(|found| found.hypothesis.mistake).is_some_and(|mistake| !mistake.is_early())
+        self.mistake.as_ref().is_some_and(|found| found.is_noise)
+            && self.named().is_some_and(|mistake| !mistake.is_early())
     }
 }
 
@@ -98,7 +98,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
             trials.push(trial);
             continue;
         }
-        let finding = trial.of_right()?;
+        let finding = trial.finding()?;
         if finding.is_right() {
             return Ok(finding);
         }
@@ -109,7 +109,7 @@ pub fn judge(mine: &Mine, stage: Option<&'static Stage>, mut say: impl FnMut(Str
             break;
         }
         say(format!("trying the mistakes of {}", trial.stage.id));
-        keep_closer(&mut best, trial.of_wrong()?);
+        keep_closer(&mut best, trial.finding()?);
     }
     best.context("there is no stage to compare with")
 }
@@ -137,70 +137,75 @@ impl<'a> Trial<'a> {
         Ok(Trial { mine, stage, studio, right })
     }
 
-    fn finding(self, mistake: Option<Compared>) -> Finding {
-        Finding { stage: self.stage, right: self.right, mistake, alike: None }
-    }
-
-    /// The finding when blocks differ only by noise: looks for mistakes that blocks cannot show.
-    fn of_right(mut self) -> Result<Finding> {
-        let mistake = at_edges(self.mine, &mut self.studio, &self.right, FINE)?.or_else(|| self.in_bytes());
-        Ok(self.finding(mistake))
-    }
-
-    /// The finding when blocks differ by more than noise.
-    fn of_wrong(mut self) -> Result<Finding> {
-        if let Some(found) = self.in_bytes() {
-            return Ok(self.finding(Some(found)));
+    fn finding(mut self) -> Result<Finding> {
+        let (mut mistake, mut alike) = (None, None);
+        if self.right.is_noise {
+            mistake = self.at_edges()?;
         }
+        if mistake.is_none() {
+            mistake = self.in_bytes();
+        }
+        if mistake.is_none() && !self.right.is_noise {
+            (mistake, alike) = self.in_blocks()?;
+            if mistake.is_none() {
+                mistake = self.in_noise()?;
+            }
+        }
+        Ok(Finding { stage: self.stage, right: self.right, mistake, alike })
+    }
+
+    fn at_edges(&mut self) -> Result<Option<Compared>> {
+        at_edges(self.mine, &mut self.studio, &self.right, FINE)
+    }
+
+    /// The mistake whose picture is closest, and another that gives the same picture; `None` if none explains the
+    /// difference.
+    fn in_blocks(&mut self) -> Result<(Option<Compared>, Option<&'static Mistake>)> {
         let (mut pictures, mut ranked) = (all_mistakes(self.studio.recipe()), Vec::new());
         for samples in COARSE {
-            let mut compared = Vec::new();
+            ranked.clear();
             for hypothesis in pictures {
                 let expected = self.studio.render(&hypothesis, samples)?;
-                compared.push(compare(self.mine, hypothesis, expected));
+                ranked.push(compare(self.mine, hypothesis, expected));
             }
-            compared.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-            compared.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
-            compared.truncate(REFINED);
-            pictures = compared.iter().map(|found| found.hypothesis.clone()).collect();
-            ranked = compared;
+            ranked.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
+            ranked.retain(|found| found.is_noise || found.misfit < HOPELESS * self.right.misfit);
+            ranked.truncate(REFINED);
+            pictures = ranked.iter().map(|found| found.hypothesis.clone()).collect();
         }
         let mut ranked = ranked.into_iter();
-        let Some(best) = ranked.next() else { return self.of_unexplained() };
-        if best.hypothesis.mistake.is_some_and(Mistake::is_at_edges)
-            && let Some(found) = at_edges(self.mine, &mut self.studio, &self.right, FINE)?
+        let Some(best) = ranked.next() else { return Ok((None, None)) };
+        let named = best.hypothesis.mistake;
+        if named.is_some_and(Mistake::is_at_edges)
+            && let Some(found) = self.at_edges()?
         {
-            return Ok(self.finding(Some(found)));
+            return Ok((Some(found), None));
         }
-        if best.is_noise || best.misfit < EXPLAINED * self.right.misfit {
-            let others = ranked.filter(|found| best.is_noise && found.is_noise);
-            let named = best.hypothesis.mistake.map(|mistake| mistake.id);
-            let alike = others.filter_map(|found| found.hypothesis.mistake).find(|it| Some(it.id) != named);
-            return Ok(Finding { alike, ..self.finding(Some(best)) });
+        if !best.is_noise && best.misfit >= EXPLAINED * self.right.misfit {
+            return Ok((None, None));
         }
-        self.of_unexplained()
+        let others = ranked.filter(|found| best.is_noise && found.is_noise);
+        let mut others = others.filter_map(|found| found.hypothesis.mistake);
+        let alike = others.find(|other| named.is_none_or(|named| named.id != other.id));
+        Ok((Some(best), alike))
     }
 
-    /// The finding when no picture of a mistake explains the difference.
-    fn of_unexplained(mut self) -> Result<Finding> {
-        let recipe = self.studio.recipe().clone();
-        for mistake in applying_to(&recipe) {
-            if let Change::InNoise(test, _) = mistake.change {
-                let single =
-                    Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..self.right.hypothesis.clone() };
-                let single = self.studio.render(&single, 1)?;
-                if test(self.mine, &self.right, &single) {
-                    let found = self.right.blamed_on(mistake);
-                    return Ok(self.finding(Some(found)));
-                }
+    fn in_noise(&mut self) -> Result<Option<Compared>> {
+        let mut plain = self.right.hypothesis.clone();
+        plain.plain();
+        for mistake in applying_to(&plain.recipe) {
+            if let Shows::InNoise(test) = mistake.shows
+                && test(self.mine, &self.right, &self.studio.render(&plain, 1)?)
+            {
+                return Ok(Some(self.right.blamed_on(mistake)));
             }
         }
-        Ok(self.finding(None))
+        Ok(None)
     }
 
     fn in_bytes(&self) -> Option<Compared> {
-        let shows = |mistake: &&Mistake| match mistake.change {
-            Change::InBytes(test, _) => test(self.mine, &self.right),
+        let shows = |mistake: &&Mistake| match mistake.shows {
+            Shows::InBytes(test) => test(self.mine, &self.right),
             _ => false,
         };
         Some(self.right.blamed_on(MISTAKES.iter().find(shows)?))
@@ -252,7 +257,7 @@ fn edges(expected: &[[f64; 3]], [width, height]: [usize; 2]) -> Vec<(usize, usiz
 }
 
 fn all_mistakes(recipe: &Recipe) -> Vec<Hypothesis> {
-    let is_compared = |mistake: &&Mistake| !matches!(mistake.change, Change::InNoise(..));
+    let is_compared = |mistake: &&Mistake| !matches!(mistake.shows, Shows::InNoise(_));
     applying_to(recipe).filter(is_compared).flat_map(|mistake| mistake.pictures(recipe)).collect()
 }
 
@@ -273,8 +278,9 @@ fn candidates(mine: &Mine, mut say: impl FnMut(String)) -> Result<Vec<&'static S
         for stage in stages() {
             let mut studio = Studio::new(stage.recipe(), [mine.width / factor, mine.height / factor])?;
             let right = Hypothesis::right(studio.recipe());
-            let is_tried = |picture: &Hypothesis| is_thorough || matches!(picture.making, Making::Right);
-            let mistakes = all_mistakes(studio.recipe()).into_iter().filter(is_tried);
+            let recipe = &right.recipe.clone();
+            let is_tried = |picture: &Hypothesis| is_thorough || picture.is_right_before_writing(recipe);
+            let mistakes = all_mistakes(recipe).into_iter().filter(is_tried);
             let mut least = f64::INFINITY;
             for hypothesis in std::iter::once(right).chain(mistakes) {
                 let expected = studio.render(&hypothesis, SMALL)?;

@@ -1,7 +1,7 @@
 //! The reader's picture in 8 bits.
 
 use crate::job::output::{Damage, ReadPicture, Values, decode_picture, displayed, read_picture};
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail, ensure};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -39,16 +39,26 @@ impl Mine {
         let mine = Mine::of(read_picture(path, None)?)
             .map_err(|reason| anyhow!("{name} cannot be read: {reason}"))?;
         let (Mine { width, height, .. }, [least_width, least_height]) = (&mine, SIZE_MIN);
-        if *width < least_width || *height < least_height {
+        ensure!(
+            *width >= least_width && *height >= least_height,
+            "{name} cannot be read: it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few \
+             to tell whether it is right; render it at 400 x 225"
+        );
+        let [r, g, b] = mine.bytes[0];
+        if mine.bytes.iter().all(|pixel| *pixel == [r, g, b]) {
+            let remedy = mine.damages.first().map_or_else(
+                || {
+                    "look at what ray_color returns; scale before you convert, as int(x) * 256 is 0 for all x below 1; \
+                     divide by the number of samples before clamping"
+                        .to_owned()
+                },
+                |damage| format!("{}; {}", damage.title, damage.remedy),
+            );
             bail!(
-                "{name} cannot be read: it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few \
-                 to tell whether it is right; render it at 400 x 225"
+                "{name} cannot be checked: all its pixels are {r} {g} {b}, so there is nothing to compare; {remedy}"
             );
         }
-        match mine.blank() {
-            Some(reason) => bail!("{name} cannot be checked: {reason}"),
-            None => Ok(mine),
-        }
+        Ok(mine)
     }
 
     /// Reads the picture from the bytes of a file.
@@ -78,22 +88,5 @@ impl Mine {
     /// Bytes in a step of the file's values, at least 1.
     pub fn step(&self) -> f64 {
         (256.0 / (f64::from(self.most) + 1.0)).max(1.0)
-    }
-
-    /// Why a picture of a single colour cannot be checked.
-    fn blank(&self) -> Option<String> {
-        let first @ [r, g, b] = *self.bytes.first()?;
-        if self.bytes.iter().any(|pixel| *pixel != first) {
-            return None;
-        }
-        let remedy = self.damages.first().map_or_else(
-            || {
-                "look at what ray_color returns; scale before you convert, as int(x) * 256 is 0 for all x below 1; divide by \
-                 the number of samples before clamping"
-                    .to_owned()
-            },
-            |damage| format!("{}; {}", damage.title, damage.remedy),
-        );
-        Some(format!("all its pixels are {r} {g} {b}, so there is nothing to compare; {remedy}"))
     }
 }

@@ -1,7 +1,7 @@
 //! Mistakes and their pictures, mistakes that blocks cannot show, and the report.
 
 use super::bytes::{is_times_255, is_truncated};
-use super::hypothesis::{Compared, Hypothesis, Making, Mistake, Studio, compare};
+use super::hypothesis::{Compared, Hypothesis, Mistake, Studio, compare};
 use super::judge::at_edges;
 use super::mistakes::{MISTAKES, bubble};
 use super::tracer::Steps;
@@ -93,7 +93,7 @@ fn plain_tracer_matches_fast_tracer() {
     for stage in stages().filter(is_traced) {
         let mut studio = Studio::new(stage.recipe(), [96, 54]).unwrap();
         let right = Hypothesis::right(studio.recipe());
-        let plain = Hypothesis { making: Making::Plain(Steps::OF_THE_BOOK), ..right.clone() };
+        let plain = Hypothesis { steps: Some(Steps::OF_THE_BOOK), ..right.clone() };
         let [right, plain] = [right, plain].map(|hypothesis| studio.render(&hypothesis, 256).unwrap());
         // A one-sample grid hits edges exactly, where precisions may differ.
         let values: Vec<[f64; 3]> =

@@ -88,7 +88,7 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
             values[pixel][channel].abs() > rounding(step)
         };
         narrow(&mut test, a.width, is_moved);
-        few = few_pixels(&values, is_moved);
+        few = few_pixels(&values, a.width, is_moved);
         clipped = add_clipped(&mut test, a, b, &differences);
     }
     let finite = || values.iter().flatten().copied().filter(|x| x.is_finite());
@@ -108,15 +108,10 @@ pub fn compare(a: &Picture, b: &Picture) -> Comparison {
         notes: Vec::new(),
         unclear: None,
     };
-    if clipped > 0 {
-        comparison.reasons.push(format!(
-            "{clipped} blocks are at the largest value of an integer format in one picture, but are darker in the other"
-        ));
-    }
-    judge(&mut comparison);
+    judge(&mut comparison, clipped);
     note(&mut comparison);
     if !comparison.is_same {
-        doubt(&mut comparison, few, [a.width as usize, values.len()]);
+        doubt(&mut comparison, few);
     }
     comparison
 }
@@ -278,78 +273,91 @@ fn differences(a: &Picture, b: &Picture) -> (Vec<[f64; 3]>, NonFinite) {
     (values, found)
 }
 
-/// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): their number, the
-/// worst of them and its difference.
-fn few_pixels(values: &[[f64; 3]], is_moved: impl Fn(usize, usize) -> bool) -> Option<(usize, usize, f64)> {
+/// If only a few pixels differ by more than rounding and all others are equal (so there is no noise): the largest
+/// difference, and a sentence about it.
+fn few_pixels(
+    values: &[[f64; 3]],
+    width: u32,
+    is_moved: impl Fn(usize, usize) -> bool,
+) -> Option<(f64, String)> {
     let by = |pixel: usize| {
         let moved = (0..3).filter(|channel| is_moved(pixel, *channel));
         moved.map(|channel| values[pixel][channel].abs()).fold(0.0, f64::max)
     };
     let moved = (0..values.len()).map(|pixel| (pixel, by(pixel))).filter(|(_, by)| *by > 0.0);
-    let count = moved.clone().count();
+    let (count, all) = (moved.clone().count(), values.len());
     let (pixel, largest) = moved.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    (count as f64 <= (FEW_PIXELS * values.len() as f64).max(1.0)).then_some((count, pixel, largest))
+    let (column, row) = (pixel % width as usize, pixel / width as usize);
+    (count as f64 <= (FEW_PIXELS * all as f64).max(1.0)).then(|| {
+        let what = format!("only {count} of {all} pixels differ by more than rounding");
+        (largest, format!("{what}, most by {largest:.1e} at {column},{row}"))
+    })
 }
 
 /// Adds the reasons for calling the pictures different.
-fn judge(comparison: &mut Comparison) {
-    let Comparison { test, non_finite, reasons, .. } = comparison;
-    if let NonFinite { differing, differing_pixels, first: Some([column, row]), .. } = non_finite {
-        reasons.push(format!(
-            "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
-             {column},{row}: find out what made them"
-        ));
-    }
-    let excess = test.largest_excess();
-    if excess > SUM_DEVIATIONS {
-        reasons.push(format!(
-            "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
-             {SUM_DEVIATIONS:.0}"
-        ));
-    }
-    let (largest, limit) = (test.largest, test.largest_limit);
-    if largest > limit {
-        reasons.push(format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}"));
-    }
+fn judge(comparison: &mut Comparison, clipped: usize) {
+    let Comparison { test, non_finite: NonFinite { differing, differing_pixels, first, .. }, .. } =
+        comparison;
+    let (excess, largest, limit) = (test.largest_excess(), test.largest, test.largest_limit);
     let off = comparison.bias_deviation.map_or(0.0, |deviation| comparison.bias.abs() / deviation);
-    if off > SUM_DEVIATIONS {
-        reasons.push(format!(
-            "the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"
-        ));
-    }
+    let reasons = [
+        (clipped > 0).then(|| {
+            format!(
+                "{clipped} blocks are at the largest value of an integer format in one picture, but are darker in the other"
+            )
+        }),
+        first.map(|[column, row]| {
+            format!(
+                "{differing} channels of {differing_pixels} pixels are NaN or infinite in only one picture, the first at \
+                 {column},{row}: find out what made them"
+            )
+        }),
+        (excess > SUM_DEVIATIONS).then(|| {
+            format!(
+                "the sum of z^2 over the blocks is {excess:.1} deviations above that of noise, but noise stays below \
+                 {SUM_DEVIATIONS:.0}"
+            )
+        }),
+        (largest > limit)
+            .then(|| format!("a block is {largest:.1} deviations off, but noise gives at most {limit:.1}")),
+        (off > SUM_DEVIATIONS).then(|| {
+            format!("the mean is {off:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}")
+        }),
+    ];
+    comparison.reasons = reasons.into_iter().flatten().collect();
 }
 
+/// Adds what to know about the figures.
 fn note(comparison: &mut Comparison) {
-    let Comparison { test, notes, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
-    if comparison.noise.is_none() && !*is_same {
-        notes.push(
+    let Comparison { test, is_same, left_out, non_finite: NonFinite { alike, .. }, .. } = comparison;
+    let notes = [
+        (comparison.noise.is_none() && !*is_same).then(|| {
             "the noise is estimated from the spread of the differences within each block, so differences finer than 8 \
              pixels pass for noise; films with two halves (--checkpoint) give a sharper comparison"
-                .to_owned(),
-        );
-    }
-    if test.is_too_near() {
-        notes.push(
+                .to_owned()
+        }),
+        test.is_too_near().then(|| {
             "the blocks differ by less than their noise allows: the pictures share random numbers, differ in a pattern \
              finer than 8 pixels, or their halves do not belong together"
-                .to_owned(),
-        );
-    }
-    if *alike > 0 {
-        notes.push(format!(
-            "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
-        ));
-    }
-    if *left_out > 0 {
-        notes.push(format!(
-            "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the largest \
-             value of an integer format"
-        ));
-    }
+                .to_owned()
+        }),
+        (*alike > 0).then(|| {
+            format!(
+                "{alike} channels are NaN in both pictures, or infinite with the same sign: these count as equal"
+            )
+        }),
+        (*left_out > 0).then(|| {
+            format!(
+                "{left_out} channels are left out of the figures, with their blocks: they are NaN, infinite, or at the \
+                 largest value of an integer format"
+            )
+        }),
+    ];
+    comparison.notes = notes.into_iter().flatten().collect();
 }
 
 /// Withholds the verdict if too little can be compared.
-fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, pixels]: [usize; 2]) {
+fn doubt(comparison: &mut Comparison, few: Option<(f64, String)>) {
     let known: usize = comparison.test.counts.iter().sum();
     let all = 3 * comparison.test.blocks.len();
     let mut unclear = (2 * known < all).then(|| {
@@ -358,20 +366,12 @@ fn doubt(comparison: &mut Comparison, few: Option<(usize, usize, f64)>, [width, 
              value of an integer format; compare films, or render both with a darker sky"
         )
     });
-    if let Some((count, pixel, largest)) = few {
-        let (column, row) = (pixel % width, pixel / width);
-        let text = format!(
-            "only {count} of {pixels} pixels differ by more than rounding, most by {largest:.1e} at {column},{row}"
-        );
-        if largest > LOUD {
-            unclear.get_or_insert_with(|| {
-                format!(
-                    "{text}: too few to tell noise from a fault; look there, or compare films with two halves"
-                )
-            });
-        } else {
-            comparison.notes.push(text);
+    match few {
+        Some((largest, text)) if largest > LOUD => {
+            let hint = "too few to tell noise from a fault; look there, or compare films with two halves";
+            unclear.get_or_insert_with(|| format!("{text}: {hint}"));
         }
+        few => comparison.notes.extend(few.map(|(_, text)| text)),
     }
     comparison.unclear = unclear.filter(|_| comparison.reasons.is_empty());
 }

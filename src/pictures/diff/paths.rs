@@ -1,14 +1,12 @@
 //! Compares two records of the same path: where they differ, in which quantity, and by how much.
 
+use crate::backends::explain::{Event, Lobe, steps};
 use crate::film::FIXED_POINT_SCALE;
 use crate::job::render::RenderJob;
-use crate::kernel::path_record::{PathRecord, RecordedRay};
-use crate::scene::Look;
-use crate::stages::Shading;
+use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
 use crate::system::console::printable;
 use glam::DVec3;
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -85,68 +83,51 @@ impl Pair<'_> {
     /// The quantities of the ray at `index`.
     pub fn rows(&self, index: usize) -> [Row; 6] {
         let rays = self.paths.map(|path| path.rays.get(index));
-        // If only one side has this ray, the paths have parted.
-        let amount = |of: &dyn Fn(&RecordedRay, &RecordedRay) -> f64| match rays {
-            [Some(a), Some(b)] => of(a, b),
-            _ => f64::INFINITY,
-        };
-        let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
-        let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
         let departures = self.paths.map(|path| self.departure(path, index));
-        let row = |label, values, amount| Row { label, values, amount };
         // Positions are only as exact as the largest coordinate the path has passed through.
         let length = |ray: &RecordedRay| DVec3::from(ray.origin).length();
         let extent = self.paths[0].rays.iter().take(index + 1).map(length).fold(0.0, f64::max);
-        let origins = |a: &RecordedRay, b: &RecordedRay| {
-            share((DVec3::from(a.origin) - DVec3::from(b.origin)).length(), extent.max(length(b)))
+        let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
+        let amounts = match rays {
+            [Some(a), Some(b)] => [
+                share((DVec3::from(a.origin) - DVec3::from(b.origin)).length(), extent.max(length(b))),
+                (DVec3::from(a.direction) - DVec3::from(b.direction)).length(),
+                vector_share(a.throughput, b.throughput, 0.0),
+                apart(a.hit.map(|hit| hit.sphere) != b.hit.map(|hit| hit.sphere)),
+                a.hit.zip(b.hit).map_or(0.0, |(a, b)| {
+                    share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
+                }),
+                apart(departures[0] != departures[1]),
+            ],
+            // If only one side has this ray, the paths have parted.
+            _ => [f64::INFINITY; 6],
         };
-        let directions =
-            |a: &RecordedRay, b: &RecordedRay| (DVec3::from(a.direction) - DVec3::from(b.direction)).length();
-        let throughputs = |a: &RecordedRay, b: &RecordedRay| vector_share(a.throughput, b.throughput, 0.0);
-        let spheres = |a: &RecordedRay, b: &RecordedRay| {
-            apart(a.hit.map(|hit| hit.sphere) != b.hit.map(|hit| hit.sphere))
-        };
-        let distances = |a: &RecordedRay, b: &RecordedRay| match (a.hit, b.hit) {
-            (Some(a), Some(b)) => {
-                share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
-            }
-            _ => 0.0,
-        };
-        let meets = rays.map(|ray| ray.map(|ray| self.numbered(ray)));
-        let reaches = rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()));
-        let continues = departures.map(|word| word.map(str::to_owned));
+        let vectors = |of: fn(&RecordedRay) -> [f64; 3]| rays.map(|ray| ray.map(|ray| vector(of(ray))));
+        let row = |place: usize, label, values| Row { label, values, amount: amounts[place] };
         [
-            row("origin", vectors(|ray| ray.origin), amount(&origins)),
-            row("direction", vectors(|ray| ray.direction), amount(&directions)),
-            row("throughput", vectors(|ray| ray.throughput), amount(&throughputs)),
-            row("object", meets, amount(&spheres)),
-            row("distance", reaches, amount(&distances)),
-            row("departure", continues, amount(&|_, _| apart(departures[0] != departures[1]))),
+            row(0, "origin", vectors(|ray| ray.origin)),
+            row(1, "direction", vectors(|ray| ray.direction)),
+            row(2, "throughput", vectors(|ray| ray.throughput)),
+            row(3, "object", rays.map(|ray| ray.map(|ray| self.numbered(ray)))),
+            row(4, "distance", rays.map(|ray| Some(number(ray?.hit?.distance).trim_start().to_owned()))),
+            row(5, "departure", departures.map(|word| word.map(str::to_owned))),
         ]
     }
 
     /// What happens to a path after the ray at `index`, as a word that can follow "is"; `None` if the ray hits no
     /// sphere.
     fn departure(&self, path: &PathRecord, index: usize) -> Option<&'static str> {
-        let ray = path.rays.get(index)?;
-        let sphere = self.job.scene().spheres.get(ray.hit?.sphere)?;
-        let look = self.job.scene().material_of(sphere).look();
-        let is_last = index + 1 >= self.job.settings().max_depth as usize;
-        Some(match (path.rays.get(index + 1), look) {
-            (Some(next), Look::Glass { .. }) => {
-                let outward = DVec3::from(next.origin) - sphere.center;
-                let side = |ray: &RecordedRay| DVec3::from(ray.direction).dot(outward) > 0.0;
-                if side(ray) == side(next) { "refracted" } else { "reflected" }
-            }
-            (Some(_), Look::Matte) => "scattered",
-            (Some(_), Look::Mirror { .. }) => "reflected",
-            // Such a stage traces no further rays.
-            (None, _) if self.job.rules().shading != Shading::Path => "shown",
-            (None, _) if is_last => "cut off",
-            // The fuzzy reflection points into the surface.
-            (None, Look::Mirror { .. }) => "absorbed",
-            (None, _) => "shown",
-        })
+        // The words need no random numbers, so any pixel and sample will do.
+        let step = steps(self.job, [0, 0], 0, path).into_iter().nth(index)?;
+        match step.event {
+            Event::Sky => None,
+            Event::Shown => Some("shown"),
+            Event::Limit => Some("cut off"),
+            Event::Absorbed(_) => Some("absorbed"),
+            Event::Scattered(Lobe::Hemisphere | Lobe::Lambertian) => Some("scattered"),
+            Event::Scattered(Lobe::Glass { refracts: true, .. }) => Some("refracted"),
+            Event::Scattered(Lobe::Glass { .. } | Lobe::Metal { .. }) => Some("reflected"),
+        }
     }
 
     /// The verdict in one or two sentences.
@@ -171,40 +152,26 @@ impl Pair<'_> {
     /// count from 1, as in the window.
     pub fn sentence(&self, difference: &Difference) -> String {
         let Difference { ray, quantity, amount } = *difference;
+        let allowed = format!("by {amount:.1e}, but only {:.0e} is allowed", self.tolerance);
         if quantity == "radiance" {
-            return format!(
-                "the radiances differ by {amount:.1e}, but only {:.0e} is allowed, although the rays agree",
-                self.tolerance
-            );
+            return format!("the radiances differ {allowed}, although the rays agree");
         }
         if amount.is_finite() {
-            return format!(
-                "ray {}: {quantity} differs by {amount:.1e}, but only {:.0e} is allowed",
-                ray + 1,
-                self.tolerance
-            );
+            return format!("ray {}: {quantity} differs {allowed}", ray + 1);
         }
         let row = self.rows(ray).into_iter().find(|row| row.label == quantity);
-        let values =
-            row.map_or([None, None], |row| row.values).map(|value| value.unwrap_or("nothing".to_owned()));
-        let ([a, b], [value_a, value_b]) = (self.names, values.map(|value| value.trim().to_owned()));
-        format!("ray {}: the paths part by {quantity}: {a} {value_a}, {b} {value_b}", ray + 1)
+        let values = row.map_or([None, None], |row| row.values);
+        let [a, b] = values.map(|value| value.unwrap_or("nothing".to_owned()).trim().to_owned());
+        let [name_a, name_b] = self.names;
+        format!("ray {}: the paths part by {quantity}: {name_a} {a}, {name_b} {b}", ray + 1)
     }
 
-    /// `#7 glass (dielectric)`, or the sky.
+    /// `#7 glass (dielectric)`, with a printable name of the material, or the sky.
     fn numbered(&self, ray: &RecordedRay) -> String {
-        let Some(hit) = ray.hit else { return "the sky".to_owned() };
-        match self.material(hit.sphere) {
-            Some((name, kind)) => format!("#{} {name} ({kind})", hit.sphere),
-            None => format!("#{}", hit.sphere),
-        }
-    }
-
-    /// Name (made printable) and kind of a sphere's material.
-    fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
+        let Some(RecordedHit { sphere, .. }) = ray.hit else { return "the sky".to_owned() };
         let scene = self.job.scene();
-        let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
-        Some((printable(&named.name), named.material.kind()))
+        let named = &scene.materials[scene.spheres[sphere].material];
+        format!("#{sphere} {} ({})", printable(&named.name), named.material.kind())
     }
 }
 

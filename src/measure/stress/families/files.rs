@@ -4,12 +4,6 @@ use super::build::sized;
 use crate::job::recipe::file;
 use crate::measure::stress::case::{Case, Expected, Family};
 
-pub const FILES: Family = Family {
-    id: "file",
-    title: "Scenes to look at",
-    lesson: "Whole pictures in which several of these difficulties meet.",
-};
-
 /// Name, text, what makes it hard, title, and what to look for.
 const SCENES: [[&str; 5]; 6] = [
     [
@@ -60,10 +54,10 @@ const SCENES: [[&str; 5]; 6] = [
 ];
 
 /// The files' scenes as small pictures.
-pub fn files() -> Vec<Case> {
+pub fn files(family: &'static Family) -> Vec<Case> {
     let case = |[name, text, stiff, title, look_for]: [&'static str; 5]| {
         let recipe = sized(file::parse(text, name).ok()?, [24, 16], 32);
-        let case = Case::new(&FILES, name, stiff, recipe).watched(title, look_for);
+        let case = Case::new(family, name, stiff, recipe).watched(title, look_for);
         let closed = "the room is closed: no path leaves it";
         Some(match name {
             "closed-room" => case.expect(Expected::Every([0.0; 3]), closed, 0.0),
