@@ -4,7 +4,6 @@ use super::close;
 use crate::film::{Film, FilmError};
 use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::system::threads::shared;
-use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -145,17 +144,12 @@ impl Renderer for Together {
     /// Lists as left out what any member leaves out.
     fn kernel(&self) -> KernelInfo {
         let kernels: Vec<KernelInfo> = self.members.iter().map(|member| member.renderer.kernel()).collect();
-        let joined = |text: fn(&KernelInfo) -> &str| kernels.iter().map(text).collect::<Vec<_>>().join(" | ");
-        let mut seen = HashSet::new();
+        let mut left_out: Vec<&str> = kernels.iter().flat_map(|kernel| &kernel.left_out).copied().collect();
+        left_out.sort_unstable();
+        left_out.dedup();
         KernelInfo {
-            about: joined(|kernel| &kernel.about),
-            present: joined(|kernel| &kernel.present),
-            left_out: kernels
-                .iter()
-                .flat_map(|k| &k.left_out)
-                .copied()
-                .filter(|it| seen.insert(*it))
-                .collect(),
+            about: kernels.iter().map(|kernel| kernel.about.as_str()).collect::<Vec<_>>().join(" | "),
+            left_out,
             hierarchy_time: kernels.iter().map(|kernel| kernel.hierarchy_time).sum(),
         }
     }
