@@ -80,11 +80,11 @@ impl GpuRenderer {
         };
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &features, 0);
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &features, 0, cancel)?;
+        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features, 0), cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
@@ -112,9 +112,10 @@ impl GpuRenderer {
     ) -> Result<SceneOnDevice, RenderError> {
         let made = PreparedScene::<f32>::renewed(cancel, None, job);
         let prepared = made.ok_or(RenderError::Cancelled)?;
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
+        let features = self.features(&prepared);
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
         let begin = Instant::now();
-        let data = SceneData::new(job, &prepared).map_err(failed)?;
+        let data = SceneData::new(job, &prepared);
         let hierarchy_time = prepared.hierarchy_time + begin.elapsed();
         self.copied(prepared, data, hierarchy_time).map_err(failed)
     }
