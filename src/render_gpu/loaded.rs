@@ -200,17 +200,12 @@ impl GpuRenderer {
     /// Empty buffers for a film of `job`; reuses the old ones if they fit.
     fn film_buffers(&self, job: &RenderJob, old: Option<FilmBuffers>) -> Result<FilmBuffers, String> {
         let limit = self.film_limit();
-        match old {
-            Some(mut film) if film.fit(job.settings(), limit) => {
-                // Work in flight was abandoned.
-                film.forget(&self.gpu);
-                Ok(film)
-            }
-            other => {
-                // The device may not have room for both.
-                drop(other);
-                FilmBuffers::new(&self.gpu, job.settings(), limit)
-            }
-        }
+        // The device may not have room for both.
+        let Some(mut film) = old.filter(|film| film.fit(job.settings(), limit)) else {
+            return FilmBuffers::new(&self.gpu, job.settings(), limit);
+        };
+        // Work in flight was abandoned.
+        film.forget(&self.gpu);
+        Ok(film)
     }
 }
