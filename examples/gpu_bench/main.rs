@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::job::recipe::Recipe;
 use weekender::job::render::{RenderJob, RenderSettings, Renderer};
+use weekender::kernel::parts;
 use weekender::numbers::statistics;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::wide_bvh::WideBvh;
@@ -135,7 +136,7 @@ fn size(scene: &str) -> anyhow::Result<()> {
         "| {scene} | {} | {} | {} |",
         general?,
         specialised?,
-        if needed.shading == Shading::Path { needed.describe() } else { String::new() }
+        if needed.shading == Shading::Path { parts::describe(needed.parts()) } else { String::new() }
     );
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! The GPU: one thread per pixel, or one per sample.
 
 use super::{Comparison, Mapping, Options, SIZE, Traced, compare, job, timed};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use std::rc::Rc;
 use weekender::film::PixelSum;
 use weekender::job::render::RenderJob;
@@ -124,7 +124,7 @@ pub fn measure(options: &Options) -> anyhow::Result<Comparison> {
 impl GpuWay {
     fn new(way: Way, shared: &Rc<Shared>, job: &RenderJob, samples: u64) -> anyhow::Result<Self> {
         let (device, queue) = (&shared.device, &shared.queue);
-        let exported = Exported::new(job).map_err(|reason| anyhow!(reason))?;
+        let exported = Exported::new(job);
         let features = Features { aside: way == Way::SharedBlocks, ..exported.features };
         let source = wgpu::ShaderSource::Wgsl(way.source()?.into());
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });

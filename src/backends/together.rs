@@ -4,7 +4,6 @@ use super::close;
 use crate::film::{Film, FilmError};
 use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::system::threads::shared;
-use std::collections::HashSet;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -42,40 +41,26 @@ struct Outcome {
 struct Pieces {
     left: Vec<Range<u64>>,
     grain: u64,
-}
-
-/// Determines the size of a member's pieces.
-#[derive(Clone, Copy)]
-struct Pace {
-    /// Fraction of the remaining samples.
-    share: f64,
-    /// Speed of the fastest other member relative to this one; 0 until speeds have been measured.
-    fastest_other: f64,
-}
-
-impl Pace {
-    fn of(index: usize, speeds: &[Option<f64>]) -> Pace {
-        let total: f64 = speeds.iter().flatten().sum();
-        let others = speeds.iter().enumerate().filter(|(other, _)| *other != index);
-        let fastest = others.filter_map(|(_, speed)| *speed).fold(0.0, f64::max);
-        match speeds[index] {
-            Some(speed) => Pace { share: PIECE_SHARE * speed / total, fastest_other: fastest / speed },
-            // A member that has not been measured yet takes the smallest piece.
-            None => Pace { share: 0.0, fastest_other: 0.0 },
-        }
-    }
+    /// Samples of all pixels per second of each member, as last measured.
+    speeds: Vec<Option<f64>>,
 }
 
 impl Pieces {
     /// The member's share of the remaining samples in whole grains, at least one. `None` if another member would
     /// finish all of them before this one finished a grain.
-    fn take(&mut self, pace: Pace) -> Option<Range<u64>> {
+    fn take(&mut self, member: usize) -> Option<Range<u64>> {
         let total: u64 = self.left.iter().map(|range| range.end - range.start).sum();
-        if self.grain as f64 * pace.fastest_other > total as f64 {
-            return None;
+        let mut share = 0.0;
+        // A member that has not been measured yet takes the smallest piece.
+        if let Some(speed) = self.speeds[member] {
+            let fastest = self.speeds.iter().flatten().copied().fold(speed, f64::max);
+            if fastest > speed && self.grain as f64 * fastest / speed > total as f64 {
+                return None;
+            }
+            share = PIECE_SHARE * speed / self.speeds.iter().flatten().sum::<f64>();
         }
         let range = self.left.last_mut()?;
-        let wanted = (total as f64 * pace.share) as u64 / self.grain * self.grain;
+        let wanted = (total as f64 * share) as u64 / self.grain * self.grain;
         let end = range.end.min(range.start + wanted.max(self.grain));
         let piece = range.start..end;
         range.start = end;
@@ -145,17 +130,12 @@ impl Renderer for Together {
     /// Lists as left out what any member leaves out.
     fn kernel(&self) -> KernelInfo {
         let kernels: Vec<KernelInfo> = self.members.iter().map(|member| member.renderer.kernel()).collect();
-        let joined = |text: fn(&KernelInfo) -> &str| kernels.iter().map(text).collect::<Vec<_>>().join(" | ");
-        let mut seen = HashSet::new();
+        let mut left_out: Vec<&str> = kernels.iter().flat_map(|kernel| &kernel.left_out).copied().collect();
+        left_out.sort_unstable();
+        left_out.dedup();
         KernelInfo {
-            about: joined(|kernel| &kernel.about),
-            present: joined(|kernel| &kernel.present),
-            left_out: kernels
-                .iter()
-                .flat_map(|k| &k.left_out)
-                .copied()
-                .filter(|it| seen.insert(*it))
-                .collect(),
+            about: kernels.iter().map(|kernel| kernel.about.as_str()).collect::<Vec<_>>().join(" | "),
+            left_out,
             hierarchy_time: kernels.iter().map(|kernel| kernel.hierarchy_time).sum(),
         }
     }
@@ -189,7 +169,7 @@ impl Renderer for Together {
         }
         let grain = film.halves().len() as u64;
         let left = std::iter::once(range).filter(|range| !range.is_empty()).collect();
-        let pieces = Mutex::new(Pieces { left, grain });
+        let mut pieces = Mutex::new(Pieces { left, grain, speeds: Vec::new() });
         let mut stats = Stats::default();
         // Each member has its own film, which holds only whole pieces. They are added to the caller's film at the
         // end, so an error leaves that film unchanged.
@@ -197,10 +177,10 @@ impl Renderer for Together {
         self.members.iter_mut().for_each(|member| member.added = 0);
         self.departed.clear();
         loop {
-            let speeds: Vec<Option<f64>> = self.members.iter().map(|m| m.samples_per_second).collect();
-            let members = self.members.iter_mut().enumerate();
-            let shares: Vec<_> = members.map(|(index, member)| (member, Pace::of(index, &speeds))).collect();
-            let outcomes = shared(shares, |(member, pace)| work_off(member, pace, job, &pieces, cancel));
+            let speeds = self.members.iter().map(|member| member.samples_per_second).collect();
+            pieces.get_mut().unwrap_or_else(PoisonError::into_inner).speeds = speeds;
+            let members: Vec<_> = self.members.iter_mut().enumerate().collect();
+            let outcomes = shared(members, |(index, member)| work_off(member, index, job, &pieces, cancel));
             let mut failed = Vec::new();
             for (index, outcome) in outcomes.into_iter().enumerate() {
                 let outcome = outcome.unwrap_or_else(|payload| {
@@ -232,7 +212,7 @@ impl Renderer for Together {
 /// Takes pieces until none is left, and collects their samples.
 fn work_off(
     member: &mut Member,
-    pace: Pace,
+    index: usize,
     job: &RenderJob,
     pieces: &Mutex<Pieces>,
     cancel: &AtomicBool,
@@ -247,7 +227,7 @@ fn work_off(
             outcome.error = Some(RenderError::Cancelled);
             return outcome;
         }
-        let piece = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(pace);
+        let piece = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(index);
         let is_last = piece.is_none();
         if is_last && taken.is_empty() {
             return outcome;
@@ -296,11 +276,14 @@ mod tests {
 
     #[test]
     fn pieces_cover_a_range_once_in_whole_grains() {
-        let mut pieces = Pieces { left: vec![6..50, 50..120], grain: 2 };
+        let speeds = vec![None, Some(2.0), Some(1.0)];
+        let mut pieces = Pieces { left: vec![6..50, 50..120], grain: 2, speeds };
         let mut covered = Vec::new();
         for turn in 0.. {
-            let share = [0.0, 0.25, 0.5, 0.1][turn % 4];
-            let Some(piece) = pieces.take(Pace { share, fastest_other: 1.0 }) else { break };
+            if pieces.left.is_empty() {
+                break;
+            }
+            let Some(piece) = pieces.take(turn % 3) else { continue };
             assert_eq!((piece.start % 2, piece.end % 2), (0, 0), "{piece:?} tears a pair of samples apart");
             if turn == 2 {
                 pieces.left.push(piece);
@@ -315,11 +298,10 @@ mod tests {
     #[test]
     fn piece_size_follows_relative_speed() {
         // Half of what is left, times the share of the total speed: 3/4 and 1/4.
-        let speeds = [Some(30.0), Some(10.0), None];
-        let [fast, slow, new] = [0, 1, 2].map(|index| Pace::of(index, &speeds));
-        let take = |left: Vec<Range<u64>>, pace| {
-            let mut pieces = Pieces { left, grain: 2 };
-            (pieces.take(pace), pieces.left)
+        let [fast, slow, new] = [0, 1, 2];
+        let take = |left: Vec<Range<u64>>, member| {
+            let mut pieces = Pieces { left, grain: 2, speeds: vec![Some(30.0), Some(10.0), None] };
+            (pieces.take(member), pieces.left)
         };
         let one = |range: Range<u64>| -> Vec<Range<u64>> { std::iter::once(range).collect() };
         assert_eq!(take(one(100..164), fast), (Some(100..124), one(124..164)));
@@ -333,5 +315,8 @@ mod tests {
         // An odd last sample is its own piece.
         assert_eq!(take(one(8..9), fast), (Some(8..9), vec![]));
         assert_eq!(take(vec![], fast), (None, vec![]));
+        // The fastest takes it however close the others are.
+        let mut pieces = Pieces { left: one(8..9), grain: 2, speeds: vec![Some(10.0), Some(9.0)] };
+        assert_eq!((pieces.take(1), pieces.take(0)), (None, Some(8..9)));
     }
 }

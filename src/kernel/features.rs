@@ -1,13 +1,13 @@
-//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of the CPU's
-//! kernels that implements it, its pipeline override on the GPU, and its name in summaries.
+//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, the part of a kernel
+//! that implements it, and its pipeline override on the GPU.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::job::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
 use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule};
 
-/// Parts of the CPU's kernels that are compiled in or left out: bits of a const parameter. Every combination must be
-/// compiled, so there are fewer parts than features.
+/// Parts of a kernel, as reports name them. On the CPU they are compiled in or left out: bits of a const parameter. Every
+/// combination must be compiled, so there are fewer parts than features.
 pub mod parts {
     /// Spheres with both roots, and refraction.
     pub const GLASS: u32 = 1;
@@ -28,10 +28,8 @@ pub mod parts {
         (LENS, "lens"),
         (EXTREMES, "extremes"),
         (HIERARCHY, "hierarchy"),
-        (RULES, STAGE_RULES),
+        (RULES, "stage rules"),
     ];
-
-    pub(super) const STAGE_RULES: &str = "stage rules";
 
     /// Describes a kernel with these parts.
     pub fn describe(parts: u32) -> String {
@@ -73,11 +71,10 @@ const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
 const GENTLE_DEPTH: u32 = 64;
 
 /// A feature's type, as a pipeline override.
-pub trait Override: Copy + Eq {
-    const TYPE: &'static str;
+trait Override: Copy {
+    const TYPE: &'static str = "u32";
     /// The value on the device; booleans become 0 or 1.
     fn number(self) -> u32;
-    fn literal(self) -> String;
 }
 
 impl Override for bool {
@@ -85,29 +82,25 @@ impl Override for bool {
     fn number(self) -> u32 {
         u32::from(self)
     }
-    fn literal(self) -> String {
-        self.to_string()
-    }
 }
 
 impl Override for u32 {
-    const TYPE: &'static str = "u32";
     fn number(self) -> u32 {
         self
-    }
-    fn literal(self) -> String {
-        format!("{self}u")
     }
 }
 
 impl<T: Tag> Override for T {
-    const TYPE: &'static str = "u32";
     fn number(self) -> u32 {
         self.tag()
     }
-    fn literal(self) -> String {
-        format!("{}u", self.tag())
-    }
+}
+
+/// The declaration of the override for the feature `name`.
+fn declared<T: Override>(name: &str, default: T) -> String {
+    let number = default.number();
+    let literal = if T::TYPE == "bool" { (number != 0).to_string() } else { format!("{number}u") };
+    format!("override {}: {} = {literal};\n", name.to_uppercase(), T::TYPE)
 }
 
 /// Selects the last of one or two values.
@@ -121,9 +114,9 @@ macro_rules! last {
 }
 
 /// Declares [`Features`]. Each feature has a type and, in brackets: the value that needs no kernel code (`off`); the
-/// value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
-/// kernels that implements it (`cpu`); and the labels of its values from 1 on (`says`). An expression then computes the
-/// value from the job and its spheres. A feature's override in WGSL is its name in capitals.
+/// value in a kernel that leaves nothing out, if it does not affect the samples (`general`); and the part of a kernel
+/// that implements it (`part`). An expression then computes the value from the job and its spheres. A feature's override
+/// in WGSL is its name in capitals.
 macro_rules! features {
     (
         |$job:ident, $spheres:ident|
@@ -132,8 +125,7 @@ macro_rules! features {
             $name:ident: $type:ty [
                 off $off:expr
                 $(, general $general:expr)?
-                $(, cpu $part:ident)?
-                $(, says $($labels:literal)+)?
+                $(, part $part:ident)?
             ] = $answer:expr;
         )*
     ) => {
@@ -161,7 +153,7 @@ macro_rules! features {
                 Features { $($name: last!(self.$name $(, $general)?),)* }
             }
 
-            /// The parts of the CPU's kernels that implement these features: bits of [`parts`].
+            /// The parts of a kernel that implement these features: bits of [`parts`].
             pub fn parts(&self) -> u32 {
                 0 $(| if self.$name == $off { 0 } else { last!(parts::NONE $(, parts::$part)?) })*
             }
@@ -173,70 +165,45 @@ macro_rules! features {
 
             /// The declarations of the overrides, with these values as defaults.
             pub(super) fn wgsl(&self) -> String {
-                [$(format!(
-                    "override {}: {} = {};\n",
-                    stringify!($name).to_uppercase(), <$type as Override>::TYPE, self.$name.literal(),
-                )),*].concat()
-            }
-
-            /// For each feature that is off: the part of the CPU's kernels that implements it, and the label of its
-            /// value 1.
-            fn labels_off(&self) -> Vec<(u32, &'static str)> {
-                let switches = [$((
-                    last!(parts::NONE $(, parts::$part)?),
-                    self.$name == $off,
-                    label(true, &[$($($labels),+)?]),
-                )),*];
-                let off = switches.into_iter().filter(|(_, is_off, _)| *is_off);
-                off.map(|(part, _, label)| (part, label)).collect()
-            }
-
-            /// For each feature, the label of its value.
-            fn labels(&self) -> Vec<&'static str> {
-                vec![$(label(self.$name, &[$($($labels),+)?])),*]
+                [$(declared(stringify!($name), self.$name)),*].concat()
             }
         }
     };
 }
 
-fn label(value: impl Override, labels: &[&'static str]) -> &'static str {
-    let index = (value.number() as usize).checked_sub(1);
-    index.and_then(|index| labels.get(index)).copied().unwrap_or("")
-}
-
 features! {
     |job, spheres|
     /// The scene has Lambertian surfaces.
-    lambertian: bool [off false, general true, says "lambertian"] =
+    lambertian: bool [off false, general true] =
         occurs(job, |material| matches!(material, Material::Lambertian { .. }));
     /// The scene has metals.
-    metal: bool [off false, general true, says "metal"] =
+    metal: bool [off false, general true] =
         occurs(job, |material| matches!(material, Material::Metal { .. }));
     /// The scene has metals with fuzz.
-    fuzz: bool [off false, general true, says "fuzz"] = occurs(job, |material| material.effective_fuzz() > 0.0);
+    fuzz: bool [off false, general true] = occurs(job, |material| material.effective_fuzz() > 0.0);
     /// The scene has glass.
-    glass: bool [off false, general true, cpu GLASS, says "glass"] =
+    glass: bool [off false, general true, part GLASS] =
         occurs(job, |material| matches!(material, Material::Dielectric { .. }));
     /// The camera has a lens of nonzero radius.
-    lens: bool [off false, general true, cpu LENS, says "lens"] = job.camera().defocus_angle_degrees > 0.0;
+    lens: bool [off false, general true, part LENS] = job.camera().defocus_angle_degrees > 0.0;
     /// There are spheres that a ray can be inside of, or a hierarchy.
-    two_root: bool [off false, general true, cpu GLASS, says "two roots"] = spheres.two_root_count > 0;
+    two_root: bool [off false, general true, part GLASS] = spheres.two_root_count > 0;
     /// There are spheres described relative to a point on their surface.
-    anchored: bool [off false, general true, cpu EXTREMES, says "anchored"] = !spheres.anchored.is_empty();
+    anchored: bool [off false, general true, part EXTREMES] = !spheres.anchored.is_empty();
     /// The eye is on the surface of an anchored sphere, so that camera rays start there.
-    eye_on_surface: bool [off false, general true, cpu EXTREMES, says "eye on a surface"] =
+    eye_on_surface: bool [off false, general true, part EXTREMES] =
         spheres.anchored.iter().any(AnchoredSphere::is_under_eye);
     /// An anchored opaque sphere encloses every ray.
-    cavity: bool [off false, general true, cpu EXTREMES, says "cavity"] =
+    cavity: bool [off false, general true, part EXTREMES] =
         spheres.anchored.iter().any(|sphere| sphere.roots() == Roots::Farther);
     /// There are spheres that are small relative to their distance: hit points are found from the offset across the
     /// ray.
-    specks: bool [off false, cpu EXTREMES, says "specks"] = spheres.has_specks;
+    specks: bool [off false, part EXTREMES] = spheres.has_specks;
     /// There is glass whose critical angle needs more precision than a rounded cosine has, or has to hold for many
     /// rays.
-    steep_glass: bool [off false, cpu EXTREMES, says "steep glass"] = has_steep_glass(job);
+    steep_glass: bool [off false, part EXTREMES] = has_steep_glass(job);
     /// The scene has a hierarchy.
-    hierarchy: bool [off false, cpu HIERARCHY, says "hierarchy"] = spheres.has_hierarchy;
+    hierarchy: bool [off false, part HIERARCHY] = spheres.has_hierarchy;
     /// The spheres fit the uniform buffer, and the next two counts are those of the scene.
     few_spheres: bool [off false, general false] = are_few(spheres);
     /// Number of spheres with one root, if there are few spheres.
@@ -251,40 +218,22 @@ features! {
     /// The sampler, which generates the numbers of a sample.
     sampler: SamplerKind [off SamplerKind::Sobol] = job.settings().sampler;
     /// Samples are spread over the pixel.
-    antialiasing: bool [off true, cpu RULES] = job.rules().antialiasing;
+    antialiasing: bool [off true, part RULES] = job.rules().antialiasing;
     /// Any rays are traced.
     rays: bool [off true] = job.rules().shading != Shading::ImageGradient;
     /// How rays leave the surface that they start on.
-    surface: SurfaceRule [off SurfaceRule::Exact, cpu RULES, says "acne" "the book's arithmetic"] = job.rules().surface;
+    surface: SurfaceRule [off SurfaceRule::Exact, part RULES] = job.rules().surface;
     /// Lambertian surfaces scatter uniformly over the hemisphere.
-    hemisphere: bool [off false, cpu RULES, says "hemisphere"] = job.rules().diffuse == Diffuse::Hemisphere;
+    hemisphere: bool [off false, part RULES] = job.rules().diffuse == Diffuse::Hemisphere;
     /// The reflectance depends on the picture strip.
-    reflectance_strips: bool [off false, cpu RULES, says "strips"] = job.rules().reflectance_strips;
+    reflectance_strips: bool [off false, part RULES] = job.rules().reflectance_strips;
     /// Paths may be too long for one dispatch of the GPU, and the threads of a workgroup share its blocks of samples. The
     /// GPU decides this.
     aside: bool [off true, general true] = true;
     /// What a ray contributes.
-    shading: Shading [off Shading::Path, cpu RULES] = job.rules().shading;
+    shading: Shading [off Shading::Path, part RULES] = job.rules().shading;
     /// The laws that glass obeys.
-    dielectric_laws: DielectricLaws [off DielectricLaws::Schlick, cpu RULES] = job.rules().dielectric;
-}
-
-impl Features {
-    /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
-    pub fn describe(&self) -> String {
-        let labels = self.labels().into_iter().filter(|label| !label.is_empty()).map(str::to_owned);
-        let count = self.opaque_count + self.two_root_count;
-        let few = self.few_spheres.then(|| format!("{count} spheres in constants"));
-        labels.chain(few).collect::<Vec<_>>().join(", ")
-    }
-
-    /// Names what a kernel with exactly these features leaves out. The rules of the stages count as one.
-    pub fn left_out(&self) -> Vec<&'static str> {
-        let is_listed = |(part, label): &(u32, &'static str)| !label.is_empty() && *part != parts::RULES;
-        let off = self.labels_off().into_iter().filter(is_listed).map(|(_, label)| label);
-        let rules = (self.parts() & parts::RULES == 0).then_some(parts::STAGE_RULES);
-        off.chain(rules).collect()
-    }
+    dielectric_laws: DielectricLaws [off DielectricLaws::Schlick, part RULES] = job.rules().dielectric;
 }
 
 fn occurs(job: &RenderJob, is_such: impl Fn(&Material) -> bool) -> bool {

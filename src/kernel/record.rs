@@ -19,9 +19,6 @@ pub trait Record: Shared {
     fn declaration() -> String {
         let mut text = format!("struct {} {{\n", Self::wgsl());
         for field in Self::fields() {
-            for line in field.docs {
-                text += &format!("    //{line}\n");
-            }
             text += &format!("    {}: {},\n", field.name, field.wgsl);
         }
         text + "}\n"
@@ -36,8 +33,6 @@ pub struct Field {
     pub wgsl: String,
     /// Offset in the Rust struct, bytes.
     pub offset: usize,
-    /// Lines of the doc comment.
-    pub docs: &'static [&'static str],
 }
 
 /// A slice of records as the words of a shader's array.
@@ -172,7 +167,6 @@ macro_rules! record {
                     name: stringify!($field),
                     wgsl: named!(<$type as Shared>::wgsl() $(, $other.to_owned())?),
                     offset: std::mem::offset_of!(Self, $field),
-                    docs: &[$($doc),*],
                 }),*]
             }
         }

@@ -93,10 +93,10 @@ impl Facts {
         ))
     }
 
-    /// Compares spheres of similar size and place: within a cell, and across a border if one is close to it.
+    /// Compares spheres of similar size and place.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
-        let mut cells: Vec<(u64, u32)> =
-            spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
+        let marked = |(index, sphere)| marks(sphere).into_iter().map(move |mark| (mark, index as u32));
+        let mut cells: Vec<(u64, u32)> = spheres.par_iter().enumerate().flat_map_iter(marked).collect();
         cells.par_sort_unstable();
         for cell in cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > 1) {
             let members = self.uncovered(spheres, cell.iter().map(|(_, index)| *index).collect());
@@ -104,21 +104,6 @@ impl Facts {
             for (place, a) in members.iter().enumerate() {
                 members[place + 1..].iter().take(next).for_each(|b| self.note_layer(spheres, *a, *b));
             }
-        }
-        let occupied = Occupied::by(&cells);
-        let beyond_borders: Vec<[u32; 2]> = spheres
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(|(index, sphere)| {
-                let index = index as u32;
-                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
-                let others = marks.flat_map(|mark| members_of(&cells, mark).take(CELL_LIMIT));
-                // Coordinates far larger than the radius give the next cell the same number.
-                others.filter(move |other| *other != index).map(move |other| [index, other])
-            })
-            .collect();
-        for [a, b] in beyond_borders {
-            self.note_layer(spheres, a, b);
         }
     }
 
@@ -178,49 +163,25 @@ fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unreso
     (is_thin || closes).then_some(Unresolved { layer, limit })
 }
 
-fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
-    let first = cells.partition_point(|cell| cell.0 < mark);
-    cells[first..].iter().take_while(move |cell| cell.0 == mark).map(|(_, index)| *index)
-}
-
-/// Rules out most empty cells without a search: one bit for all marks with the same low bits.
-struct Occupied {
-    bits: Vec<u64>,
-}
-
-impl Occupied {
-    fn by(cells: &[(u64, u32)]) -> Self {
-        // Sixteen bits per sphere: one in sixteen empty cells passes the filter.
-        let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
-        for (mark, _) in cells {
-            let (word, bit) = occupied.place(*mark);
-            occupied.bits[word] |= bit;
-        }
-        occupied
-    }
-
-    fn place(&self, mark: u64) -> (usize, u64) {
-        ((mark >> 6) as usize & (self.bits.len() - 1), 1 << (mark & 63))
-    }
-
-    fn may_hold(&self, mark: u64) -> bool {
-        let (word, bit) = self.place(mark);
-        self.bits[word] & bit != 0
-    }
-}
-
 /// How far outside a cell, in cells, a sphere may be and still form a layer with one inside.
 const REACH: f64 = 2.0 * LAYER_SHARE;
 
 /// Moves radii, which are often powers of two, away from the borders between sizes.
 const SIZE_SHIFT: f64 = 0.37;
 
-/// The mark of a sphere's cell. A cell holds spheres of similar size and place and is about as wide as their radius, so
-/// in an ordinary scene two spheres rarely share one.
-fn own_mark(sphere: &Sphere) -> u64 {
-    let size = (sphere.radius.log2() + SIZE_SHIFT).floor();
-    let [x, y, z] = (sphere.center / size.exp2()).floor().to_array();
-    mark([size, x, y, z])
+/// The marks of a sphere's cell and of the neighbouring cells that it is close to. A cell holds spheres of similar size
+/// and place and is about as wide as their radius, so in an ordinary scene two spheres rarely share one.
+fn marks(sphere: &Sphere) -> Vec<u64> {
+    let mut marks = Vec::new();
+    for size in cells_near(sphere.radius.log2() + SIZE_SHIFT) {
+        let [x, y, z] = (sphere.center / size.exp2()).to_array().map(cells_near);
+        for x in x {
+            for y in y.clone() {
+                marks.extend(z.clone().map(|z| mark([size, x, y, z])));
+            }
+        }
+    }
+    marks
 }
 
 fn mark(cell: [f64; 4]) -> u64 {
@@ -230,36 +191,14 @@ fn mark(cell: [f64; 4]) -> u64 {
     })
 }
 
-/// The marks of neighbouring cells that a sphere is close to.
-fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
-    let mut marks = Vec::new();
-    let sizes = cells_near(sphere.radius.log2() + SIZE_SHIFT);
-    for (which, size) in sizes.into_iter().flatten().enumerate() {
-        let [x, y, z] = (sphere.center / size.exp2()).to_array().map(cells_near);
-        if which == 0 && [x, y, z].iter().all(|cells| cells[1].is_none()) {
-            continue;
-        }
-        let all = x.into_iter().flatten().flat_map(|x| {
-            y.into_iter().flatten().flat_map(move |y| z.into_iter().flatten().map(move |z| [x, y, z]))
-        });
-        // The first mark is that of the sphere's own cell.
-        marks.extend(all.skip(usize::from(which == 0)).map(|[x, y, z]| mark([size, x, y, z])));
-    }
-    marks
-}
-
 /// The number's cell, and the next one if the number is close to the border.
-fn cells_near(number: f64) -> [Option<f64>; 2] {
+fn cells_near(number: f64) -> impl Iterator<Item = f64> + Clone {
     let cell = number.floor();
     let within = number - cell;
-    let next = if within < REACH {
-        Some(cell - 1.0)
-    } else if within > 1.0 - REACH {
-        Some(cell + 1.0)
-    } else {
-        None
-    };
-    [Some(cell), next]
+    let step = f64::from(within > 1.0 - REACH) - f64::from(within < REACH);
+    // A number far larger than 1 gives the next cell the same number.
+    let next = Some(cell + step).filter(|next| *next != cell);
+    [Some(cell), next].into_iter().flatten()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 
 use super::bounded::Bounded;
 use super::parted;
-use crate::kernel::{COUNT_MASK, Node, Real, STACK_SIZE};
+use crate::kernel::{Node, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::BvhBuildParams;
@@ -143,19 +143,12 @@ fn in_walking_order(mut tree: Bvh2) -> Bvh2 {
 
 /// Nodes on the longest path from the root to a leaf.
 fn depth(nodes: &[Bvh2Node]) -> usize {
-    levels(|index| {
-        let node = &nodes[index as usize];
-        (!node.is_leaf()).then_some(node.first_index)
-    })
-}
-
-/// Number of levels of a tree. `first_child` gives the first of a node's two adjacent children.
-fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
     let mut deepest = 0;
-    let mut open = vec![(0_u32, 1_usize)];
+    let mut open = vec![(0_usize, 1_usize)];
     while let Some((index, depth)) = open.pop() {
         deepest = deepest.max(depth);
-        if let Some(first) = first_child(index) {
+        if !nodes[index].is_leaf() {
+            let first = nodes[index].first_index as usize;
             open.extend([(first, depth + 1), (first + 1, depth + 1)]);
         }
     }
@@ -166,14 +159,6 @@ impl<R> Hierarchy<R> {
     /// Whether a thorough build is worth its time if this many spheres are traced for long.
     pub fn is_improvable(&self) -> bool {
         IMPROVABLE.contains(&self.ranks.len())
-    }
-
-    /// Nodes on the longest path from the root to a leaf.
-    pub fn depth(&self) -> usize {
-        levels(|index| {
-            let node = &self.nodes[index as usize];
-            (node.count & COUNT_MASK == 0).then_some(node.first)
-        })
     }
 }
 
@@ -196,7 +181,7 @@ fn params(spheres: usize, leaves: Leaves, effort: Effort) -> BvhBuildParams {
 
 /// The axis along which two sibling boxes are farthest apart, in bits 30 and 31. Bit 29 is set if the second box comes
 /// before the first on that axis.
-fn parting_axis(nodes: &[obvhs::bvh2::node::Bvh2Node], first: usize) -> u32 {
+fn parting_axis(nodes: &[Bvh2Node], first: usize) -> u32 {
     let apart = nodes[first + 1].aabb().center() - nodes[first].aabb().center();
     let size = apart.abs();
     let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);

@@ -68,45 +68,34 @@ pub struct PreparedScene<R> {
 impl<R: Real> PreparedScene<R> {
     /// Sorts, anchors and rounds the scene, and builds a hierarchy if there are enough spheres.
     pub fn new(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, &AtomicBool::new(false))
+        Self::with_hierarchy(job, Some(Effort::Quick), &AtomicBool::new(false))
     }
 
     /// Like [`PreparedScene::new`], with the best possible hierarchy, which may take many times as long. Both render
     /// the same bits.
     pub fn thorough(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(
-            job,
-            HIERARCHY_MIN_SPHERES,
-            Effort::Thorough,
-            &AtomicBool::new(false),
-        )
+        Self::with_hierarchy(job, Some(Effort::Thorough), &AtomicBool::new(false))
     }
 
     /// Like [`PreparedScene::new`], but never builds a hierarchy, for comparisons.
     pub fn as_list(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, usize::MAX, Effort::Quick, &AtomicBool::new(false))
+        Self::with_hierarchy(job, None, &AtomicBool::new(false))
     }
 
     /// Once `cancel` is set, the hierarchy is built in haste.
-    fn with_hierarchy_from(
-        job: &RenderJob,
-        least_spheres: usize,
-        effort: Effort,
-        cancel: &AtomicBool,
-    ) -> Self {
+    fn with_hierarchy(job: &RenderJob, effort: Option<Effort>, cancel: &AtomicBool) -> Self {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
-        let has_hierarchy = job.rules().surface == SurfaceRule::Exact
-            && groups.opaque.len() + groups.two_root.len() >= least_spheres;
-        let begin = Instant::now();
-        let (mut listed, mut hierarchy) = (groups.in_list_order(), None);
-        if has_hierarchy {
+        let (mut listed, mut hierarchy, mut hierarchy_time) = (groups.in_list_order(), None, Duration::ZERO);
+        let is_wanted = job.rules().surface == SurfaceRule::Exact && listed.len() >= HIERARCHY_MIN_SPHERES;
+        if let Some(effort) = effort.filter(|_| is_wanted) {
+            let begin = Instant::now();
             let spheres = listed.iter().map(|index| &job.scene().spheres[*index as usize]);
             let built = Hierarchy::build_unless(cancel, spheres, groups.origin, effort);
             listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
+            hierarchy_time = begin.elapsed();
         }
-        let hierarchy_time = if has_hierarchy { begin.elapsed() } else { Duration::ZERO };
         let (scene, settings) = (job.scene(), *job.settings());
         let one_root = groups.opaque.len();
         let packed = |(place, index): (usize, &u32)| {
@@ -118,7 +107,7 @@ impl<R: Real> PreparedScene<R> {
             [center.x, center.y, center.z, radius2].map(R::from_f64)
         };
         let mut opaque: Vec<[R; 4]> = listed.iter().enumerate().map(packed).collect();
-        let two_root = opaque.split_off(if has_hierarchy { 0 } else { one_root });
+        let two_root = opaque.split_off(if hierarchy.is_some() { 0 } else { one_root });
         let mut records = Vec::with_capacity(listed.len() + groups.anchored.len() + 1);
         records.extend(listed.iter().map(|i| shading_record(scene, *i, groups.origin, None)));
         let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
@@ -153,8 +142,7 @@ impl<R: Real> PreparedScene<R> {
             return None;
         }
         let followed = old.and_then(|(mut old, before)| old.follow(&before, job).then_some(old));
-        let prepared = followed
-            .unwrap_or_else(|| Self::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick, cancel));
+        let prepared = followed.unwrap_or_else(|| Self::with_hierarchy(job, Some(Effort::Quick), cancel));
         (!is_cancelled()).then_some(prepared)
     }
 
@@ -212,21 +200,6 @@ impl<R: Real> PreparedScene<R> {
     /// A warning about what single precision cannot represent, with numbers and a remedy.
     pub fn warning(&self) -> Option<&String> {
         self.warning.as_ref()
-    }
-
-    /// Memory that grows with the number of spheres.
-    pub fn bytes(&self) -> usize {
-        let Groups { opaque, two_root, .. } = &self.groups;
-        let indices = [opaque, two_root, &self.scene_index];
-        let packed = [&self.opaque, &self.two_root];
-        let nodes = self.hierarchy.as_ref().map_or(0, |hierarchy| {
-            size_of_val(hierarchy.nodes.as_slice()) + size_of_val(hierarchy.ranks.as_slice())
-        });
-        indices.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
-            + packed.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
-            + size_of_val(self.anchored.as_slice())
-            + size_of_val(self.records.as_slice())
-            + nodes
     }
 
     /// The spheres of `two_root` as in the scene. `job` must be the one that this scene was prepared from.

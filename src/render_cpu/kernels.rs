@@ -6,7 +6,9 @@
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
-use super::lanes::{Instructions, Lanes4, Lanes8, Lanes16, Reference, Scalar};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::Lanes16;
+use super::lanes::{Lanes, Lanes4, Lanes8, Reference, Scalar};
 use super::path::trace;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
@@ -41,69 +43,49 @@ pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
 pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
     let offered = offered(isa, lanes, needed);
-    match (isa, lanes) {
+    Some(match (isa, lanes) {
         (Isa::Portable, 1) if offered == GLASS => {
-            Some(Box::new(|prepared, work| trace::<_, GLASS>(Scalar::<false>, prepared, work)))
+            Box::new(|prepared, work| trace::<_, GLASS>(Scalar::<false>, prepared, work))
         }
-        (Isa::Portable, 1) => {
-            Some(Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)))
-        }
+        (Isa::Portable, 1) => Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)),
         #[cfg(target_arch = "x86_64")]
         (Isa::Sse42, _) => {
             let simd = level.as_sse4_2()?;
             match lanes {
-                1 if offered == GLASS => Some(scalar::<_, false, GLASS>(simd)),
-                1 => Some(scalar::<_, false, GENERAL>(simd)),
-                4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
-                4 => Some(four::<_, GENERAL>(simd)),
-                8 => Some(eight::<_, GENERAL>(simd)),
-                _ => None,
+                1 => with_glass(simd, Scalar::<false>, offered),
+                4 => with_glass(simd, Lanes4(simd), offered),
+                8 => compiled::<_, _, GENERAL>(simd, Lanes8(simd)),
+                _ => return None,
             }
         }
         #[cfg(target_arch = "x86_64")]
         (Isa::Avx2, _) | (Isa::Avx512, 1 | 4 | 8) => {
             let simd = level.as_avx2()?;
             match lanes {
-                1 if offered == GLASS => Some(scalar::<_, true, GLASS>(simd)),
-                1 => Some(scalar::<_, true, GENERAL>(simd)),
-                4 => Some(four::<_, GENERAL>(simd)),
-                8 if offered == OPAQUE => Some(eight::<_, OPAQUE>(simd)),
-                8 if offered == GLASS => Some(eight::<_, GLASS>(simd)),
-                8 if offered == FINISHED => Some(eight::<_, FINISHED>(simd)),
-                8 => Some(eight::<_, GENERAL>(simd)),
-                16 => Some(sixteen::<_, GENERAL>(simd)),
-                _ => None,
+                1 => with_glass(simd, Scalar::<true>, offered),
+                4 => compiled::<_, _, GENERAL>(simd, Lanes4(simd)),
+                8 => specialised(simd, Lanes8(simd), offered),
+                16 => compiled::<_, _, GENERAL>(simd, Lanes16(simd)),
+                _ => return None,
             }
         }
         #[cfg(target_arch = "x86_64")]
         (Isa::Avx512, 16) => {
             let simd = level.as_avx512()?;
-            Some(match offered {
-                OPAQUE => sixteen::<_, OPAQUE>(simd),
-                GLASS => sixteen::<_, GLASS>(simd),
-                FINISHED => sixteen::<_, FINISHED>(simd),
-                _ => sixteen::<_, GENERAL>(simd),
-            })
+            specialised(simd, Lanes16(simd), offered)
         }
         #[cfg(target_arch = "aarch64")]
         (Isa::Neon, _) => {
             let simd = level.as_neon()?;
             match lanes {
-                1 if offered == GLASS => Some(scalar::<_, true, GLASS>(simd)),
-                1 => Some(scalar::<_, true, GENERAL>(simd)),
-                4 if offered == OPAQUE => Some(four::<_, OPAQUE>(simd)),
-                4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
-                4 if offered == FINISHED => Some(four::<_, FINISHED>(simd)),
-                4 => Some(four::<_, GENERAL>(simd)),
-                8 if offered == OPAQUE => Some(eight::<_, OPAQUE>(simd)),
-                8 if offered == GLASS => Some(eight::<_, GLASS>(simd)),
-                8 if offered == FINISHED => Some(eight::<_, FINISHED>(simd)),
-                8 => Some(eight::<_, GENERAL>(simd)),
-                _ => None,
+                1 => with_glass(simd, Scalar::<true>, offered),
+                4 => specialised(simd, Lanes4(simd), offered),
+                8 => specialised(simd, Lanes8(simd), offered),
+                _ => return None,
             }
         }
-        _ => None,
-    }
+        _ => return None,
+    })
 }
 
 /// Returns the reference's kernel.
@@ -115,39 +97,29 @@ fn within(needed: u32, offered: u32) -> bool {
     needed & !offered == 0
 }
 
-fn scalar<S: Simd, const FUSED: bool, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |prepared, work| {
-        simd.vectorize(
-            #[inline(always)]
-            || trace::<_, PARTS>(Scalar::<FUSED>, prepared, work),
-        )
-    })
+/// The general variant and the one with glass.
+fn with_glass<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) -> Kernel<f32> {
+    match offered {
+        GLASS => compiled::<_, _, GLASS>(simd, lanes),
+        _ => compiled::<_, _, GENERAL>(simd, lanes),
+    }
 }
 
-fn four<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |prepared, work| {
-        simd.vectorize(
-            #[inline(always)]
-            || trace::<_, PARTS>(Lanes4(simd), prepared, work),
-        )
-    })
+/// All variants.
+fn specialised<S: Simd, L: Lanes<Real = f32>>(simd: S, lanes: L, offered: u32) -> Kernel<f32> {
+    match offered {
+        OPAQUE => compiled::<_, _, OPAQUE>(simd, lanes),
+        FINISHED => compiled::<_, _, FINISHED>(simd, lanes),
+        _ => with_glass(simd, lanes, offered),
+    }
 }
 
-fn eight<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
+/// The path loop, compiled for the instructions of `simd`.
+fn compiled<S: Simd, L: Lanes<Real = f32>, const PARTS: u32>(simd: S, lanes: L) -> Kernel<f32> {
     Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, PARTS>(Lanes8(simd), prepared, work),
-        )
-    })
-}
-
-#[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only x86-64 has 16 lanes"))]
-fn sixteen<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |prepared, work| {
-        simd.vectorize(
-            #[inline(always)]
-            || trace::<_, PARTS>(Lanes16(simd), prepared, work),
+            || trace::<_, PARTS>(lanes, prepared, work),
         )
     })
 }

@@ -4,7 +4,7 @@
 //! better one. It is taken between two passes and finds the same hits, so the film stays the same to the bit.
 
 use super::priority::give_way;
-use crate::job::render::RenderJob;
+use crate::job::render::{RenderJob, TRACING_BYTES_PER_SPHERE};
 use crate::prepared::PreparedScene;
 use crate::system::memory;
 use std::thread::JoinHandle;
@@ -14,9 +14,6 @@ use std::time::Duration;
 /// number of threads. It takes 4 to 15 times as long to build as the first one, on a thread of its own, and saves 7 to 22 %
 /// of the time (docs/benchmarks.md). By then, what it costs is about what it would have saved.
 const PATIENCE: u32 = 80;
-
-/// Memory for building, as a multiple of what the prepared scene takes.
-const MEMORY_RATIO: u64 = 3;
 
 /// Whether a better hierarchy is wanted, in work or in use.
 pub(super) struct Rebuild {
@@ -67,7 +64,7 @@ impl Rebuild {
         if self.is_settled || self.building.is_some() || threads < 2 || is_early {
             return;
         }
-        let bytes = MEMORY_RATIO * prepared.bytes() as u64;
+        let bytes = TRACING_BYTES_PER_SPHERE * prepared.records.len() as u64;
         let job_then = job.clone();
         let build = move || {
             if low_priority {

@@ -3,14 +3,10 @@
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
-use super::lanes::{Lanes, Scalar, V3, Wide};
-use super::path::SinglePath;
-use super::sphere::NONE;
-use super::work::{RefillBlock, RefillOrder, Work};
-use crate::film::PixelSum;
+use super::lanes::{Reference, Scalar};
+use super::path::record;
 use crate::job::render::RenderJob;
-use crate::kernel::Real;
-use crate::kernel::path_record::{PathRecord, RecordedHit, RecordedRay};
+use crate::kernel::path_record::PathRecord;
 use crate::prepared::PreparedScene;
 use fearless_simd::{Level, Simd};
 use std::sync::atomic::AtomicBool;
@@ -19,8 +15,8 @@ use std::sync::atomic::AtomicBool;
 /// `isa` is `None`.
 pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
     match isa {
-        Some(isa) => recorder(isa)(&BroadcastScene::new(PreparedScene::new(job)), pixel, index),
-        None => record(super::lanes::Reference, &BroadcastScene::new(PreparedScene::new(job)), pixel, index),
+        Some(isa) => PathRecorder::new(job, isa, None).record(pixel, index),
+        None => record(Reference, &BroadcastScene::new(PreparedScene::new(job)), pixel, index),
     }
 }
 
@@ -71,60 +67,6 @@ fn recorder(isa: Isa) -> Recorder {
         }),
         _ => Box::new(|prepared, pixel, index| record(Scalar::<false>, prepared, pixel, index)),
     }
-}
-
-/// Records a path using one lane.
-#[inline(always)]
-pub(super) fn record<L: Lanes>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
-    pixel: [u32; 2],
-    index: u64,
-) -> PathRecord {
-    let prepared = &broadcast.prepared;
-    let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
-    let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
-    let rows = sums.iter_mut().map(std::slice::from_mut).collect();
-    let order = RefillOrder::new(1, 1);
-    let mut work = Work::new(&blocks, &order, pixel, rows);
-    let mut path = SinglePath::start(l, broadcast, &mut work);
-    let in_scene = |position: V3<L::F>| {
-        let [x, y, z] = first_lane::<L>(position);
-        (glam::DVec3::new(x, y, z) + prepared.origin).to_array()
-    };
-    let mut rays: Vec<RecordedRay> = Vec::new();
-    while path.is_alive() {
-        let mut ray = RecordedRay {
-            origin: in_scene(path.origin()),
-            direction: first_lane::<L>(path.direction()),
-            throughput: first_lane::<L>(path.throughput()),
-            hit: None,
-        };
-        let (sphere, distance) = path.advance(l, broadcast, &mut work);
-        let goes_on = path.is_alive() && !path.is_absorbed();
-        if sphere != NONE {
-            let position = goes_on.then(|| in_scene(path.origin()));
-            let sphere = prepared.scene_index[sphere as usize] as usize;
-            ray.hit = Some(RecordedHit { sphere, distance, position });
-        }
-        rays.push(ray);
-        // The last step of an absorbed path would add nothing.
-        if !goes_on {
-            break;
-        }
-    }
-    let mut total = PixelSum::default();
-    sums.iter().for_each(|sum| total.add(*sum));
-    PathRecord { rays, radiance: total.radiance() }
-}
-
-#[inline(always)]
-fn first_lane<L: Lanes>(v: V3<L::F>) -> [f64; 3] {
-    [v.x, v.y, v.z].map(|component| {
-        let mut buffer = Wide::default();
-        L::store(component, &mut buffer);
-        buffer.0[0].to_f64()
-    })
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::tiles::tile_side;
 use super::work::TileStats;
 use crate::film::{Film, FilmError};
 use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
-use crate::kernel::{Real, parts};
+use crate::kernel::{Features, Real, parts};
 use crate::prepared::PreparedScene;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -108,22 +108,16 @@ impl Renderer for CpuRenderer {
     }
 
     fn kernel(&self) -> KernelInfo {
-        let (needed, contents, hierarchy_time) = match &self.prepared {
-            Some(Prepared::Single(traced, _)) => {
-                let prepared = &traced.prepared;
-                let contents = self.packets.map_or(parts::ALL, |(isa, lanes)| {
-                    kernels::offered(isa, lanes, self.wanted_parts(prepared))
-                });
-                (prepared.features.parts(), contents, prepared.hierarchy_time)
-            }
-            Some(Prepared::Double(traced, _)) => {
-                (traced.prepared.features.parts(), parts::ALL, traced.prepared.hierarchy_time)
-            }
+        let (features, hierarchy_time) = match &self.prepared {
+            Some(Prepared::Single(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
+            Some(Prepared::Double(traced, _)) => (traced.prepared.features, traced.prepared.hierarchy_time),
             None => return KernelInfo::default(),
         };
-        let (present, needed) = (parts::describe(contents), parts::describe(needed));
-        let about = if needed == present { present.clone() } else { format!("{present} (needed: {needed})") };
-        KernelInfo { about, present, left_out: parts::left_out(contents), hierarchy_time }
+        let offered = |(isa, lanes)| kernels::offered(isa, lanes, self.wanted_parts(&features));
+        let contents = self.packets.map_or(parts::ALL, offered);
+        let (present, needed) = (parts::describe(contents), parts::describe(features.parts()));
+        let about = if needed == present { present } else { format!("{present} (needed: {needed})") };
+        KernelInfo { about, left_out: parts::left_out(contents), hierarchy_time }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
@@ -132,32 +126,25 @@ impl Renderer for CpuRenderer {
         }
         self.occupancy = TileOccupancy::default();
         let before = self.job.take();
-        self.prepared = Some(match (self.packets, self.prepared.take()) {
-            (Some((isa, lanes)), old) => {
-                let old = if let Some(Prepared::Single(broadcast, _)) = old {
-                    Some(broadcast.prepared)
-                } else {
-                    None
-                };
-                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
-                let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
+        let (single, double) = match self.prepared.take() {
+            Some(Prepared::Single(old, _)) => (Some(old.prepared), None),
+            Some(Prepared::Double(old, _)) => (None, Some(old.prepared)),
+            None => (None, None),
+        };
+        self.prepared = Some(match self.packets {
+            Some((isa, lanes)) => {
+                let prepared = self.renewed(single.zip(before), job, cancel)?;
                 self.messages = prepared.warning().cloned().into_iter().collect();
                 self.rebuild.note_prepared(&prepared);
-                let wanted = self.wanted_parts(&prepared);
+                let wanted = self.wanted_parts(&prepared.features);
                 let kernel = kernels::kernel(isa, lanes, wanted).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
                     reason: format!("there is no kernel for {lanes} lanes of {isa}"),
                 })?;
                 Prepared::Single(Box::new(BroadcastScene::new(prepared)), kernel)
             }
-            (None, old) => {
-                let old = if let Some(Prepared::Double(broadcast, _)) = old {
-                    Some(broadcast.prepared)
-                } else {
-                    None
-                };
-                let made = || PreparedScene::renewed(cancel, old.zip(before), job);
-                let prepared = self.threads.install(made).ok_or(RenderError::Cancelled)?;
+            None => {
+                let prepared = self.renewed(double.zip(before), job, cancel)?;
                 Prepared::Double(Box::new(BroadcastScene::new(prepared)), kernels::reference_kernel())
             }
         });
@@ -254,8 +241,17 @@ impl CpuRenderer {
         Some(PassTracer { threads: &self.threads, prepared, tiles_to_panic: self.tiles_to_panic.as_ref() })
     }
 
-    fn wanted_parts<R: Real>(&self, prepared: &PreparedScene<R>) -> u32 {
-        if self.general { parts::ALL } else { prepared.features.parts() }
+    fn renewed<R: Real>(
+        &self,
+        old: Option<(PreparedScene<R>, RenderJob)>,
+        job: &RenderJob,
+        cancel: &AtomicBool,
+    ) -> Result<PreparedScene<R>, RenderError> {
+        self.threads.install(|| PreparedScene::renewed(cancel, old, job)).ok_or(RenderError::Cancelled)
+    }
+
+    fn wanted_parts(&self, features: &Features) -> u32 {
+        if self.general { parts::ALL } else { features.parts() }
     }
 
     /// Goes on with the better hierarchy if it has been built.

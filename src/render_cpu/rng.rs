@@ -1,4 +1,9 @@
-//! The numbers of a sample, lane by lane: [`crate::kernel::sampling`] for packets.
+//! The numbers of a sample, lane by lane.
+//!
+//! [`laine_karras`] and [`pascal`] work on reversed bits, where Owen scrambling is an integer hash and the first Sobol
+//! dimension is the index itself. Scrambling the reversed index shuffles the sequence within each aligned power-of-two
+//! block and moves the block as a whole. The pair `(u, pascal(u))` is then a point of a moved Sobol net. Every aligned
+//! block of samples is such a net, and blocks of different bounces and pixels are independent.
 //!
 //! Twin: shaders/rng.wgsl
 
@@ -6,7 +11,7 @@ use super::lanes::Lanes;
 use crate::job::render::{RenderSettings, SamplerKind};
 use crate::kernel::sampling::{GOLDEN_RATIO, HalfKey, LENS_BLOCK};
 
-/// Hashes 32 bits to 32 bits; a bijection.
+/// Hashes 32 bits to 32 bits; a bijection: [`crate::kernel::sampling::mix32`].
 #[inline(always)]
 pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
     let x = (x ^ (x >> 16)) * l.splat_u(0x7FEB_352D);
@@ -14,7 +19,7 @@ pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
     x ^ (x >> 16)
 }
 
-/// Hashes four numbers to four numbers.
+/// Hashes four numbers to four numbers: [`crate::kernel::sampling::pcg4d`].
 #[inline(always)]
 pub fn pcg4d<L: Lanes>(l: L, v: [L::U; 4]) -> [L::U; 4] {
     let (a, c) = (l.splat_u(1_664_525), l.splat_u(1_013_904_223));
@@ -30,7 +35,11 @@ fn stir<L: Lanes>([x, y, z, w]: [L::U; 4]) -> [L::U; 4] {
     [x, y, z, w + y * z]
 }
 
-/// Owen scrambling on reversed bits.
+/// Owen's nested uniform scrambling, on reversed bits: each bit is flipped or kept depending on a hash of the bits below
+/// it.
+///
+/// Source: Laine and Karras, "Stratified Sampling for Stochastic Transparency", EGSR 2011; constants from Vegdahl,
+/// "Building a Better LK Hash", 2021.
 #[inline(always)]
 pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
     let x = x ^ (x * l.splat_u(0x3D20_ADEA));
@@ -40,7 +49,8 @@ pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
     x ^ (x * l.splat_u(0x53A2_2864))
 }
 
-/// Computes the second Sobol coordinate from the first.
+/// Computes the second Sobol coordinate from the first. It is the product with Pascal's triangle modulo 2, which is a
+/// Kronecker power and therefore takes five steps.
 #[inline(always)]
 pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
     let u = u ^ (u << 16);
@@ -65,7 +75,7 @@ pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
     stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
 }
 
-/// The stream of a pixel's camera rays, lane by lane: [`HalfKey::of_pixel`].
+/// The stream of a pixel's camera rays: 0 for the sampler that hashes the pixel itself.
 #[inline(always)]
 pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
     match half_key.bits() {

@@ -101,19 +101,12 @@ impl AdapterInfo {
     }
 
     /// The sort key for adapters: the smallest comes first.
-    fn rank(&self) -> (bool, bool, u8, u8) {
-        let kind = match self.kind {
-            "discrete GPU" => 0,
-            "integrated GPU" => 1,
-            "virtual GPU" => 2,
-            _ => 3,
-        };
+    fn rank(&self) -> (bool, bool, usize, usize) {
+        let kinds = ["discrete GPU", "integrated GPU", "virtual GPU"];
+        let kind = kinds.iter().position(|kind| *kind == self.kind).unwrap_or(kinds.len());
         // Vulkan's drivers compile kernels in a second; Direct3D's FXC can take minutes.
-        let backend = match self.backend.as_str() {
-            "GL" => 2,
-            "DX12" => 1,
-            _ => 0,
-        };
+        let backend =
+            ["DX12", "GL"].iter().position(|backend| *backend == self.backend).map_or(0, |place| place + 1);
         (self.lacks.is_some(), self.is_software, kind, backend)
     }
 }

@@ -1,8 +1,6 @@
 //! The film's sums on their way from the device into the film on the host.
 
-use super::failed;
 use crate::film::Film;
-use crate::job::render::RenderError;
 use rayon::prelude::*;
 
 /// 64-bit words per pixel, one per channel.
@@ -10,11 +8,6 @@ pub(super) const PIXEL_WORDS: usize = 3;
 
 /// Pixels that a host thread adds at a time.
 const PIXELS_AT_ONCE: usize = 4096;
-
-/// The bytes of a staging buffer that is mapped.
-pub(super) fn view(staging: &wgpu::Buffer) -> Result<wgpu::BufferView, RenderError> {
-    staging.get_mapped_range(..).map_err(|error| failed(format!("reading results: {error}")))
-}
 
 /// Adds a slab's sums, half by half, to the film, starting at row `first_row`.
 pub(super) fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {

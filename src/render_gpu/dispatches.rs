@@ -91,11 +91,16 @@ struct Slot {
 
 impl Slot {
     fn new(gpu: &Gpu, size: u64) -> Result<Self, String> {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let aside = gpu.buffer("paths put aside", size, usage)?;
-        let group = gpu.bind(&gpu.layouts.words, &[&aside]);
+        let (aside, group) = storage_of_aside(gpu, size)?;
         Ok(Slot { receipt: Receipt::new(gpu)?, aside, group, is_littered: false })
     }
+}
+
+fn storage_of_aside(gpu: &Gpu, size: u64) -> Result<(wgpu::Buffer, wgpu::BindGroup), String> {
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    let aside = gpu.buffer("paths put aside", size, usage)?;
+    let group = gpu.bind(&gpu.layouts.words, &[&aside]);
+    Ok((aside, group))
 }
 
 /// The dispatches in flight, and what was learnt from completed ones.
@@ -179,9 +184,8 @@ impl Dispatches {
         let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
         for slot in &mut self.slots {
             if slot.aside.size() < size {
-                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-                slot.aside = gpu.buffer("paths put aside", size, usage)?;
-                slot.group = gpu.bind(&gpu.layouts.words, &[&slot.aside]);
+                // The receipt may belong to a dispatch in flight.
+                (slot.aside, slot.group) = storage_of_aside(gpu, size)?;
             }
         }
         Ok(())

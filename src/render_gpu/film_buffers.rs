@@ -1,11 +1,11 @@
 //! The film on the device. It stays there from pass to pass. On request it is copied to staging buffers and cleared;
 //! the copy is transferred to the host while the device continues tracing.
 
-use super::arrival::{PIXEL_WORDS, add_rows, view};
+use super::arrival::add_rows;
 use super::device::Gpu;
 use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, tile_size};
-use super::readback::{Mapping, asked, check_mapped};
+use super::readback::{Mapping, asked, view};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, PixelSum, SampleRanges};
 use crate::job::render::{RenderError, RenderSettings, Stats};
@@ -35,7 +35,8 @@ struct Leaving {
     samples: SampleRanges,
     trace: Duration,
     submission: wgpu::SubmissionIndex,
-    mappings: Vec<Mapping>,
+    slabs: Vec<Mapping>,
+    counters: Mapping,
 }
 
 /// The buffers of a film, and which samples they contain.
@@ -209,9 +210,10 @@ impl FilmBuffers {
         encoder.copy_buffer_to_buffer(&self.counters, 0, &self.counters_staging, 0, self.counters.size());
         self.clear(&mut encoder);
         let submission = gpu.queue.submit([encoder.finish()]);
-        let mappings = self.stagings().map(|staging| asked(staging, staging.size())).collect();
+        let slabs = self.slabs.iter().map(|slab| asked(&slab.staging)).collect();
+        let counters = asked(&self.counters_staging);
         let (samples, trace) = (std::mem::take(&mut self.traced), std::mem::take(&mut self.trace));
-        self.leaving = Some(Leaving { samples, trace, submission, mappings });
+        self.leaving = Some(Leaving { samples, trace, submission, slabs, counters });
     }
 
     /// Waits for the transfer in progress and adds its samples to the film.
@@ -221,34 +223,32 @@ impl FilmBuffers {
     pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
         gpu.wait(&leaving.submission).map_err(failed)?;
-        leaving.mappings.iter().try_for_each(check_mapped).map_err(failed)?;
+        let counters = view(&self.counters_staging, &leaving.counters).map_err(failed)?;
+        let views = self.slabs.iter().zip(&leaving.slabs).map(|(slab, mapping)| view(&slab.staging, mapping));
+        let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
         if let Some(range) = leaving.samples.iter().find_map(|range| film.samples().overlap(&range)) {
+            drop((counters, views));
             self.stagings().for_each(wgpu::Buffer::unmap);
             return Err(crate::film::FilmError::Overlap { range }.into());
         }
         let begin = Instant::now();
-        let counters: GpuCounters = bytemuck::pod_read_unaligned(&view(&self.counters_staging)?);
-        let views: Vec<_> = self.slabs.iter().map(|slab| view(&slab.staging)).collect::<Result<_, _>>()?;
-        let sums =
-            views.iter().map(|view| bytemuck::try_cast_slice(view)).collect::<Result<Vec<&[u64]>, _>>();
+        let sums = views.iter().map(|view| bytemuck::try_cast_slice(view));
+        let sums = sums.collect::<Result<Vec<&[u64]>, _>>();
         let sums = sums.map_err(|error| failed(format!("reading results: {error}")))?;
-
-        let words = |rows: u32| film.width() as usize * rows as usize * film.halves().len() * PIXEL_WORDS;
-        if self.slabs.iter().zip(&sums).any(|(slab, sums)| sums.len() < words(slab.row_count)) {
-            return Err(failed("reading results: there are fewer sums than pixels".to_owned()));
-        }
+        let GpuCounters { rays, rays_high, rejected, rejected_high, .. } =
+            bytemuck::pod_read_unaligned(&counters);
 
         // All data has arrived: nothing can fail from here on.
         for (slab, sums) in self.slabs.iter().zip(sums) {
             add_rows(film, slab.first_row, sums);
         }
-        drop(views);
+        drop((counters, views));
         self.stagings().for_each(wgpu::Buffer::unmap);
         let wide = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
-        let mut rejected = wide(counters.rejected, counters.rejected_high);
-        let (rays, all_rejected) = (wide(counters.rays, counters.rays_high), rejected);
+        let (rays, rejected) = (wide(rays, rays_high), wide(rejected, rejected_high));
+        let mut unrecorded = rejected;
         for range in leaving.samples.iter() {
-            film.record(range, std::mem::take(&mut rejected))?;
+            film.record(range, std::mem::take(&mut unrecorded))?;
         }
         self.arrived_at = Instant::now();
         self.arrival_took = begin.elapsed();
@@ -258,7 +258,7 @@ impl FilmBuffers {
         Ok(Stats {
             paths: pixels * leaving.samples.count(),
             rays,
-            rejected: all_rejected,
+            rejected,
             busy_lanes: rays,
             offered_lanes: rays,
             trace: leaving.trace,

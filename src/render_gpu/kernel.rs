@@ -28,12 +28,12 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
-/// Entry point, features and number of the probe.
+/// Entry point, features, and number of the probe, which matters only for [`EntryPoint::Probe`].
 type Key = (EntryPoint, Features, u32);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
-enum Slot {
+pub enum Slot {
     Compiling(Receiver<Result<Kernel, String>>, Instant),
     Done(Result<Kernel, String>),
 }
@@ -47,29 +47,18 @@ pub struct Kernels {
 
 impl Kernels {
     /// Starts compiling a kernel unless that has been done, without waiting for it.
-    pub fn begin(&mut self, gpu: &Gpu, entry_point: EntryPoint, features: &Features, probe: u32) {
-        self.slot(gpu, (entry_point, *features, probe));
-    }
-
-    fn slot(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
+    pub fn begin(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
         let modules = &self.modules;
         self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
     }
 
-    /// Returns a kernel, compiling it on first use. `probe` matters only for [`EntryPoint::Probe`].
+    /// Returns a kernel, compiling it on first use.
     ///
     /// # Errors
     /// [`RenderError::Backend`] with the device's error. [`RenderError::Cancelled`] if the kernel is no longer wanted:
     /// it continues to compile, and the finished kernel stays in the cache.
-    pub fn get(
-        &mut self,
-        gpu: &Gpu,
-        entry_point: EntryPoint,
-        features: &Features,
-        probe: u32,
-        cancel: &AtomicBool,
-    ) -> Result<Kernel, RenderError> {
-        self.slot(gpu, (entry_point, *features, probe)).wait(&gpu.adapter, cancel)
+    pub fn get(&mut self, gpu: &Gpu, key: Key, cancel: &AtomicBool) -> Result<Kernel, RenderError> {
+        self.begin(gpu, key).wait(&gpu.adapter, cancel)
     }
 }
 

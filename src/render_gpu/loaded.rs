@@ -29,6 +29,8 @@ pub(super) struct SceneOnDevice {
     pub(super) prepared: PreparedScene<f32>,
     /// The index in the scene of each sphere, by number.
     pub(super) scene_index: Vec<u32>,
+    /// Time spent building the hierarchies; zero if they were there already.
+    pub(super) hierarchy_time: Duration,
     /// Number of nodes in the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
@@ -39,16 +41,17 @@ pub(super) struct SceneOnDevice {
 }
 
 impl GpuRenderer {
-    /// Loads what `job` needs and is not loaded yet.
-    pub(super) fn get_ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        if self.loaded.as_ref().is_none_or(|loaded| loaded.job != *job) {
-            let old = self.loaded.take();
-            self.dispatches.abandon();
-            self.inject(InjectionPoint::Prepare, self.preparations);
-            self.preparations += 1;
-            self.loaded = Some(self.built(job, old, cancel)?);
+    /// Takes what is loaded, or loads what `job` needs.
+    pub(super) fn ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<Loaded, RenderError> {
+        match self.loaded.take() {
+            Some(loaded) if loaded.job == *job => Ok(loaded),
+            old => {
+                self.dispatches.abandon();
+                self.inject(InjectionPoint::Prepare, self.preparations);
+                self.preparations += 1;
+                self.built(job, old, cancel)
+            }
         }
-        Ok(())
     }
 
     fn built(
@@ -62,11 +65,11 @@ impl GpuRenderer {
             old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
         let follows = seen.as_mut().is_some_and(|(scene, before)| scene.prepared.follow(before, job));
         let scene = match seen {
-            Some((scene, _)) if follows => {
+            Some((mut scene, _)) if follows => {
                 let data = GpuJob::new(&scene.prepared, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
                 self.renew_anchored(&scene);
-                self.report.hierarchy_time = Duration::ZERO;
+                scene.hierarchy_time = Duration::ZERO;
                 scene
             }
             other => {
@@ -77,18 +80,15 @@ impl GpuRenderer {
         };
         let features = self.features(&scene.prepared);
         self.check_lists(&features, &scene.prepared).map_err(failed)?;
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &features, 0);
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
         self.messages.extend(scene.prepared.warning().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &features, 0, cancel)?;
+        let kernel = self.kernels.get(&self.gpu, (EntryPoint::PathTrace, features, 0), cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
         }
-        self.report.features = features.describe();
-        self.report.left_out = features.left_out();
-        self.report.compile_time = kernel.compile_time;
         Ok(Loaded { job: job.clone(), scene, features, kernel, film })
     }
 
@@ -112,11 +112,12 @@ impl GpuRenderer {
     ) -> Result<SceneOnDevice, RenderError> {
         let made = PreparedScene::<f32>::renewed(cancel, None, job);
         let prepared = made.ok_or(RenderError::Cancelled)?;
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
+        let features = self.features(&prepared);
+        self.kernels.begin(&self.gpu, (EntryPoint::PathTrace, features, 0));
         let begin = Instant::now();
-        let data = SceneData::new(job, &prepared).map_err(failed)?;
-        self.report.hierarchy_time = prepared.hierarchy_time + begin.elapsed();
-        self.copied(prepared, data).map_err(failed)
+        let data = SceneData::new(job, &prepared);
+        let hierarchy_time = prepared.hierarchy_time + begin.elapsed();
+        self.copied(prepared, data, hierarchy_time).map_err(failed)
     }
 
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
@@ -157,7 +158,12 @@ impl GpuRenderer {
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
-    fn copied(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
+    fn copied(
+        &self,
+        prepared: PreparedScene<f32>,
+        scene: SceneData,
+        hierarchy_time: Duration,
+    ) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
         let contents = scene.buffers(&prepared);
@@ -187,23 +193,19 @@ impl GpuRenderer {
             node_count: scene.node_count,
             job_buffer,
             prepared,
+            hierarchy_time,
         })
     }
 
     /// Empty buffers for a film of `job`; reuses the old ones if they fit.
     fn film_buffers(&self, job: &RenderJob, old: Option<FilmBuffers>) -> Result<FilmBuffers, String> {
         let limit = self.film_limit();
-        match old {
-            Some(mut film) if film.fit(job.settings(), limit) => {
-                // Work in flight was abandoned.
-                film.forget(&self.gpu);
-                Ok(film)
-            }
-            other => {
-                // The device may not have room for both.
-                drop(other);
-                FilmBuffers::new(&self.gpu, job.settings(), limit)
-            }
-        }
+        // The device may not have room for both.
+        let Some(mut film) = old.filter(|film| film.fit(job.settings(), limit)) else {
+            return FilmBuffers::new(&self.gpu, job.settings(), limit);
+        };
+        // Work in flight was abandoned.
+        film.forget(&self.gpu);
+        Ok(film)
     }
 }

@@ -29,6 +29,7 @@ pub use scene::{Exported, SHARED_BLOCK, TURN_LIMIT};
 
 use crate::film::Film;
 use crate::job::render::{BackendInfo, KernelInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::kernel::parts;
 use device::Gpu;
 use dispatches::{Broken, Dispatches};
 use kernel::Kernels;
@@ -48,7 +49,6 @@ pub struct GpuRenderer {
     preparations: u64,
     /// Number of times a film was sent for.
     fetches: u64,
-    report: GpuReport,
     messages: Vec<String>,
 }
 
@@ -65,7 +65,6 @@ impl GpuRenderer {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
         let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
-        let report = GpuReport { timer: dispatches.timer(), ..GpuReport::default() };
         let messages = if gpu.adapter.is_software {
             let adapter = &gpu.adapter;
             vec![format!(
@@ -82,7 +81,6 @@ impl GpuRenderer {
             loaded: None,
             preparations: 0,
             fetches: 0,
-            report,
             messages,
         })
     }
@@ -94,39 +92,33 @@ impl GpuRenderer {
 
     /// A report of what was compiled and measured so far.
     pub fn report(&self) -> GpuReport {
-        let Dispatches { count, time, .. } = self.dispatches;
         let film = self.loaded.as_ref().map(|loaded| &loaded.film);
         GpuReport {
-            dispatches: count,
-            dispatch_time: time,
+            dispatches: self.dispatches.count,
+            dispatch_time: self.dispatches.time,
+            timer: self.dispatches.timer(),
             films: film.map_or(0, |film| film.arrivals),
             film_time: film.map_or(Duration::ZERO, |film| film.arrivals_took),
-            ..self.report.clone()
         }
     }
 
-    /// Runs `work` on the prepared job, if there is one.
-    fn with_present<T: Default>(
-        &mut self,
-        work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
-    ) -> Result<T, RenderError> {
-        let Some(mut loaded) = self.loaded.take() else { return Ok(T::default()) };
-        let result = work(self, &mut loaded);
-        self.loaded = Some(loaded);
-        result
-    }
-
-    /// Prepares the job and runs `work` on it. If that fails, traced samples are discarded.
+    /// Prepares the job and runs `work` on it.
     fn with_loaded<T>(
         &mut self,
         job: &RenderJob,
         cancel: &AtomicBool,
         work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
-        self.get_ready(job, cancel)?;
-        let Some(mut loaded) = self.loaded.take() else {
-            return Err(failed("nothing was loaded".to_owned()));
-        };
+        let loaded = self.ready(job, cancel)?;
+        self.work_on(loaded, work)
+    }
+
+    /// Runs `work` on what is loaded. If that fails, traced samples are discarded.
+    fn work_on<T>(
+        &mut self,
+        mut loaded: Loaded,
+        work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
         let result = work(self, &mut loaded);
         if let Err(RenderError::Cancelled | RenderError::Backend { .. }) = result {
             self.forget(&mut loaded);
@@ -162,8 +154,11 @@ impl GpuRenderer {
         are_collected: bool,
     ) -> Result<Stats, RenderError> {
         self.with_loaded(job, cancel, |this, loaded| {
-            let traced = this.traced(loaded, &range, film, cancel, are_collected);
-            this.completed(traced, loaded, range, film, cancel)
+            match this.traced(loaded, &range, film, cancel, are_collected) {
+                Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
+                Err(Broken::Ended(error)) => Err(error),
+                Ok(stats) => Ok(stats),
+            }
         })
     }
 
@@ -188,22 +183,6 @@ impl GpuRenderer {
         }
         Ok(stats)
     }
-
-    /// Traces missing samples again.
-    fn completed(
-        &mut self,
-        traced: Result<Stats, Broken>,
-        loaded: &mut Loaded,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        match traced {
-            Ok(stats) => Ok(stats),
-            Err(Broken::Ended(error)) => Err(error),
-            Err(Broken::Short(reason)) => self.trace_again(loaded, reason, range, film, cancel),
-        }
-    }
 }
 
 impl Renderer for GpuRenderer {
@@ -225,13 +204,13 @@ impl Renderer for GpuRenderer {
     }
 
     fn kernel(&self) -> KernelInfo {
-        let GpuReport { features, left_out, compile_time, timer, hierarchy_time, .. } = &self.report;
-        let seconds = compile_time.as_secs_f64();
+        let Some(Loaded { scene, features, kernel, .. }) = &self.loaded else { return KernelInfo::default() };
+        let (present, timer) = (parts::describe(features.parts()), self.dispatches.timer());
+        let seconds = kernel.compile_time.as_secs_f64();
         KernelInfo {
-            about: format!("{features}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
-            present: features.clone(),
-            left_out: left_out.clone(),
-            hierarchy_time: *hierarchy_time,
+            about: format!("{present}; compiled in {seconds:.3} s; dispatches timed by {timer}"),
+            left_out: parts::left_out(features.parts()),
+            hierarchy_time: scene.hierarchy_time,
         }
     }
 
@@ -265,7 +244,8 @@ impl Renderer for GpuRenderer {
     }
 
     fn fetch(&mut self) -> Result<(), RenderError> {
-        self.with_present(|this, loaded| match this.send_for_film(loaded) {
+        let Some(loaded) = self.loaded.take() else { return Ok(()) };
+        self.work_on(loaded, |this, loaded| match this.send_for_film(loaded) {
             // The next call will detect missing samples.
             Ok(()) | Err(Broken::Short(_)) => Ok(()),
             Err(Broken::Ended(error)) => Err(error),
@@ -273,9 +253,13 @@ impl Renderer for GpuRenderer {
     }
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        self.with_present(|this, loaded| {
-            let collected = this.collect_all(loaded, film);
-            this.completed(collected, loaded, 0..0, film, &AtomicBool::new(false))
+        let Some(loaded) = self.loaded.take() else { return Ok(Stats::default()) };
+        self.work_on(loaded, |this, loaded| match this.collect_all(loaded, film) {
+            Err(Broken::Short(reason)) => {
+                this.trace_again(loaded, reason, 0..0, film, &AtomicBool::new(false))
+            }
+            Err(Broken::Ended(error)) => Err(error),
+            Ok(stats) => Ok(stats),
         })
     }
 }

@@ -151,16 +151,8 @@ pub enum GpuError {
 }
 
 /// What the renderer has done since it was created, for reports.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct GpuReport {
-    /// Description of the kernel in use.
-    pub features: String,
-    /// What that kernel leaves out.
-    pub left_out: Vec<&'static str>,
-    /// Time spent compiling that kernel.
-    pub compile_time: Duration,
-    /// Time spent building the hierarchy.
-    pub hierarchy_time: Duration,
     /// Number of dispatches so far.
     pub dispatches: u64,
     /// Total time of the dispatches.

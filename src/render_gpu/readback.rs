@@ -17,17 +17,16 @@ pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, S
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &staging, 0, size);
     let submission = gpu.queue.submit([encoder.finish()]);
-    let mapping = asked(&staging, size);
+    let mapping = asked(&staging);
     gpu.wait(&submission)?;
-    let mut words = Vec::new();
-    shown(&staging, size, &mapping, |bytes| words = bytemuck::pod_collect_to_vec(bytes))?;
-    Ok(words)
+    let view = view(&staging, &mapping)?;
+    Ok(bytemuck::pod_collect_to_vec(&view[..size as usize]))
 }
 
-/// Requests the first `length` bytes of a staging buffer, which become available once the submitted work is done.
-pub fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
+/// Requests a staging buffer, which becomes available once the submitted work is done.
+pub fn asked(staging: &wgpu::Buffer) -> Mapping {
     let (sender, receiver) = mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, 0..length, move |result| {
+    staging.map_async(wgpu::MapMode::Read, .., move |result| {
         // Nobody receives this if the samples were discarded, or after an error that was reported.
         let _ = sender.send(result);
     });
@@ -37,26 +36,11 @@ pub fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
 /// Tells when a staging buffer is available.
 pub type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
 
-/// Checks that a staging buffer is available, after the submitted work is done.
-pub fn check_mapped(mapping: &Mapping) -> Result<(), String> {
+/// The bytes of a staging buffer that was requested, after the submitted work is done.
+pub fn view(staging: &wgpu::Buffer, mapping: &Mapping) -> Result<wgpu::BufferView, String> {
     let mapped = mapping.try_recv().map_err(|_| "the device did not return its results".to_owned())?;
-    mapped.map_err(|error| format!("reading results: {error}"))
-}
-
-/// Shows the first `length` bytes of a staging buffer that was requested and is available.
-fn shown(
-    staging: &wgpu::Buffer,
-    length: u64,
-    mapping: &Mapping,
-    take: impl FnOnce(&[u8]),
-) -> Result<(), String> {
-    check_mapped(mapping)?;
-    {
-        let view = staging.get_mapped_range(0..length).map_err(|error| format!("reading: {error}"))?;
-        take(&view);
-    }
-    staging.unmap();
-    Ok(())
+    mapped.map_err(|error| format!("reading results: {error}"))?;
+    staging.get_mapped_range(..).map_err(|error| format!("reading results: {error}"))
 }
 
 /// The results of a completed dispatch. Each receipt serves one dispatch in flight at a time.
@@ -143,7 +127,7 @@ impl Receipt {
 
     /// Call after the submission: requests the staging buffer.
     pub fn ask(&mut self) {
-        self.mapping = Some(asked(&self.staging, TIMES_SIZE + COUNTERS_SIZE));
+        self.mapping = Some(asked(&self.staging));
     }
 
     /// Reads the results of a completed dispatch.
@@ -152,17 +136,16 @@ impl Receipt {
     /// The device's error.
     pub fn read(&mut self) -> Result<DispatchResult, String> {
         let mapping = self.mapping.take().ok_or("nothing was submitted")?;
-        let mut result = DispatchResult::default();
-        shown(&self.staging, TIMES_SIZE + COUNTERS_SIZE, &mapping, |bytes| {
-            let (times, counters) = bytes.split_at(TIMES_SIZE as usize);
-            let mut ticks = times.chunks_exact(8).map(|time| time.try_into().map_or(0, u64::from_le_bytes));
-            let (begin, end) = (ticks.next().unwrap_or(0), ticks.next().unwrap_or(0));
-            let seconds =
-                |clock: &Clock| end.saturating_sub(begin) as f64 * f64::from(clock.period_ns) * 1e-9;
-            result.took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
-            result.counters = bytemuck::pod_read_unaligned(counters);
-        })?;
-        Ok(result)
+        let view = view(&self.staging, &mapping)?;
+        let (times, counters) = view.split_at(TIMES_SIZE as usize);
+        let mut ticks = times.chunks_exact(8).map(|time| time.try_into().map_or(0, u64::from_le_bytes));
+        let (begin, end) = (ticks.next().unwrap_or(0), ticks.next().unwrap_or(0));
+        let seconds = |clock: &Clock| end.saturating_sub(begin) as f64 * f64::from(clock.period_ns) * 1e-9;
+        let took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
+        let counters = bytemuck::pod_read_unaligned(counters);
+        drop(view);
+        self.staging.unmap();
+        Ok(DispatchResult { took, counters })
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::layout::GpuJob;
 use crate::job::render::RenderJob;
-use crate::kernel::{AnchoredSphere, Features, RECORD_COLUMNS, WIDE_STACK_SIZE, words_of};
+use crate::kernel::{AnchoredSphere, Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use crate::prepared::wide_bvh::WideBvh;
 use crate::stages::SurfaceRule;
@@ -25,11 +25,8 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// Collects the data of a scene, with a hierarchy if the prepared scene has one.
-    ///
-    /// # Errors
-    /// If the hierarchy has more levels than a traversal supports.
-    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>) -> Result<Self, String> {
+    /// Collects the data of a scene. If there is a hierarchy, spheres and records are in the order of its leaves.
+    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>) -> Self {
         let mut data = SceneData {
             spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
             records: prepared.records.iter().map(|row| row.0).collect(),
@@ -37,14 +34,19 @@ impl SceneData {
             nodes: vec![[0; 4]],
             node_count: 0,
         };
-        let Some(hierarchy) = &prepared.hierarchy else { return Ok(data) };
-        let depth = data.take_hierarchy(job, prepared, &hierarchy.ranks);
-        if depth > WIDE_STACK_SIZE {
-            return Err(format!(
-                "the hierarchy has {depth} levels, but the kernel has room for {WIDE_STACK_SIZE}; render this scene on the CPU"
-            ));
-        }
-        Ok(data)
+        let Some(hierarchy) = &prepared.hierarchy else { return data };
+        let built = WideBvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
+        data.spheres = in_order(&built.order, &data.spheres);
+        data.records = in_order(&built.order, &data.records);
+        data.scene_index = in_order(&built.order, &data.scene_index);
+        data.node_count = built.node_count() as u32;
+        data.nodes = built.rows();
+        data.nodes.extend(in_order(&built.order, &hierarchy.ranks).chunks(4).map(|four| {
+            let mut places = [0; 4];
+            places[..four.len()].copy_from_slice(four);
+            places
+        }));
+        data
     }
 
     /// The bytes of the buffers of group 0, by binding, with the names of their contents.
@@ -63,25 +65,12 @@ impl SceneData {
             ("nodes", Cow::Borrowed(bytemuck::cast_slice(&self.nodes))),
         ]
     }
+}
 
-    /// Builds the hierarchy, puts spheres and records in the order of its leaves, and returns its depth.
-    fn take_hierarchy(&mut self, job: &RenderJob, prepared: &PreparedScene<f32>, ranks: &[u32]) -> usize {
-        let built = WideBvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
-        self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
-        let records: Vec<_> = built.order.iter().map(|i| self.records[*i as usize]).collect();
-        self.records[..records.len()].copy_from_slice(&records);
-        let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
-        self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
-        self.node_count = built.node_count() as u32;
-        self.nodes = built.rows();
-        let ranks: Vec<u32> = built.order.iter().map(|place| ranks[*place as usize]).collect();
-        self.nodes.extend(ranks.chunks(4).map(|four| {
-            let mut places = [0; 4];
-            places[..four.len()].copy_from_slice(four);
-            places
-        }));
-        built.depth()
-    }
+/// The items in leaf order, then those of the anchored spheres.
+fn in_order<T: Copy>(order: &[u32], items: &[T]) -> Vec<T> {
+    let listed = order.iter().map(|place| items[*place as usize]);
+    listed.chain(items[order.len()..].iter().copied()).collect()
 }
 
 /// Loop turns that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
@@ -121,21 +110,18 @@ pub struct Exported {
 
 impl Exported {
     /// Prepares a job.
-    ///
-    /// # Errors
-    /// If the hierarchy has more levels than a traversal supports.
-    pub fn new(job: &RenderJob) -> Result<Self, String> {
+    pub fn new(job: &RenderJob) -> Self {
         let prepared = PreparedScene::<f32>::new(job);
-        let data = SceneData::new(job, &prepared)?;
+        let data = SceneData::new(job, &prepared);
         let features = prepared.features;
-        Ok(Exported {
+        Exported {
             features,
             buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
             turns_over_lists: turns_over_lists(&features, &prepared),
             block_limit: prepared.block_limit,
             origin: prepared.origin,
             scene_index: data.scene_index,
-        })
+        }
     }
 }
 
@@ -152,7 +138,7 @@ mod tests {
     fn each_sphere_has_its_record_and_its_rank() {
         let job = Recipe::find("field:500").unwrap().job().unwrap();
         let prepared = PreparedScene::<f32>::new(&job);
-        let data = SceneData::new(&job, &prepared).unwrap();
+        let data = SceneData::new(&job, &prepared);
         for (sphere, record) in data.spheres.iter().zip(&data.records) {
             assert_eq!(sphere[..3], record[..3], "the centre");
         }
@@ -197,7 +183,7 @@ mod tests {
             let book = Camera::BOOK;
             let camera = Camera { look_from: away + book.look_from, look_at: away + book.look_at, ..book };
             let job = RenderJob::new(scene, camera, RenderSettings::default(), Rules::default()).unwrap();
-            let exported = Exported::new(&job).unwrap();
+            let exported = Exported::new(&job);
             assert_eq!(exported.origin == DVec3::ZERO, away == DVec3::ZERO, "{}", exported.origin);
             let rows: Vec<[f32; 4]> =
                 exported.buffers[1].chunks_exact(16).map(bytemuck::pod_read_unaligned).collect();

@@ -27,7 +27,8 @@ impl GpuRenderer {
         transfer: Transfer,
     ) -> Result<Vec<u32>, RenderError> {
         self.with_loaded(job, &go_on(), |this, loaded| {
-            let kernel = this.small_kernel(EntryPoint::Resolve, &Features::default(), 0)?;
+            let kernel =
+                this.kernels.get(&this.gpu, (EntryPoint::Resolve, Features::default(), 0), &go_on())?;
             let buffers = this.own_film(loaded)?;
             let (width, height) = (film.width(), film.height());
             let Some(sums_on_device) = buffers.sums_of_whole() else {
@@ -56,7 +57,8 @@ impl GpuRenderer {
     pub fn probe(&mut self, job: &RenderJob, probe: Probe, words: &[u32]) -> Result<Vec<u32>, RenderError> {
         self.with_loaded(job, &go_on(), |this, loaded| {
             let features = Features { dielectric_laws: job.rules().dielectric, ..Features::default() };
-            let kernel = this.small_kernel(EntryPoint::Probe, &features, probe as u32)?;
+            let kernel =
+                this.kernels.get(&this.gpu, (EntryPoint::Probe, features, probe as u32), &go_on())?;
             let groups = (words.len() / PROBE_STRIDE).div_ceil(WORKGROUP_SIZE as usize) as u32;
             this.run(loaded, &loaded.film, &kernel, words, groups)
         })
@@ -73,7 +75,8 @@ impl GpuRenderer {
         index: u64,
     ) -> Result<PathRecord, RenderError> {
         self.with_loaded(job, &go_on(), |this, loaded| {
-            let kernel = this.small_kernel(EntryPoint::PathRecord, &loaded.features, 0)?;
+            let kernel =
+                this.kernels.get(&this.gpu, (EntryPoint::PathRecord, loaded.features, 0), &go_on())?;
             let buffers = this.own_film(loaded)?;
             let settings = job.settings();
             let (blocks, _) =
@@ -106,15 +109,6 @@ impl GpuRenderer {
     /// Buffers for a film, separate from the one being traced.
     fn own_film(&self, loaded: &Loaded) -> Result<FilmBuffers, RenderError> {
         FilmBuffers::new(&self.gpu, loaded.job.settings(), self.film_limit()).map_err(failed)
-    }
-
-    fn small_kernel(
-        &mut self,
-        entry_point: EntryPoint,
-        features: &Features,
-        probe: u32,
-    ) -> Result<Kernel, RenderError> {
-        self.kernels.get(&self.gpu, entry_point, features, probe, &go_on())
     }
 
     /// Runs a kernel on `words` and returns the resulting words.

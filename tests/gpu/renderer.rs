@@ -113,7 +113,7 @@ fn lone_fuzzy_metal_matches_cpu() {
     let polished = rendered(&mut cpu(), &job(0.0), 1);
     for fuzz in [0.4, 1.0] {
         let (a, b) = (rendered(&mut gpu, &job(fuzz), 1), rendered(&mut cpu(), &job(fuzz), 1));
-        assert!(!gpu.report().features.contains("lambertian"), "{}", gpu.report().features);
+        assert!(!PreparedScene::<f32>::new(&job(fuzz)).features.lambertian);
         assert!(parted(&a, &b, 1e-3) <= 3 && parted(&b, &polished, 1e-3) > 200, "{fuzz}");
     }
 }
@@ -290,13 +290,13 @@ fn moving_camera_keeps_scene_on_device() {
     let Some(mut moved) = gpu(GpuOptions::default()) else { return };
     let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
     rendered(&mut moved, &job, 2);
-    assert!(!moved.report().hierarchy_time.is_zero());
+    assert!(!moved.kernel().hierarchy_time.is_zero());
     let settings = RenderSettings { width: 48, height: 27, ..*job.settings() };
     let low = DVec3::new(13.0, 0.05, 3.0);
     for look_from in [BOOK_CAMERA.look_from * 1.1, low] {
         let next = job.seen_by(Camera { look_from, ..BOOK_CAMERA }, settings).unwrap();
         let film = rendered(&mut moved, &next, 2);
-        assert!(moved.report().hierarchy_time.is_zero(), "{:?}", moved.report());
+        assert!(moved.kernel().hierarchy_time.is_zero(), "{:?}", moved.kernel());
         let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
         assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
         // Near the ground, the ground is measured from the point below the eye.

@@ -6,15 +6,16 @@ mod boxes;
 mod gpu_common;
 mod names;
 mod numbers;
+#[path = "../oracle/mod.rs"]
+mod oracle;
 mod surfaces;
 
 use glam::DVec3;
 use gpu_common::gpu;
+use oracle::{laine_karras, pascal, pixel_key, sin_cos_turns, unit_float};
 use weekender::film::FIXED_POINT_MAX;
 use weekender::job::render::{RenderJob, RenderSettings};
-use weekender::kernel::sampling::{
-    GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
-};
+use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, mix32, pcg4d};
 use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Scalar, Single, V3, Wide, Word};
@@ -75,7 +76,7 @@ fn uniform(i: u32, stream: u32) -> [f32; 4] {
 
 fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
     let [a, b, ..] = uniform(i, stream);
-    weekender::kernel::sampling::unit_sphere(a, b)
+    oracle::unit_sphere(a, b)
 }
 
 /// The bits of floats, followed by zeros.

@@ -1,10 +1,11 @@
 //! Whole pictures: cases 10 to 12 and 35 to 38.
 
 use crate::common::*;
+use crate::oracle::unit_float;
+use crate::sampling::numbers;
 use glam::DVec3;
 use weekender::film::FIXED_POINT_SCALE;
 use weekender::job::render::{RenderJob, RenderSettings};
-use weekender::kernel::sampling::{numbers, unit_float};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres, touching_spheres};
 use weekender::scene::{Camera, Scene, Sky};
 use weekender::stages::{Rules, Stage};

@@ -14,6 +14,8 @@ mod hierarchy;
 mod images;
 mod intersection;
 mod materials;
+#[path = "../oracle/mod.rs"]
+mod oracle;
 mod parity;
 mod reflections;
 mod sampling;

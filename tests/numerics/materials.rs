@@ -157,7 +157,7 @@ fn grazing<const FUSED: bool>() {
         let direction = perpendicular(normal, &mut random);
         for front in [false, true] {
             // The largest random number below 1.
-            let coin = l.splat(weekender::kernel::sampling::unit_float(u32::MAX));
+            let coin = l.splat(crate::oracle::unit_float(u32::MAX));
             let zero = v3(l, DVec3::ZERO);
             let scattered = |laws: DielectricLaws| {
                 let (direction, normal) = (v3(l, direction), v3(l, normal));

@@ -1,10 +1,11 @@
 //! Random numbers: cases 26 and 27, and the lanes against their scalar oracle.
 
 use crate::common::{Random, first};
+use crate::oracle::{self, laine_karras, pascal, pixel_key, sin_cos_turns};
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::job::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
-use weekender::kernel::sampling::{self, GOLDEN_RATIO, LENS_BLOCK, SampleBlock};
+use weekender::kernel::sampling::{GOLDEN_RATIO, LENS_BLOCK, SampleBlock, mix32, pcg4d};
 use weekender::render_cpu::lanes::{Double, Lanes, MAX_LANES, Reference, Scalar, Single, Wide, unit_float};
 use weekender::render_cpu::rng;
 
@@ -12,12 +13,43 @@ fn settings(sampler: SamplerKind, estimate_error: bool, seed: u32) -> RenderSett
     RenderSettings { sampler, estimate_error, seed, ..RenderSettings::default() }
 }
 
+/// Four numbers for one ray of a path, in units of `2^-32`. The first two select a direction, a point in the pixel, or
+/// a point on the lens if there is one. A dielectric uses the first to choose between reflection and refraction, since
+/// it needs no direction. With a lens, the last two select the point in the pixel.
+///
+/// `pixel` is `x | y << 16`; `bounce` is 0 for the camera ray.
+pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -> [u32; 4] {
+    match settings.sampler {
+        // The index is hashed without reversing it. The hash carries differences upwards and folds them down only once,
+        // so samples whose numbers differ only in the highest bits, as reversed ones do, would not be independent.
+        SamplerKind::Independent => pcg4d([pixel, index, bounce, settings.seed]),
+        SamplerKind::Sobol => {
+            let half_count = settings.half_count() as u32;
+            let key = pixel_key(settings.seed, index % half_count, pixel);
+            let reversed = (index / half_count).reverse_bits();
+            let pair = |block: u32| {
+                let u = laine_karras(reversed, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
+                [u, pascal(u)]
+            };
+            let ([a, b], [c, d]) = (pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK)));
+            [a, b, c, d]
+        }
+    }
+}
+
+/// A uniform point in the unit disk, in polar coordinates.
+pub fn unit_disk(u0: f32, u1: f32) -> [f32; 2] {
+    let (sine, cosine) = sin_cos_turns(u1);
+    let radius = u0.sqrt();
+    [radius * cosine, radius * sine]
+}
+
 #[test]
 fn case_26_no_draw_repeats() {
     for sampler in SamplerKind::ALL {
         let settings = settings(sampler, true, 0);
         let draws: HashSet<[u32; 4]> =
-            (0..100_000).map(|index| sampling::numbers(&settings, 230 | 69 << 16, index, 0)).collect();
+            (0..100_000).map(|index| numbers(&settings, 230 | 69 << 16, index, 0)).collect();
         assert_eq!(draws.len(), 100_000, "{sampler:?}");
     }
 }
@@ -34,10 +66,9 @@ fn independent_samples_are_independent() {
             let (mut squares, mut squares_of_means) = (0.0, 0.0);
             for pixel in 0..PIXELS {
                 let value = |index| {
-                    let word =
-                        sampling::numbers(&settings, (pixel % 200) | ((pixel / 200) << 16), index, 0)[which];
+                    let word = numbers(&settings, (pixel % 200) | ((pixel / 200) << 16), index, 0)[which];
                     // Its mean over all numbers is 0.
-                    (f64::from(sampling::unit_float(word)) * turns * std::f64::consts::TAU).cos()
+                    (f64::from(oracle::unit_float(word)) * turns * std::f64::consts::TAU).cos()
                 };
                 let values = (0..SAMPLES).map(value);
                 squares += values.clone().map(|x| x * x).sum::<f64>();
@@ -57,10 +88,10 @@ fn case_27_the_largest_number_is_below_1() {
         first::<L>(unit_float(l, l.splat_u(u32::MAX)))
     }
     let below_1 = 1.0 - 1.0 / 16_777_216.0;
-    assert_eq!(f64::from(sampling::unit_float(u32::MAX)), below_1);
+    assert_eq!(f64::from(oracle::unit_float(u32::MAX)), below_1);
     assert_eq!(largest(Scalar::<false>), below_1);
     assert_eq!(largest(Reference), below_1);
-    assert_eq!(sampling::unit_float(0), 0.0);
+    assert_eq!(oracle::unit_float(0), 0.0);
 }
 
 /// Compares every number of the lanes with the oracle, bit for bit.
@@ -82,11 +113,11 @@ fn assert_twins<L: Lanes>(l: L) {
                 assert_eq!(word, expected(lane), "{what}, lane {lane} of {}", L::WIDTH);
             }
         };
-        same(rng::mix32(l, la), "mix32", &|i| sampling::mix32(a[i]));
-        same(rng::laine_karras(l, la, lb), "laine_karras", &|i| sampling::laine_karras(a[i], b[i]));
-        same(rng::pascal(l, la), "pascal", &|i| sampling::pascal(a[i]));
+        same(rng::mix32(l, la), "mix32", &|i| mix32(a[i]));
+        same(rng::laine_karras(l, la, lb), "laine_karras", &|i| laine_karras(a[i], b[i]));
+        same(rng::pascal(l, la), "pascal", &|i| pascal(a[i]));
         for (which, found) in rng::pcg4d(l, [la, lb, lc, ld]).into_iter().enumerate() {
-            same(found, "pcg4d", &|i| sampling::pcg4d([a[i], b[i], c[i], d[i]])[which]);
+            same(found, "pcg4d", &|i| pcg4d([a[i], b[i], c[i], d[i]])[which]);
         }
         // A whole draw: each lane has its own pixel and index, all at one bounce.
         let (half, bounce, seed) = (a[0] & 1, b[0] % 50, c[0]);
@@ -95,7 +126,7 @@ fn assert_twins<L: Lanes>(l: L) {
         let settings = settings(SamplerKind::Sobol, true, seed);
         let (mut keys, mut counters) = ([0; MAX_LANES], [0; MAX_LANES]);
         for i in 0..MAX_LANES {
-            keys[i] = sampling::pixel_key(seed, half, pixel(i));
+            keys[i] = pixel_key(seed, half, pixel(i));
             counters[i] = (index(i) / 2).reverse_bits();
         }
         let (keys, counters) = (l.load_u(&Wide(keys)), l.load_u(&Wide(counters)));
@@ -103,7 +134,7 @@ fn assert_twins<L: Lanes>(l: L) {
         let first_pair = rng::sobol_pair(l, counters, stream);
         let lens_pair = rng::sobol_pair(l, counters, rng::lens_stream_of(l, stream));
         for (which, found) in first_pair.into_iter().chain(lens_pair).enumerate() {
-            same(found, "numbers", &|i| sampling::numbers(&settings, pixel(i), index(i), bounce)[which]);
+            same(found, "numbers", &|i| numbers(&settings, pixel(i), index(i), bounce)[which]);
         }
         const { assert!(LENS_BLOCK > weekender::job::render::DEPTH_LIMIT) };
     }
@@ -144,7 +175,7 @@ fn sine_and_cosine_of_turns() {
     let (mut largest, mut length) = (0.0_f64, 0.0_f64);
     for step in (0..1 << 24).step_by(37).chain([1 << 22, 1 << 23, 3 << 22, (1 << 24) - 1]) {
         let u = step as f32 / 16_777_216.0;
-        let (sine, cosine) = sampling::sin_cos_turns(u);
+        let (sine, cosine) = sin_cos_turns(u);
         let unfused = Scalar::<false>.sin_cos_turns(Single(u));
         assert_eq!((unfused.0.0, unfused.1.0), (sine, cosine), "the lanes' own");
         let exact = (f64::from(u) * std::f64::consts::TAU).sin_cos();
@@ -166,10 +197,10 @@ fn sine_and_cosine_of_turns() {
 fn unit_vectors_have_length_1() {
     let mut random = Random::new(10);
     for _ in 0..100_000 {
-        let [u0, u1] = [random.bits(), random.bits()].map(|bits| sampling::unit_float(bits as u32));
-        let [x, y, z] = sampling::unit_sphere(u0, u1).map(f64::from);
+        let [u0, u1] = [random.bits(), random.bits()].map(|bits| oracle::unit_float(bits as u32));
+        let [x, y, z] = oracle::unit_sphere(u0, u1).map(f64::from);
         assert!(((x * x + y * y + z * z).sqrt() - 1.0).abs() < 1e-6, "{u0}, {u1}");
-        let [x, y] = sampling::unit_disk(u0, u1).map(f64::from);
+        let [x, y] = unit_disk(u0, u1).map(f64::from);
         assert!(x.hypot(y) < 1.0 + 1e-6, "{u0}, {u1}");
     }
 }

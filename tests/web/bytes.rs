@@ -207,7 +207,7 @@ fn buffers_are_those_of_the_program() {
         let mut settings = *job_of(&stage).settings();
         (settings.width, settings.height, settings.max_depth) = (width, height, depth);
         let job = RenderJob::new(scene, camera, settings, stage.setup.rules).unwrap();
-        let expected = Exported::new(&job).unwrap();
+        let expected = Exported::new(&job);
         let about = format!("{} case {}: {camera:?}", stage.id, index % CASES);
         for (name, value) in expected.features.overrides() {
             // The number of rays that fit a dispatch decides it.

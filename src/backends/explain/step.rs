@@ -1,8 +1,10 @@
 //! A path step by step: what each ray meets, and how the next ray's direction was chosen.
 
-use crate::job::render::RenderJob;
+use crate::job::render::{RenderJob, RenderSettings};
 use crate::kernel::path_record::{PathRecord, RecordedRay};
-use crate::kernel::sampling::{numbers, unit_float};
+use crate::kernel::sampling::{HalfKey, SampleBlock, stream_stride};
+use crate::render_cpu::lanes::{Scalar, Word, unit_float};
+use crate::render_cpu::rng;
 use crate::scene::{Look, Material, Sphere};
 use crate::stages::{DielectricLaws, Diffuse, Rules, Shading};
 use glam::DVec3;
@@ -82,15 +84,32 @@ pub fn steps(job: &RenderJob, [x, y]: [u32; 2], index: u64, record: &PathRecord)
             let point = hit.position.map_or(origin + direction * hit.distance, DVec3::from);
             hit_of(&sphere, hit.sphere, point, direction)
         });
-        let numbers = numbers(job.settings(), x | y << 16, index as u32, bounce as u32 + 1);
         let next = record.rays.get(bounce + 1).map(|next| DVec3::from(next.direction));
         let event = match hit {
             None => Event::Sky,
-            Some(hit) => event_of(job, &hit, direction, next, bounce, f64::from(unit_float(numbers[0]))),
+            Some(hit) => event_of(
+                job,
+                &hit,
+                direction,
+                next,
+                bounce,
+                coin(job.settings(), x | y << 16, index, bounce as u32 + 1),
+            ),
         };
         Step { origin, direction, throughput: DVec3::from(ray.throughput), hit, event }
     };
     record.rays.iter().enumerate().map(step).collect()
+}
+
+/// The first number that sample `index` draws for its ray `ray`; 0 is the ray from the camera.
+fn coin(settings: &RenderSettings, pixel: u32, index: u64, ray: u32) -> f64 {
+    let (lane, half_count) = (Scalar::<false>, settings.half_count() as u64);
+    let (half, first) = ((index % half_count) as u32, (index / half_count) as u32);
+    let (counter, _) = SampleBlock { half, first, count: 1 }.counter(settings);
+    let camera_stream = rng::sampler_key(lane, HalfKey::new(settings, half), Word(pixel));
+    let stream = camera_stream + Word(stream_stride(settings.sampler).wrapping_mul(ray));
+    let [[first, _], _] = rng::numbers(lane, settings, Word(pixel), Word(counter), stream, false);
+    f64::from(unit_float(lane, first).0)
 }
 
 fn hit_of(sphere: &Sphere, number: usize, point: DVec3, direction: DVec3) -> Hit {

@@ -182,8 +182,7 @@ impl Stats {
 pub struct KernelInfo {
     /// The kernel, and how long it took to compile.
     pub about: String,
-    /// The features that it has code for.
-    pub present: String,
+    /// The parts that it does not have.
     pub left_out: Vec<&'static str>,
     /// Wall time of building the hierarchy; zero if there is none.
     pub hierarchy_time: Duration,

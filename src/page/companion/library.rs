@@ -63,7 +63,6 @@ const FILES: &[(&str, &str)] = embedded![
     "src/render_cpu/lanes/": "vector.rs";
     "src/render_cpu/path/": "collect.rs" "mod.rs" "send.rs";
     "src/render_gpu/": "schedule.rs";
-    "src/kernel/sampling/": "mod.rs" "warp.rs";
     "src/scene/builtin/": "book.rs";
     "src/scene/": "camera.rs";
     "src/stages/table/": "setups.rs";

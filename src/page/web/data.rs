@@ -7,7 +7,7 @@ use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
 use crate::render_gpu::shader_source::{EntryPoint, shared};
 use crate::render_gpu::{Exported, TURN_LIMIT};
 use crate::stages::Stage;
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -48,7 +48,7 @@ fn stage_data(stage: &Stage) -> Result<Value> {
     let settings = RenderSettings { estimate_error: false, ..recipe.settings };
     let (camera, rules) = (recipe.camera, recipe.rules);
     let job = RenderJob::new(recipe.scene, camera, settings, rules)?;
-    let exported = Exported::new(&job).map_err(|reason| anyhow!(reason))?;
+    let exported = Exported::new(&job);
     let overrides = exported.features.overrides().into_iter().map(|(name, value)| (name, value.into()));
     Ok(json!({
         "width": settings.width,

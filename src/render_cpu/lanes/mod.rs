@@ -247,7 +247,7 @@ pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
     L::float_of(u >> 8) * l.constant(UNIT_FLOAT_SCALE)
 }
 
-/// Evaluates the polynomial of [`crate::kernel::sampling::sin_cos_turns`].
+/// Graphics APIs only guarantee their own sine to 2^-11, so CPU and GPU share this polynomial.
 #[inline(always)]
 fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
     let quarter = l.constant(0.25);

@@ -9,12 +9,13 @@ use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
 };
 
+/// Implements [`Lanes`] for rows of some width, given their types, then the names of what depends on the width.
 macro_rules! simd_lanes {
     (
-        $name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident,
-        $gather:ident, $records:ident, $permute:ident, $to_nearest:ident, $ones:ident, $what:literal
+        $name:ident: $width:literal of $f:ident, $u:ident, $i:ident, $m:ident;
+        $gather:ident, $records:ident, $permute:ident, $to_nearest:ident, $ones:ident
     ) => {
-        #[doc = $what]
+        #[doc = concat!(stringify!($width), " lanes of `f32`.")]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd>(pub S);
 
@@ -117,26 +118,9 @@ macro_rules! simd_lanes {
             }
         }
 
-        impl<S: Instructions> Select<$m<S>> for $f<S> {
-            #[inline(always)]
-            fn select(m: $m<S>, a: Self, b: Self) -> Self {
-                fearless_simd::Select::select(m, a, b)
-            }
-        }
-
-        impl<S: Instructions> Select<$m<S>> for $i<S> {
-            #[inline(always)]
-            fn select(m: $m<S>, a: Self, b: Self) -> Self {
-                fearless_simd::Select::select(m, a, b)
-            }
-        }
-
-        impl<S: Instructions> Select<$m<S>> for $u<S> {
-            #[inline(always)]
-            fn select(m: $m<S>, a: Self, b: Self) -> Self {
-                fearless_simd::Select::select(m, a, b)
-            }
-        }
+        select!($f by $m);
+        select!($i by $m);
+        select!($u by $m);
 
         impl<S: Instructions> Float for $f<S> {
             type Mask = $m<S>;
@@ -212,48 +196,29 @@ macro_rules! simd_lanes {
     };
 }
 
-simd_lanes!(
-    Lanes4,
-    4,
-    f32x4,
-    u32x4,
-    i32x4,
-    mask32x4,
-    gather4,
-    ROWS_4,
-    permute_4,
-    to_nearest_4,
-    ones_4,
-    "Four lanes of `f32`."
-);
-simd_lanes!(
-    Lanes8,
-    8,
-    f32x8,
-    u32x8,
-    i32x8,
-    mask32x8,
-    gather8,
-    ROWS_8,
-    permute_8,
-    to_nearest_8,
-    ones_8,
-    "Eight lanes of `f32`."
-);
-simd_lanes!(
-    Lanes16,
-    16,
-    f32x16,
-    u32x16,
-    i32x16,
-    mask32x16,
-    gather16,
-    ROWS_16,
-    permute_16,
-    to_nearest_16,
-    ones_16,
-    "Sixteen lanes of `f32`."
-);
+macro_rules! select {
+    ($row:ident by $mask:ident) => {
+        impl<S: Instructions> Select<$mask<S>> for $row<S> {
+            #[inline(always)]
+            fn select(m: $mask<S>, a: Self, b: Self) -> Self {
+                fearless_simd::Select::select(m, a, b)
+            }
+        }
+    };
+}
+
+simd_lanes! {
+    Lanes4: 4 of f32x4, u32x4, i32x4, mask32x4;
+    gather4, ROWS_4, permute_4, to_nearest_4, ones_4
+}
+simd_lanes! {
+    Lanes8: 8 of f32x8, u32x8, i32x8, mask32x8;
+    gather8, ROWS_8, permute_8, to_nearest_8, ones_8
+}
+simd_lanes! {
+    Lanes16: 16 of f32x16, u32x16, i32x16, mask32x16;
+    gather16, ROWS_16, permute_16, to_nearest_16, ones_16
+}
 
 /// Four columns of a lane's row, from column `4 * group` on.
 #[inline(always)]

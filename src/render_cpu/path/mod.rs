@@ -14,11 +14,11 @@
 mod arrive;
 mod collect;
 mod draw;
+mod record;
 mod records;
 mod send;
-mod single;
 
-pub use single::SinglePath;
+pub use record::record;
 
 use super::broadcast::BroadcastScene;
 use super::bvh::{EMPTY_STACK, Stack, traverse};
