@@ -379,11 +379,11 @@ table! {
         on(|f| f.model.view.looked().is_some()),
         also("kept slot compare blink");
     KeptWipe "Wipe with the kept picture", "Drag a divider between it and the picture",
-        |w, _| w.compare_kept(Mode::Wipe), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
-        on(|f| f.model.view.wiped().is_some() && f.model.view.looked().is_none()),
+        |w, _| w.model.view.toggle(Mode::Wipe, With::Kept), keys(SHIFT, Key::C), needs(has_kept, NOTHING_KEPT),
+        on(|f| f.model.view.mode() == Some(Mode::Wipe) && f.model.view.compared_kept().is_some() && f.model.view.looked().is_none()),
         also("slot compare");
     KeptDifference "Difference from the kept picture", "Subtracts it from the picture",
-        |w, _| w.compare_kept(Mode::Difference), keys(SHIFT, Key::X), off(Facts::not_subtractable),
+        |w, _| w.model.view.toggle(Mode::Difference, With::Kept), keys(SHIFT, Key::X), off(Facts::not_subtractable),
         on(|f| f.model.view.mode() == Some(Mode::Difference) && f.model.view.compared_kept().is_some()),
         also("slot compare subtract");
     OnlyNoise "Is it only noise?", "Tests whether the two differ by more than chance",

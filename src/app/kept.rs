@@ -28,10 +28,10 @@ impl KeptActions {
         }
         self.is_wanted = false;
         let (document, answer) = (document.clone(), self.copied.promise(context));
-        let seconds = tracing.seconds();
+        let (seconds, context) = (tracing.seconds(), context.clone());
         tracing.main.inspect(move |film| {
             let copy = film.try_copy().map_err(|error| error.to_string());
-            answer.give_from("keep", move || copy.map(|film| Kept::new(document, film, seconds)));
+            answer.give_from("keep", move || copy.map(|film| Kept::new(&context, document, film, seconds)));
         });
     }
 }

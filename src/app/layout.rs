@@ -110,7 +110,7 @@ impl Window {
         let Model { document, view, .. } = model;
         let layer = view.show().layer();
         let shown = tracing.main.shown();
-        let is_scaled = view.wiped().is_some_and(|kept| kept.size() != facts.document().size());
+        let is_scaled = view.compared_kept().is_some_and(|kept| kept.size() != facts.document().size());
         let pictures = Pictures {
             main: match layer.and_then(|layer| display.layers.shown(layer)) {
                 Some(layer) => Some((&layer.texture, layer.divisor > 1)),
@@ -158,7 +158,7 @@ impl Window {
 fn titles(facts: &Facts, second: &Second) -> [String; 2] {
     let view = &facts.model.view;
     let other = match view.compared_kept() {
-        Some(place) => Some(view.kept.title(place)),
+        Some(kept) => Some(view.kept.title(kept)),
         None => second.shown(view).map(|shown| shown.document.title()),
     };
     [other.unwrap_or_default(), facts.document().title()]
@@ -170,9 +170,8 @@ fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspe
     let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let size = facts.document().size();
-    let other = at.and_then(|at| match view.wiped() {
-        Some(kept) => kept.means.mean(at_same_place(at, [size, kept.size()])),
-        None => second.film.as_ref()?.mean(at),
+    let other = at.zip(second.means(view)).and_then(|(at, means)| {
+        means.mean(at_same_place(at, [size, [means.width, means.height]]))
     });
     inspector.ui(ui, facts.document(), value, other);
 }

@@ -192,12 +192,6 @@ impl Window {
         self.model.view.toggle(mode, if is_by_book { With::Book } else { With::Stage });
     }
 
-    pub(super) fn compare_kept(&mut self, mode: Mode) {
-        if let Some(place) = self.model.view.kept.chosen() {
-            self.model.view.toggle(mode, With::Kept(place));
-        }
-    }
-
     /// Leaves views and comparisons that the picture of now cannot have.
     pub(super) fn leave_useless_views(&mut self) {
         let show = self.model.view.show();

@@ -102,7 +102,7 @@ impl Window {
     }
 
     fn add_kept(&mut self, kept: Kept) {
-        let place = self.model.view.kept.add(kept);
+        let place = self.model.view.keep(kept);
         if self.model.remembered.dock.is_none() {
             self.model.remembered.dock = Some(Dock::Kept);
         }

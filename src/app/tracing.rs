@@ -46,7 +46,6 @@ impl Tracing {
 
     /// Takes what was traced. Returns when the pictured run began, if there is a new picture.
     pub fn poll(&mut self, context: &Context) -> Option<Instant> {
-        self.second.receive();
         self.main.poll(context)
     }
 
@@ -101,7 +100,7 @@ impl Tracing {
             document,
             backend: &model.backend(),
             stop: document.stop,
-            view: view.of_shown(self.main.status().run, self.second.film.as_ref()),
+            view: view.of_film(self.main.status().run, self.second.means(view)),
             is_moving: changes.is_moving(),
             is_paused: *is_paused,
         };

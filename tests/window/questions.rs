@@ -153,12 +153,13 @@ impl Ask for Window {
     }
 
     fn has_other_picture(&self) -> bool {
-        let (second, wanted) = (&self.tracing.second, self.model.view.compared(self.shown_document()));
-        match (wanted, &second.of, second.shown(&self.model.view)) {
-            (Some(wanted), Some((other, origin)), Some(shown)) => {
+        let (second, view) = (&self.tracing.second, &self.model.view);
+        let Some(shown) = second.shown(view) else { return false };
+        match (view.compared(self.shown_document()), &second.of) {
+            (Some(wanted), Some((other, origin))) => {
                 wanted == *other && std::sync::Arc::ptr_eq(origin, &shown.document.origin)
             }
-            _ => false,
+            _ => view.compared_kept().is_some(),
         }
     }
 

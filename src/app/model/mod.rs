@@ -43,7 +43,7 @@ pub struct Presentation {
 }
 
 /// Everything that the user has chosen.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Model {
     /// The picture being edited.
     pub document: Document,

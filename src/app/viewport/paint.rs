@@ -69,7 +69,7 @@ pub(super) fn paint(
     let [theirs, mine] = &titles;
     match (view.mode(), second) {
         (Some(Mode::Wipe), Some((texture, is_smooth))) => {
-            let size = view.wiped().map_or(document.size(), |kept| kept.size());
+            let size = view.compared_kept().map_or(document.size(), |kept| kept.size());
             let left = (id(texture, is_smooth), shape_in(rect, size));
             wipe(ui, &painter, rect, divider, left, [theirs, mine]);
         }
