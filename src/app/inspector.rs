@@ -1,7 +1,8 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
+use super::answers::Query;
 use super::model::Document;
-use super::subject::{PictureId, Query, Subject};
+use super::subject::{PictureId, Subject};
 use super::theme;
 use super::widgets::{compact, hint, tip};
 use crate::backends::layers::Layer;
@@ -36,7 +37,6 @@ pub struct Pixel {
 #[derive(Default)]
 pub struct Inspector {
     pub hovered: Option<[u32; 2]>,
-    pub pixel: Option<Pixel>,
     /// By pixel, film and number of samples.
     query: Query<([u32; 2], PictureId, u64), Pixel>,
 }
@@ -49,6 +49,11 @@ impl Inspector {
         }
     }
 
+    /// What is known about the pixel.
+    pub fn pixel(&self) -> Option<&Pixel> {
+        self.query.answer.as_ref()
+    }
+
     /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
@@ -57,11 +62,11 @@ impl Inspector {
     /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
     /// the last known pixel stays.
     pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
-        self.pixel = self.query.take().or(self.pixel.take());
+        self.query.follow();
         let (document, main) = (subject.document, &subject.tracing.main);
         let Some(at) = self.hovered.filter(|_| main.is_full(document)) else { return };
         let (key, transfer) = ((at, subject.id(), main.shown_samples()), document.rules().transfer);
-        self.query.ask(context, subject, key, move |film| {
+        subject.ask(context, &mut self.query, key, move |film| {
             let [x, y] = at;
             if x >= film.width() || y >= film.height() || film.sample_count() == 0 {
                 return None;
@@ -86,7 +91,7 @@ impl Inspector {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The header and four rows, so that what is above stays where it is.
         ui.set_min_height(24.0 + 4.0 * ROW * TextStyle::Small.resolve(ui.style()).size);
-        let Some(pixel) = &self.pixel else {
+        let Some(pixel) = self.pixel() else {
             ui.horizontal(|ui| ui.label(RichText::new("Pixel").strong()));
             hint(ui, "Point at the picture to read its numbers.");
             return;

@@ -167,11 +167,11 @@ fn titles(facts: &Facts, second: &Second) -> [String; 2] {
 /// The numbers of the pixel under the pointer.
 fn numbers(ui: &mut Ui, facts: &Facts, display: &Display, second: &Second, inspector: &Inspector) {
     let view = &facts.model.view;
-    let at = inspector.pixel.as_ref().map(|pixel| pixel.at);
+    let at = inspector.pixel().map(|pixel| pixel.at);
     let value = at.filter(|_| view.show().layer().is_some()).and_then(|at| display.layers.value_at(at));
     let size = facts.document().size();
-    let other = at.zip(second.means(view)).and_then(|(at, means)| {
-        means.mean(at_same_place(at, [size, [means.width, means.height]]))
-    });
+    let other = at
+        .zip(second.means(view))
+        .and_then(|(at, means)| means.mean(at_same_place(at, [size, [means.width, means.height]])));
     inspector.ui(ui, facts.document(), value, other);
 }

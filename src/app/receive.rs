@@ -43,7 +43,7 @@ impl Window {
                 Err(reason) => self.shell.toasts.bad(format!("Not kept: {reason}")),
             }
         }
-        self.display.kept.verdict.receive();
+        self.display.kept.verdict.0.follow();
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),

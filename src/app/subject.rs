@@ -1,6 +1,6 @@
 //! What is on the screen, the traced film or its denoised picture, and questions about it.
 
-use super::answers::Answers;
+use super::answers::Query;
 use super::model::{Document, ViewState};
 use super::tracing::Tracing;
 use crate::denoise::Denoised;
@@ -45,39 +45,17 @@ impl<'a> Subject<'a> {
             None => self.tracing.main.inspect(look),
         }
     }
-}
 
-/// A question about what is on the screen, which is asked again when `K` has changed, one at a time.
-pub struct Query<K, T> {
-    asked: Option<K>,
-    answers: Answers<T>,
-}
-
-impl<K, T> Default for Query<K, T> {
-    fn default() -> Self {
-        Query { asked: None, answers: Answers::default() }
-    }
-}
-
-impl<K: PartialEq, T: Send + 'static> Query<K, T> {
-    /// Takes the newest answer.
-    pub fn take(&mut self) -> Option<T> {
-        std::iter::from_fn(|| self.answers.take()).last().and_then(Result::ok)
-    }
-
-    /// Asks about `key`, unless that was asked last, or the question before is open. `look` finds the answer, if any, in the
-    /// film.
-    pub fn ask(
-        &mut self,
+    /// Asks `query` about `key`. `look` finds the answer, if any, in the film or its denoised picture.
+    pub fn ask<K: PartialEq, T: Send + 'static>(
+        &self,
         context: &Context,
-        subject: &Subject<'_>,
+        query: &mut Query<K, T>,
         key: K,
         look: impl FnOnce(&Film) -> Option<T> + Send + 'static,
     ) {
-        if !self.answers.is_open() && self.asked.as_ref() != Some(&key) {
-            self.asked = Some(key);
-            let answer = self.answers.answer(context);
-            subject.inspect(move |film| look(film).into_iter().for_each(|found| answer.give_one(Ok(found))));
+        if let Some(answer) = query.ask(context, key) {
+            self.inspect(move |film| look(film).into_iter().for_each(|found| answer.give_one(Ok(found))));
         }
     }
 }

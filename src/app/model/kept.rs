@@ -5,8 +5,8 @@ use crate::film::Film;
 use crate::progressive::ReferenceMeans;
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::{RgbImage, imageops};
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The longer side of a small copy, pixels.
 const SMALL: u32 = 264;
