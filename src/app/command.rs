@@ -305,7 +305,7 @@ table! {
         on(|f| f.model.view.mode().is_some() && f.model.view.with() == With::Book),
         also("rounding f64 precision");
     ListPaths "Paths of a pixel", "Shows the paths of the pixel under the pointer, ray by ray",
-        |w, c| w.list_paths(c, w.tools.inspector.hovered), key(Key::T), line(),
+        |w, c| w.list_paths(c), key(Key::T), line(),
         off(|f| match f.no_rays() {
             Some(reason) => Some(reason.to_owned()),
             None if !is_live(f) => Some(KEPT_IS_SHOWN.to_owned()),

@@ -96,7 +96,8 @@ impl Window {
         if facts.model.shows(Tab::Check)
             && let Some(room) = self.tools.check.picture(ui)
         {
-            return Touch { room: Some(room), ..Touch::default() };
+            self.display.viewport.room = Some(room);
+            return Touch::default();
         }
         if facts.model.presentation.is_some() {
             let context = ui.ctx().clone();
@@ -107,7 +108,7 @@ impl Window {
 
     fn picture(&mut self, ui: &mut Ui, facts: &Facts) -> Touch {
         let Window { model, tracing, display, tools, .. } = self;
-        let Model { document, view, .. } = model;
+        let Model { document, view, selected, .. } = model;
         let layer = view.show().layer();
         let shown = tracing.main.shown();
         let is_scaled = view.compared_kept().is_some_and(|kept| kept.size() != facts.document().size());
@@ -122,14 +123,15 @@ impl Window {
             paths: &tools.paths,
             values: &display.values,
         };
-        let handles = (&mut document.camera, &mut view.divider);
+        let handles = (&mut document.camera, &mut view.divider, selected);
         display.viewport.ui(ui, handles, pictures, facts)
     }
 
     /// Does what the pointer did in the picture.
     fn take_touch(&mut self, ui: &Ui, touch: Touch, facts: &Facts) {
+        let room = self.display.viewport.room;
         if facts.model.presentation.is_some()
-            && let (Some(room), Some(at)) = (touch.room, ui.input(|input| input.pointer.hover_pos()))
+            && let (Some(room), Some(at)) = (room, ui.input(|input| input.pointer.hover_pos()))
             && touch.hovered.is_some()
         {
             let Window { display, tracing, tools, .. } = self;
@@ -138,17 +140,13 @@ impl Window {
             });
         }
         self.tools.inspector.hover(touch.hovered);
-        self.list_paths(ui.ctx(), touch.listed);
         if let Some(said) = touch.said {
             self.shell.toasts.good(said);
         }
         if touch.is_move {
             self.changes.note_move();
         }
-        if let Some(sphere) = touch.select {
-            self.model.selected = sphere;
-        }
-        if let Some(room) = touch.room {
+        if let Some(room) = room {
             self.shell.toasts.ui(ui, room, &mut self.commands);
         }
     }

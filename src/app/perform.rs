@@ -231,8 +231,8 @@ impl Window {
         }
     }
 
-    pub(super) fn list_paths(&mut self, context: &Context, pixel: Option<[u32; 2]>) {
-        if let Some(pixel) = pixel {
+    pub(super) fn list_paths(&mut self, context: &Context) {
+        if let Some(pixel) = self.tools.inspector.hovered {
             self.tools.paths.list(&self.model.document, pixel, context);
             self.model.remembered.dock = Some(Dock::Path);
         }

@@ -10,16 +10,6 @@ const SETTLE: Duration = Duration::from_millis(250);
 /// A picture that was traced for longer than this many seconds is kept.
 const LONG_SECONDS: f64 = 10.0;
 
-/// The picture that a change of the size would throw away.
-pub struct Present {
-    /// It is the document's; otherwise a new picture is rendered anyway.
-    pub is_documents: bool,
-    /// Seconds of tracing in it; infinite if they are not known.
-    pub seconds: f64,
-    /// Something that is shown or about to be saved needs this size.
-    pub is_needed: bool,
-}
-
 /// Follows the size of the viewport.
 #[derive(Default)]
 pub struct Sizer {
@@ -39,13 +29,13 @@ impl Sizer {
     }
 
     /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
-    /// the screen.
+    /// the screen; `lost` is how many seconds the document's own picture was traced, if there is one.
     pub fn follow(
         &mut self,
         context: &Context,
         document: &mut Document,
         (sizing, room): (Sizing, [u32; 2]),
-        present: &Present,
+        lost: Option<f64>,
     ) {
         let is_asked = std::mem::take(&mut self.is_asked);
         self.offer = None;
@@ -59,13 +49,15 @@ impl Sizer {
         if wanted == document.size() {
             return;
         }
-        let settled = now.duration_since(since);
-        if is_asked || sizing == Sizing::Book || !present.is_documents {
-            // The book's size changes only when the user chooses it or another picture.
+        // The book's size changes only when the user chooses it or another picture.
+        let Some(seconds) = lost.filter(|_| !is_asked && sizing != Sizing::Book) else {
             document.set_size(wanted);
-        } else if settled < SETTLE {
+            return;
+        };
+        let settled = now.duration_since(since);
+        if settled < SETTLE {
             context.request_repaint_after(SETTLE - settled);
-        } else if present.is_needed || present.seconds > LONG_SECONDS {
+        } else if seconds > LONG_SECONDS {
             // Also while a button of the mouse is down, which may be pressing the offer.
             self.offer = Some(wanted);
         } else if context.input(|input| input.pointer.any_down()) {
@@ -84,17 +76,17 @@ mod tests {
 
     use crate::stages::Stage;
 
-    const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
+    const YOUNG: Option<f64> = Some(2.0);
 
     fn ago(seconds: u64) -> Instant {
         Instant::now().checked_sub(Duration::from_secs(seconds)).unwrap()
     }
 
     /// The size after a frame with a room of 320 by 9000 pixels, of a picture that has had another size.
-    fn followed(sizer: &mut Sizer, sizing: Sizing, present: &Present) -> [u32; 2] {
+    fn followed(sizer: &mut Sizer, sizing: Sizing, lost: Option<f64>) -> [u32; 2] {
         let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         document.set_size([160, 90]);
-        sizer.follow(&Context::default(), &mut document, (sizing, [320, 9000]), present);
+        sizer.follow(&Context::default(), &mut document, (sizing, [320, 9000]), lost);
         document.size()
     }
 
@@ -103,18 +95,18 @@ mod tests {
         let settled = |size| Sizer { fitting: Some((size, ago(1))), ..Sizer::default() };
         for (size, expected) in [([320, 180], [320, 180]), ([300, 169], [160, 90])] {
             let mut sizer = settled(size);
-            assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{size:?} has fitted");
+            assert_eq!(followed(&mut sizer, Sizing::Viewport, YOUNG), expected, "{size:?} has fitted");
             assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
             assert_eq!(sizer.offer, None);
         }
         let mut sizer = settled([320, 180]);
         sizer.offer = Some([1, 1]);
-        let old = Present { seconds: 99.0, ..YOUNG };
-        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90]);
+        let old = Some(99.0);
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [160, 90]);
         assert_eq!(sizer.offer, Some([320, 180]));
         sizer.ask();
-        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [320, 180], "whatever is lost");
         assert_eq!(sizer.offer, None);
-        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, old), [160, 90], "once");
     }
 }

@@ -126,16 +126,19 @@ impl Tracer {
         self.shown.as_ref().filter(|shown| shown.run == self.status.run).map_or(0, |shown| shown.samples)
     }
 
+    /// The current run, if its film is the document's, at any size.
+    fn run_of(&self, document: &Document) -> Option<&Started> {
+        self.started.as_ref().filter(|run| run.document.has_same_film(document))
+    }
+
     /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
-        self.started
-            .as_ref()
-            .is_some_and(|run| run.preview.divisor == 1 && run.document.has_same_film(document))
+        self.run_of(document).is_some_and(|run| run.preview.divisor == 1)
     }
 
     /// Whether the current film is the document's, at any size.
     pub fn is_of(&self, document: &Document) -> bool {
-        self.started.as_ref().is_some_and(|run| run.document.has_same_film(document))
+        self.run_of(document).is_some()
     }
 
     /// Whether there is a picture of the document, at any size.
@@ -269,8 +272,7 @@ impl Tracer {
             self.previews.end_move();
             self.still(want)
         };
-        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
-        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor) {
+        if self.run_of(want.document).is_some_and(|run| run.preview.divisor <= preview.divisor) {
             self.adjust(want);
             return Ok(());
         }
@@ -285,10 +287,9 @@ impl Tracer {
     /// What to render of a picture that does not move. Previews are for the CPU: a GPU is fast or has to compile first.
     fn still(&self, want: &Want<'_>) -> Preview {
         let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
-        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
         // The same picture at another size is on the screen already.
         let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
-        match mine {
+        match self.run_of(want.document) {
             Some(run) if run.preview.divisor == 1 => Preview::NONE,
             Some(run) if !run.is_pictured && self.status.phase.is_working() => run.preview,
             Some(run) if is_cpu => self.previews.look(want.document, Some(run.preview.divisor)),

@@ -3,7 +3,7 @@
 use super::changes::Changes;
 use super::model::{Device, Model, Sizing};
 use super::second::Second;
-use super::sizer::{Present, Sizer};
+use super::sizer::Sizer;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
 use crate::film::Film;
@@ -77,20 +77,21 @@ impl Tracing {
         self.main.restart();
     }
 
-    /// Gives the document the size that fits the window, if its samples are not worth more.
+    /// Gives the document the size that fits the window, if its samples are not worth more or needed.
     pub fn follow_size(&mut self, context: &Context, model: &mut Model, room: [u32; 2], is_needed: bool) {
         if self.film.is_some() {
             return;
         }
         let is_presented = model.presentation.is_some();
-        let present = Present {
-            is_documents: self.main.is_of(&model.document),
+        let seconds = match self.seconds() {
+            _ if is_needed => f64::INFINITY,
             // A presentation begins with a picture of its own size, whatever that costs.
-            seconds: if is_presented { 0.0 } else { self.seconds().unwrap_or(f64::INFINITY) },
-            is_needed,
+            _ if is_presented => 0.0,
+            seconds => seconds.unwrap_or(f64::INFINITY),
         };
+        let lost = self.main.is_of(&model.document).then_some(seconds);
         let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
-        self.sizer.follow(context, &mut model.document, (sizing, room), &present);
+        self.sizer.follow(context, &mut model.document, (sizing, room), lost);
     }
 
     /// Traces what the model asks for. Returns whether there is a picture to compare with, if one is asked for.
