@@ -55,18 +55,18 @@ pub fn ui(ui: &mut Ui, model: &mut Model, tools: &mut Tools, kept: &mut KeptActi
 
 fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let shown = &mut model.remembered.dock;
+    let tabs = [
+        (Dock::Path, "Path", Command::ClearPaths),
+        (Dock::Kept, "Kept pictures", Command::KeptDock),
+        (Dock::Lanes, "Lanes", Command::LanesDock),
+        (Dock::Error, "Error", Command::ErrorDock),
+    ];
     let left = |ui: &mut Ui| {
         ui.spacing_mut().item_spacing.x = 16.0;
-        for (tab, name, help) in [
-            (Dock::Path, "Path", "The path that is drawn over the picture, point by point"),
-            (Dock::Kept, "Kept pictures", Command::KeptDock.help()),
-            (Dock::Lanes, "Lanes", Command::LanesDock.help()),
-            (Dock::Error, "Error", Command::ErrorDock.help()),
-        ] {
-            let is_there = tab != Dock::Path || dock == tab || facts.has_paths;
-            if is_there {
+        for (tab, name, command) in tabs {
+            if tab != Dock::Path || dock == tab || facts.has_paths {
                 let response = super::widgets::tab(ui, name, dock == tab);
-                if tip(ui, response, help, None).clicked() {
+                if tip(ui, response, command.help(), None).clicked() {
                     *shown = Some(tab);
                 }
             }
@@ -75,12 +75,7 @@ fn tabs(ui: &mut Ui, dock: Dock, model: &mut Model, facts: &Facts) {
     let right = |ui: &mut Ui| {
         let close = sign_button(ui, "×", 24.0, "Close dock");
         if tip(ui, close, "Closes the dock (Escape)", None).clicked() {
-            facts.send(match dock {
-                Dock::Path => Command::ClearPaths,
-                Dock::Kept => Command::KeptDock,
-                Dock::Lanes => Command::LanesDock,
-                Dock::Error => Command::ErrorDock,
-            });
+            tabs.iter().filter(|(tab, ..)| *tab == dock).for_each(|(.., command)| facts.send(*command));
         }
     };
     Sides::new().height(TABS).shrink_left().show(ui, left, right);
