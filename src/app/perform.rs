@@ -276,8 +276,12 @@ impl Window {
 
     pub(super) fn toggle_presentation(&mut self, context: &Context) {
         match self.model.presentation.take() {
-            Some(presentation) => self.fill_screen(context, presentation.was_full_screen),
+            Some(presentation) => {
+                self.display.viewport.placement = self.display.viewport.parked.clone();
+                self.fill_screen(context, presentation.was_full_screen);
+            }
             None => {
+                self.display.viewport.parked = self.display.viewport.placement.clone();
                 let was_full_screen = self.model.is_full_screen;
                 self.model.presentation =
                     Some(Presentation { was_full_screen, has_captions: true, is_blank: false });

@@ -40,8 +40,8 @@ pub struct Previews {
     speed: Option<f64>,
     /// Samples per second of the last render.
     render_speed: Option<f64>,
-    /// The preview of the present move.
-    moving: Option<u32>,
+    /// The preview of the present move, if something moves.
+    pub moving: Option<u32>,
 }
 
 impl Previews {
@@ -53,25 +53,15 @@ impl Previews {
         }
     }
 
-    /// Whether something is moving.
-    pub fn is_moving(&self) -> bool {
-        self.moving.is_some()
-    }
-
     /// The preview to show while something moves.
     pub fn follow_move(&mut self, document: &Document) -> u32 {
         *self.moving.insert(self.moving.unwrap_or_else(|| self.choose(document)))
     }
 
-    /// Notes that nothing moves.
-    pub fn end_move(&mut self) {
-        self.moving = None;
-    }
-
     /// The preview to show before the first samples of a picture. `coarser` is the preview on the screen; each one is at
     /// least twice as fine.
     pub fn look(&self, document: &Document, coarser: Option<u32>) -> u32 {
-        let samples = cost(document, 1) * document.settings.half_count() as f64;
+        let samples = pixels(document) * document.settings.half_count() as f64;
         if samples / self.render_speed.unwrap_or(USUAL_SPEED) <= PATIENCE {
             return 1;
         }
@@ -107,13 +97,16 @@ impl Previews {
 /// Samples per pixel of a preview when it is first shown, a power of two.
 pub fn samples_of(document: &Document, divisor: u32) -> u64 {
     let has_noise = document.rules().shading == Shading::Path;
-    if divisor > 1 && divisor < coarsest(document) && has_noise { SAMPLES } else { 1 }
+    if divisor < coarsest(document) && has_noise { SAMPLES } else { 1 }
+}
+
+fn pixels(document: &Document) -> f64 {
+    document.size().map(f64::from).into_iter().product()
 }
 
 /// Samples of all pixels of a preview.
 fn cost(document: &Document, divisor: u32) -> f64 {
-    let pixels: f64 = document.size().map(f64::from).into_iter().product();
-    pixels * samples_of(document, divisor) as f64 / f64::from(divisor).powi(2)
+    pixels(document) * samples_of(document, divisor) as f64 / f64::from(divisor).powi(2)
 }
 
 /// The coarsest preview of a document.
@@ -174,7 +167,7 @@ mod tests {
         assert_eq!(previews.follow_move(&document), 10);
         previews.pictured(&document, 2, 1e6, 0.2);
         assert_eq!(previews.follow_move(&document), 10, "a late picture of an earlier preview");
-        previews.end_move();
+        previews.moving = None;
         previews.pictured(&document, 8, 1e6, 0.05);
         assert!(previews.follow_move(&document) < 10, "another move");
     }

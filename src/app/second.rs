@@ -43,11 +43,11 @@ impl Second {
     }
 
     pub fn pause(&self) {
-        self.tracer.iter().for_each(Tracer::pause);
+        self.tracer.iter().for_each(|tracer| tracer.progressive.pause());
     }
 
     pub fn resume(&self) {
-        self.tracer.iter().for_each(Tracer::resume);
+        self.tracer.iter().for_each(|tracer| tracer.progressive.resume());
     }
 
     /// Makes the second picture, if one is needed; `want` is what the main picture renders. Returns whether there is one.

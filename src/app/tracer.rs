@@ -54,7 +54,8 @@ impl Want<'_> {
     }
 }
 
-struct Started {
+/// A render that was started.
+pub struct Started {
     document: Document,
     /// 1, or the factor by which a preview is smaller.
     divisor: u32,
@@ -81,7 +82,7 @@ pub struct Shown {
 
 /// A render thread and its latest results.
 pub struct Tracer {
-    progressive: Progressive,
+    pub progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
     status: Arc<Status>,
@@ -128,18 +129,13 @@ impl Tracer {
     }
 
     /// The current run, if its film is the document's, at any size.
-    fn run_of(&self, document: &Document) -> Option<&Started> {
+    pub fn run_of(&self, document: &Document) -> Option<&Started> {
         self.started.as_ref().filter(|run| run.document.has_same_film(document))
     }
 
     /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
         self.run_of(document).is_some_and(|run| run.divisor == 1)
-    }
-
-    /// Whether the current film is the document's, at any size.
-    pub fn is_of(&self, document: &Document) -> bool {
-        self.run_of(document).is_some()
     }
 
     /// Whether there is a picture of the document, at any size.
@@ -182,14 +178,6 @@ impl Tracer {
         self.progressive.inspect(look);
     }
 
-    pub fn pause(&self) {
-        self.progressive.pause();
-    }
-
-    pub fn resume(&self) {
-        self.progressive.resume();
-    }
-
     /// Discards the film; the next request starts a new one.
     pub fn restart(&mut self) {
         self.started = None;
@@ -227,7 +215,7 @@ impl Tracer {
                 document: started.document.clone(),
                 run: started.run,
             });
-            if !started.is_pictured && (self.previews.is_moving() || started.divisor > 1) {
+            if !started.is_pictured && (self.previews.moving.is_some() || started.divisor > 1) {
                 let samples = picture.samples_per_pixel as f64;
                 let samples = samples * f64::from(picture.width) * f64::from(picture.height);
                 let seconds = started.at.elapsed().as_secs_f64();
@@ -238,8 +226,11 @@ impl Tracer {
         }
         let (age, is_pictured) = (started.at.elapsed(), started.is_pictured);
         // After many samples, the picture changes slowly.
-        let interval =
-            if self.previews.is_moving() { Duration::ZERO } else { (age / 20).min(PICTURE_INTERVAL_LIMIT) };
+        let interval = if self.previews.moving.is_some() {
+            Duration::ZERO
+        } else {
+            (age / 20).min(PICTURE_INTERVAL_LIMIT)
+        };
         if (self.asked.elapsed() >= interval || !is_pictured) && !self.is_confetti() {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
@@ -270,7 +261,7 @@ impl Tracer {
         let divisor = if want.is_moving {
             self.previews.follow_move(want.document)
         } else {
-            self.previews.end_move();
+            self.previews.moving = None;
             self.still(want)
         };
         if self.run_of(want.document).is_some_and(|run| run.divisor <= divisor) {
@@ -394,7 +385,7 @@ mod tests {
         for is_pictured in [false, true] {
             let mut tracer = Tracer::new().unwrap();
             tracer.start(&want, 2, None).unwrap();
-            assert!(tracer.is_of(&document) && !tracer.is_full(&document));
+            assert!(tracer.run_of(&document).is_some() && !tracer.is_full(&document));
             tracer.started.as_mut().unwrap().is_pictured = is_pictured;
             tracer.want(&want).unwrap();
             assert_eq!(tracer.is_full(&document), is_pictured);
@@ -403,7 +394,7 @@ mod tests {
             tracer.want(&want).unwrap();
             assert_eq!(tracer.status().run, run);
             tracer.restart();
-            assert!(!tracer.is_of(&document));
+            assert!(!tracer.run_of(&document).is_some());
             tracer.want(&want).unwrap();
             assert_eq!((tracer.status().run, tracer.is_full(&document)), (run + 1, true), "it begins anew");
         }
@@ -437,6 +428,6 @@ mod tests {
         let reason = tracer.want(&wish(&invalid, &backend, false)).unwrap_err();
         assert!(reason.contains("width"), "{reason}");
         assert_eq!(tracer.status().run, run);
-        assert!(tracer.is_of(&document) && !tracer.is_of(&invalid));
+        assert!(tracer.run_of(&document).is_some() && !tracer.run_of(&invalid).is_some());
     }
 }

@@ -65,14 +65,14 @@ impl Tracing {
     }
 
     pub fn pause(&mut self, context: &Context) {
-        self.main.pause();
+        self.main.progressive.pause();
         self.second.pause();
         // The picture of the last samples is still to come.
         context.request_repaint_after(PICTURES_APART);
     }
 
     pub fn resume(&mut self) {
-        self.main.resume();
+        self.main.progressive.resume();
         self.second.resume();
     }
 
@@ -94,7 +94,7 @@ impl Tracing {
             _ if is_presented => 0.0,
             seconds => seconds.unwrap_or(f64::INFINITY),
         };
-        let lost = self.main.is_of(&model.document).then_some(seconds);
+        let lost = self.main.run_of(&model.document).map(|_| seconds);
         let sizing = if is_presented { Sizing::Viewport } else { model.remembered.sizing };
         self.sizer.follow(context, &mut model.document, (sizing, room), lost);
     }

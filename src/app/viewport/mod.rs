@@ -34,8 +34,8 @@ const MARGIN: f32 = 8.0;
 pub struct Viewport {
     /// Position and scale of the picture.
     pub placement: Placement,
-    /// Those of before, while the window presents.
-    parked: Option<Placement>,
+    /// Those of before the presentation.
+    pub parked: Placement,
     moving: Moving,
     is_dragging_divider: bool,
     pub room: Option<Rect>,
@@ -82,25 +82,23 @@ impl Viewport {
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
         // Nothing acts on a picture that a kept one hides.
         let is_hidden = view.looked().is_some();
-        if is_hidden && !is_held {
-            moving::move_picture(ui, &response, &mut self.placement);
-            is_held = true;
-        } else if !is_held {
+        if !is_hidden && !is_held {
             (is_held, touch.is_move) = self.selection.handle(ui, &response, rect, facts);
         }
         if is_held {
             self.moving = Moving::default();
         } else {
-            self.moving.handle(ui, &response, &mut self.placement, (camera, live), &mut touch);
+            let handles = (&mut *camera, live);
+            self.moving.handle(ui, &response, &mut self.placement, handles, is_hidden, &mut touch);
+        }
+        if !is_hidden && !is_held {
             self.handle_click(ui, &response, facts, (camera, selected), &mut touch);
         }
         let document = Document { camera: *camera, ..live.clone() };
         paint::paint(ui, [room, rect], (&self.placement, *divider), pictures, &document, facts);
-        let own = if is_wipe {
-            Rect { min: egui::pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.top()), ..rect }
-        } else {
-            rect
-        };
+        // A wipe shows the traced picture right of the divider.
+        let left = if is_wipe { *divider } else { 0.0 };
+        let own = rect.with_min_x(rect.lerp_inside(vec2(left, 0.0)).x);
         self.selection.paint(ui, (rect, own.intersect(room)), &document, facts);
         self.moving.paint(ui, own.intersect(room), rect, &document);
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
@@ -122,15 +120,10 @@ impl Viewport {
         touch
     }
 
-    /// Places the picture. One that is presented has a place of its own.
+    /// Places the picture. One that is presented fits the screen.
     fn place(&mut self, ui: &Ui, room: Rect, facts: &Facts) -> Rect {
         let model = &facts.model;
         let is_presenting = model.presentation.is_some();
-        match (is_presenting, self.parked.take()) {
-            (true, None) => self.parked = Some(self.placement.clone()),
-            (false, Some(parked)) => self.placement = parked,
-            (_, parked) => self.parked = parked,
-        }
         let is_of_sight = matches!(self.placement.zoom, Zoom::Part(_));
         if !facts.has_sight && (is_presenting || is_of_sight) {
             self.placement.fit();
