@@ -35,7 +35,6 @@ mod paths;
 mod perform;
 mod pixel_values;
 mod plot;
-mod prediction;
 mod present;
 mod preview;
 mod receive;

@@ -80,11 +80,7 @@ impl PixelValues {
 
 /// Black or white, whichever contrasts more with an sRGB colour (WCAG 2).
 fn readable_on(ground: [u8; 3]) -> Color32 {
-    let [r, g, b] = ground.map(|byte| {
-        let value = f64::from(byte) / 255.0;
-        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-    });
-    let luminance = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let luminance = egui::Rgba::from(Color32::from_rgb(ground[0], ground[1], ground[2])).intensity();
     // The contrast is (brighter + 0.05) / (darker + 0.05).
     if (luminance + 0.05).powi(2) > 1.05 * 0.05 { Color32::BLACK } else { Color32::WHITE }
 }

@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::prediction::prediction;
+use super::plot::prediction;
 use super::spheres;
 use super::theme;
 use super::widgets::{command_button, compact, small, tip};

@@ -214,14 +214,7 @@ pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     painter.rect_filled(room, 0.0, ui.visuals().panel_fill.gamma_multiply(0.8));
     let edge = Stroke::new(2.0, theme::colours(ui).accent);
     painter.rect_stroke(room.shrink(12.0), CornerRadius::same(8), edge, egui::StrokeKind::Inside);
-    let font = TextStyle::Heading.resolve(ui.style());
-    painter.text(
-        room.center(),
-        Align2::CENTER_CENTER,
-        text.trim_end(),
-        font,
-        ui.visuals().strong_text_color(),
-    );
+    plate(ui, &painter, room.center(), Align2::CENTER_CENTER, text.trim_end(), room.width());
 }
 
 #[cfg(test)]
