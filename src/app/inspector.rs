@@ -29,8 +29,6 @@ pub struct Pixel {
     pub error: Option<[f64; 3]>,
     /// The 8-bit values in the picture.
     pub bytes: [u8; 3],
-    /// Samples in the pixel.
-    pub samples: u64,
 }
 
 /// The pixel under the pointer and what is known about it.
@@ -74,8 +72,7 @@ impl Inspector {
             let index = y as usize * film.width() as usize + x as usize;
             let mean = film.mean(index);
             let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
-            let (error, samples) = (standard_error(film, index), film.sample_count());
-            Some(Pixel { at, mean, error, bytes, samples })
+            Some(Pixel { at, mean, error: standard_error(film, index), bytes })
         });
     }
 
@@ -209,7 +206,7 @@ mod tests {
     #[test]
     fn a_difference_tells_both_sides() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
-        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
+        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3] };
         let other = [0.25, 0.5, 1.0];
         let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
