@@ -6,7 +6,7 @@ use super::files::describer;
 use super::model::{CheckedScene, Document, Model, Origin, Source};
 use super::tracing::Tracing;
 use crate::film::{Description, Film, checkpoint};
-use crate::job::recipe::file;
+use crate::job::recipe::{Recipe, file};
 use crate::job::saved::{self, Saved};
 use crate::progressive::Stop;
 use crate::progressive::describe::counted;
@@ -69,16 +69,18 @@ impl Note {
     }
 }
 
-/// The picture of a film that was saved by a window, and how many samples per pixel it has.
+/// The picture of a film, and how many samples per pixel it has.
 pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     let saved = Saved::describe(path).ok()?;
-    let recipe = saved.recipe().ok()?;
+    Some((document_of(&saved, &saved.recipe().ok()?), saved.samples()?))
+}
+
+/// The document of a film or picture. One that a window has saved by itself is as it was there.
+pub fn document_of(saved: &Saved, recipe: &Recipe) -> Document {
     let note = saved.description.get(NOTE).and_then(|note| serde_json::from_str::<Note>(note).ok());
-    let Some(note) = note else {
-        return Some((Document::of_film(&recipe, saved.stage()), saved.samples()?));
-    };
+    let Some(note) = note else { return Document::of_film(recipe, saved.stage()) };
     let origin = note.origin().filter(|origin| origin.recipe.rules == recipe.rules);
-    let mut document = Document::new(origin.unwrap_or_else(|| Origin::guess(&recipe, saved.stage())));
+    let mut document = Document::new(origin.unwrap_or_else(|| Origin::guess(recipe, saved.stage())));
     if *document.scene() != *recipe.scene {
         document.checked = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
     }
@@ -86,7 +88,7 @@ pub fn picture_of(path: &Path) -> Option<(Document, u64)> {
     (document.has_own_size, document.is_from_file) = (note.has_own_size, note.is_from_file);
     let (samples, seconds, noise) = note.stop;
     document.stop = Stop { samples, seconds, noise, ..Stop::default() };
-    Some((document, saved.samples()?))
+    document
 }
 
 /// The files of the window that has locked them.

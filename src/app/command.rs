@@ -12,7 +12,8 @@ use crate::job::output::OutputFormat;
 use crate::measure::stress::Case;
 use crate::stages::{BOOK_URL, Stage};
 use eframe::egui::{
-    Context, FocusDirection, Key, KeyboardShortcut, Modifiers, ThemePreference, ViewportCommand,
+    Context, FocusDirection, Key, KeyboardShortcut, ModifierNames, Modifiers, ThemePreference,
+    ViewportCommand,
 };
 use std::sync::LazyLock;
 
@@ -196,19 +197,22 @@ table! {
     Redo "Redo", "Makes that change again", |w, _| w.redo(), keys(CTRL_SHIFT, Key::Z),
         needs(|f| f.redo.is_some(), "Nothing has been undone");
     ResetAll "Reset everything",
-        "Returns to the stage as it is in the book; Undo brings your changes back", |w, _| w.change(|w| w.model.document.reset()),
+        "Returns to the stage as it is in the book; Undo brings your changes back",
+        |w, _| w.change(|w| w.model.document.reset()),
         needs(|f| f.document().is_changed(), "This is the stage as it is in the book"),
         also("original lost back");
     AddSphere "Add a sphere", "Puts a sphere where the pointer is", |w, _| w.add_sphere(),
         key(Key::Insert), line(), off(|f| f.no_rays().map(str::to_owned)), also("new ball");
     DuplicateSphere "Duplicate the sphere", "Puts a copy beside the selected sphere",
         |w, _| w.duplicate_sphere(), keys(CTRL, Key::D), needs(has_selection, NO_SPHERE), also("copy ball");
-    DeleteSphere "Delete the sphere", "Removes the selected sphere", |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
+    DeleteSphere "Delete the sphere", "Removes the selected sphere",
+        |w, _| w.model.selected.into_iter().for_each(|sphere| w.edit(Edit::Delete(sphere))),
         key(Key::Delete), needs(has_selection, NO_SPHERE), also("remove ball");
     SkyColours "Sky colours…", "Changes the two colours that the sky fades between",
         |w, _| w.shell.dialogs.open(Dialog::Sky), off(|f| f.no_rays().map(str::to_owned)),
         also("background light gradient");
-    Home "Reset the camera", "Returns to the camera and lens of the stage", |w, _| w.model.document.camera = w.document().origin.recipe.camera,
+    Home "Reset the camera", "Returns to the camera and lens of the stage",
+        |w, _| w.model.document.camera = w.document().origin.recipe.camera,
         key(Key::Home), line(),
         needs(|f| f.document().camera != f.document().origin.recipe.camera, "This is the camera of the stage"),
         also("home lost back original");
@@ -275,7 +279,8 @@ table! {
 
     [Some("Stage")]
     Stages "All stages…", "Every picture of the book, with a small image; type to search",
-        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), false))), key(Key::O), also("list section chapter");
+        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), false))),
+        key(Key::O), also("list section chapter");
     PreviousStage "Previous stage", "One step back in the book", |w, _| w.step_stage(false),
         key(Key::PageUp), needs(|f| f.neighbour(false).is_some(), "This is the first stage");
     NextStage "Next stage", "One step forward in the book", |w, _| w.step_stage(true),
@@ -330,12 +335,14 @@ table! {
         |w, c| w.write_companion(c, true), also("web page explain");
     ExtremeScenes "Extreme scenes…",
         "Opens the list of stages at its end: dust, soap bubbles, a planet’s pole and others",
-        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), true))), line(), also("stress stiff numerical");
+        |w, _| w.shell.dialogs.open(Dialog::Stages(stage_list::list(&w.facts(), true))),
+        line(), also("stress stiff numerical");
 
     [Some("Help")]
     FirstSteps "First steps", "Brings back the card with three things to try",
         |w, _| (w.model.has_first_steps, w.model.remembered.is_greeted) =
-            (!w.model.has_first_steps, w.model.has_first_steps), off(no_presentation), on(|f| f.model.has_first_steps),
+            (!w.model.has_first_steps, w.model.has_first_steps),
+        off(no_presentation), on(|f| f.model.has_first_steps),
         also("tutorial introduction");
     Help "Keys and mouse", "All keys, and what the mouse does",
         |w, _| w.shell.dialogs.open(Dialog::Help), key(Key::F1),
@@ -396,7 +403,8 @@ table! {
             w.tracing.sizer.ask();
         }, unlisted();
     StopSaving "Stop", "Gives up this render", |w, _| w.files.stop_saving(), unlisted();
-    Recover "Go on with it", "Shows it, and adds more samples", |w, c| w.recover(c), unlisted();
+    Recover "Go on with it", "Shows it, and adds more samples",
+        |w, c| w.autosave.left().into_iter().for_each(|path| w.files.open(c, path)), unlisted();
     WholeCompanion "Write the full one",
         "Renders its pictures at full size and without noise, which takes some minutes",
         |w, c| w.write_companion(c, false), unlisted();
@@ -543,18 +551,11 @@ impl Command {
 
     /// As shown to the user, such as `Ctrl+O`.
     pub fn keys(self, context: &Context) -> Option<String> {
-        let named = context.format_shortcut(&self.row()?.keys?);
-        let signs = [
-            ("OpenBracket", "["),
-            ("CloseBracket", "]"),
-            ("Plus", "+"),
-            ("Minus", "−"),
-            ("PageUp", "Page Up"),
-            ("PageDown", "Page Down"),
-            ("Period", "."),
-            ("Comma", ","),
-        ];
-        Some(signs.iter().fold(named, |text, (name, sign)| text.replace(name, sign)))
+        let keys = self.row()?.keys?;
+        // The font has no arrows.
+        let is_short = !matches!(keys.logical_key, Key::ArrowLeft | Key::ArrowRight);
+        let names = ModifierNames { is_short, ..ModifierNames::NAMES };
+        Some(keys.format(&names, context.os().is_mac()).replace("Page", "Page "))
     }
 
     /// Opens a dialog, which takes the keys that follow.

@@ -1,5 +1,5 @@
-//! What panels show but do not change: a snapshot of the window at the start of the frame, which also takes what they ask
-//! for.
+//! What panels show but do not change: a snapshot of the window at the start of the frame, which also takes what they
+//! ask for.
 
 use super::command::Command;
 use super::model::{Device, Document, Edit, Mode, Model, Show, partner};
@@ -74,6 +74,7 @@ impl Facts {
     pub fn no_rays(&self) -> Option<&'static str> {
         self.document().no_rays()
     }
+
     /// The commands for the files that were opened or saved last, newest first.
     pub fn recent(&self) -> impl Iterator<Item = Command> {
         (0..self.model.remembered.recent.len()).map(Command::Recent)

@@ -425,17 +425,6 @@ impl Window {
         self.shell.toasts.offer(words, &[Command::Recover]);
     }
 
-    pub(super) fn recover(&mut self, context: &Context) {
-        let Some(path) = self.autosave.left() else { return };
-        match picture_of(&path).map(|(document, _)| (document.job(1), document)) {
-            Some((Ok(job), document)) => {
-                self.show_document(document);
-                self.files.resume(context, path, job, &self.model.document);
-            }
-            _ => self.files.open(context, path),
-        }
-    }
-
     pub(super) fn open_recent(&mut self, context: &Context, place: usize) {
         let recent = &mut self.model.remembered.recent;
         let Some(path) = recent.get(place).cloned() else { return };

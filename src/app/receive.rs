@@ -1,5 +1,6 @@
 //! What background threads have answered.
 
+use super::autosave::document_of;
 use super::command::Command;
 use super::files::Resumed;
 use super::model::{Dock, Document, Kept, Origin, Source};
@@ -62,21 +63,24 @@ impl Window {
         self.tracing.report(device, &mut self.shell.toasts);
     }
 
-    fn show_opened(&mut self, opened: Opened) {
-        let Opened { path, recipe, saved, .. } = opened;
-        self.model.remembered.note_recent(&path);
+    fn show_opened(&mut self, Opened { path, recipe, saved, .. }: Opened) {
+        let is_left = self.autosave.left().as_ref() == Some(&path);
         let mut document = match &saved {
             None => Document::new(Origin::new(recipe, Source::File(path.clone()))),
-            Some(saved) => Document::of_film(&recipe, saved.stage()),
+            Some(saved) => document_of(saved, &recipe),
         };
-        document.has_own_size = true;
+        document.has_own_size |= !is_left;
         if let Some(samples) = saved.as_ref().filter(|saved| saved.film.is_none()).and_then(Saved::samples) {
             document.stop = Stop::at_samples(samples);
         }
         self.show_document(document);
-        let name = path.file_name().unwrap_or(path.as_os_str()).display();
-        let words = format!("Opened {name}; its size and samples hold for this picture only");
-        self.shell.toasts.good(words);
+        self.shell.toasts.good(if is_left {
+            format!("Going on with {}", self.document().place())
+        } else {
+            self.model.remembered.note_recent(&path);
+            let name = path.file_name().unwrap_or(path.as_os_str()).display();
+            format!("Opened {name}; its size and samples hold for this picture only")
+        });
         if let Some(film) = saved.and_then(Saved::into_film) {
             self.adopt(film.film, film.seconds);
         }
@@ -95,8 +99,6 @@ impl Window {
         self.adopt(film.film, film.seconds);
         if !is_quiet {
             self.shell.toasts.good(format!("Going on with {}", self.document().place()));
-        }
-        if !is_quiet && self.autosave.left().as_ref() != Some(&path) {
             self.model.remembered.note_recent(&path);
         }
     }

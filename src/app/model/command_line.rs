@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 impl Document {
     /// The command line that renders the same picture with `samples` samples per pixel; on the CPU it is identical to
-    /// the bit. A changed scene is read from the scene file that it was saved in. Everything else is then repeated, because the file may have been saved with another camera or other
-    /// settings.
+    /// the bit. A changed scene is read from the scene file that it was saved in. Everything else is then repeated,
+    /// because the file may have been saved with another camera or other settings.
     pub fn command_line(&self, samples: u64, device: &str, adapter: Option<&str>) -> String {
         let (origin, name) = (&self.origin.recipe, self.name());
         let mut line = String::from("weekender --batch");
